@@ -1,0 +1,98 @@
+//! The list of stable codes. A new diagnostic is one line here and one page in `explain/`.
+
+use super::Severity;
+
+macro_rules! codes {
+    ($($code:ident $name:ident $severity:ident;)*) => {
+        /// A stable diagnostic code, shown as `E201`. Codes are never reused.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code { $($name),* }
+
+        impl Code {
+            /// Every code, in order.
+            pub const ALL: &'static [Code] = &[$(Code::$name),*];
+
+            /// The code as it is printed: `E201`.
+            #[must_use]
+            pub const fn id(self) -> &'static str {
+                match self { $(Code::$name => stringify!($code)),* }
+            }
+
+            #[must_use]
+            pub const fn severity(self) -> Severity {
+                match self { $(Code::$name => Severity::$severity),* }
+            }
+
+            /// The page `psd explain` shows: what, why, a wrong plan and a right one.
+            #[must_use]
+            pub const fn page(self) -> &'static str {
+                match self { $(Code::$name => include_str!(concat!("explain/", stringify!($code), ".md"))),* }
+            }
+        }
+    };
+}
+
+codes! {
+    // 1: the text
+    E101 Syntax Error;
+    E102 UnclosedBracket Error;
+    E103 BadNumber Error;
+    E104 UnitWithoutBlank Error;
+    E105 NestedTooDeep Error;
+    E106 BadText Error;
+    E107 TooLarge Error;
+    // 2: names
+    E201 UnknownBlock Error;
+    E202 UnknownField Error;
+    E203 UnknownName Error;
+    E204 UnknownUnit Error;
+    E205 UnknownVariant Error;
+    E206 UnknownResult Error;
+    E207 UnknownFunction Error;
+    E208 Duplicate Error;
+    E209 MissingField Error;
+    E210 MissingBlock Error;
+    E211 NotInThisVersion Error;
+    E212 BlockName Error;
+    E213 BadArgument Error;
+    E214 UnknownParameter Error;
+    // 3: dimensions and types
+    E301 WrongDimension Error;
+    E302 MissingUnit Error;
+    E303 MismatchedDimensions Error;
+    E304 WrongType Error;
+    E305 BadExponent Error;
+    // 4: values
+    E401 OutOfRange Error;
+    E402 BadRange Error;
+    E403 UsedBeforeItRan Error;
+    E404 Cycle Error;
+    E405 TooMany Error;
+    E406 SettingOutOfRange Error;
+    E407 NotFinite Error;
+    E408 Edition Error;
+    // 5: files
+    E501 FileNotFound Error;
+    E502 BadPath Error;
+    E503 UseCycle Error;
+    E504 TooManyFiles Error;
+    // 6: the test as a whole
+    E601 AmbiguousSpecimen Error;
+    E602 BeyondLimits Error;
+    E603 UnknownRig Error;
+    E604 LimitsWider Error;
+    E605 NeedsLimits Error;
+    // 7: what runs but is unwise
+    W701 StepAboveCritical Warning;
+    W702 PeakForceUnderRigidLaw Warning;
+    W703 LimitForceNotResolved Warning;
+    W704 NothingRequired Warning;
+    W705 NothingRuns Warning;
+    W706 Unused Warning;
+}
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.id())
+    }
+}

@@ -1,0 +1,303 @@
+//! Checked expressions. Names are resolved, units are gone, dimensions agree; what is left to do at run time is
+//! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
+//! Out: an [`Estimate`], the value with its standard uncertainty.
+
+/// Position of a procedure in the plan, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ProcedureId(pub usize);
+
+/// Which number of a result is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Value,
+    /// `.u`, the standard uncertainty.
+    Uncertainty,
+}
+
+/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's own word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResultReference {
+    pub procedure: ProcedureId,
+    pub name: &'static str,
+    pub part: Part,
+}
+
+/// A checked expression, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Formula {
+    Constant(f64),
+    Result(ResultReference),
+    /// Δt of eq. 7 for the impact at hand; stands only in `time_step`.
+    CriticalTimeStep,
+    List(Vec<Formula>),
+    Index(Box<Formula>, usize),
+    Negate(Box<Formula>),
+    Binary(Operator, Box<Formula>, Box<Formula>),
+    Call(Function, Vec<Formula>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    Abs,
+    Min,
+    Max,
+    Sum,
+    Mean,
+    Sqrt,
+    Sin,
+    Cos,
+}
+
+/// A value and its standard uncertainty (both SI); no uncertainty where nothing measured went in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    pub value: f64,
+    pub uncertainty: Option<f64>,
+}
+
+/// What a result may be: one number or a list, with the standard uncertainty of a number where it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ResultValue {
+    /// `value` is None where the result does not exist in this run (no stop time: the striker did not stop).
+    Number {
+        value: Option<f64>,
+        uncertainty: Option<f64>,
+    },
+    List(Vec<f64>),
+}
+
+/// Where formulas find results.
+pub trait Results {
+    /// The result, or None if its procedure has not run to it.
+    fn result(&self, reference: ResultReference) -> Option<ResultValue>;
+}
+
+/// No procedure has run: constants only.
+pub struct NoResults;
+
+impl Results for NoResults {
+    fn result(&self, _: ResultReference) -> Option<ResultValue> {
+        None
+    }
+}
+
+/// Why a formula has no value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FormulaError {
+    #[error("the result `{0}` does not exist in this run")]
+    Missing(&'static str),
+    #[error("the value is not a finite number")]
+    NotFinite,
+    #[error("a list stands where one number is wanted")]
+    NotANumber,
+    #[error("the list has no entry {0}")]
+    NoSuchEntry(usize),
+}
+
+#[derive(Clone, Debug)]
+enum Value {
+    Number(f64),
+    List(Vec<f64>),
+}
+
+impl Formula {
+    /// The value, and its standard uncertainty propagated to first order (GUM 5.1.2, uncorrelated inputs): the root sum of squares of
+    /// each measured result's effect on the value. `critical` is Δtc (s), for `time_step` only.
+    ///
+    /// # Errors
+    /// A result that does not exist in this run, or a value that is not finite.
+    pub fn evaluate(&self, results: &dyn Results, critical: Option<f64>) -> Result<Estimate, FormulaError> {
+        let value = self.number(results, critical, None)?;
+        let mut references = Vec::new();
+        self.collect_references(&mut references);
+        let mut variance = None;
+        for reference in references {
+            let Some(ResultValue::Number { value: Some(at), uncertainty: Some(u) }) = results.result(reference) else { continue };
+            if reference.part == Part::Uncertainty || u == 0.0 {
+                continue;
+            }
+            // Half the effect of moving the result by ±u: exact for a linear formula.
+            let up = self.number(results, critical, Some((reference, at + u)))?;
+            let down = self.number(results, critical, Some((reference, at - u)))?;
+            variance = Some(variance.unwrap_or(0.0) + (0.5 * (up - down)).powi(2));
+        }
+        Ok(Estimate { value, uncertainty: variance.map(f64::sqrt) })
+    }
+
+    /// The value where no result is needed: constants folded by `check`.
+    #[must_use]
+    pub fn constant(&self) -> Option<f64> {
+        self.number(&NoResults, None, None).ok()
+    }
+
+    /// The result this formula is, if it is nothing but one.
+    #[must_use]
+    pub fn as_result(&self) -> Option<ResultReference> {
+        if let Self::Result(reference) = self { Some(*reference) } else { None }
+    }
+
+    /// Adds every result the formula reads, each once.
+    pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
+        match self {
+            Self::Constant(_) | Self::CriticalTimeStep => {}
+            Self::Result(reference) => {
+                if !into.contains(reference) {
+                    into.push(*reference);
+                }
+            }
+            Self::Negate(inner) | Self::Index(inner, _) => inner.collect_references(into),
+            Self::Binary(_, left, right) => {
+                left.collect_references(into);
+                right.collect_references(into);
+            }
+            Self::List(parts) | Self::Call(_, parts) => parts.iter().for_each(|part| part.collect_references(into)),
+        }
+    }
+
+    /// Whether `critical` stands in it.
+    #[must_use]
+    pub fn reads_critical_time_step(&self) -> bool {
+        match self {
+            Self::CriticalTimeStep => true,
+            Self::Constant(_) | Self::Result(_) => false,
+            Self::Negate(inner) | Self::Index(inner, _) => inner.reads_critical_time_step(),
+            Self::Binary(_, left, right) => left.reads_critical_time_step() || right.reads_critical_time_step(),
+            Self::List(parts) | Self::Call(_, parts) => parts.iter().any(Self::reads_critical_time_step),
+        }
+    }
+
+    fn number(
+        &self,
+        results: &dyn Results,
+        critical: Option<f64>,
+        moved: Option<(ResultReference, f64)>,
+    ) -> Result<f64, FormulaError> {
+        match self.value(results, critical, moved)? {
+            Value::Number(value) if value.is_finite() => Ok(value),
+            Value::Number(_) => Err(FormulaError::NotFinite),
+            Value::List(_) => Err(FormulaError::NotANumber),
+        }
+    }
+
+    fn value(
+        &self,
+        results: &dyn Results,
+        critical: Option<f64>,
+        moved: Option<(ResultReference, f64)>,
+    ) -> Result<Value, FormulaError> {
+        let number = |formula: &Formula| formula.number(results, critical, moved);
+        Ok(match self {
+            Self::Constant(value) => Value::Number(*value),
+            Self::CriticalTimeStep => Value::Number(critical.ok_or(FormulaError::Missing("critical"))?),
+            Self::Result(reference) => match moved.filter(|(which, _)| which == reference) {
+                Some((_, value)) => Value::Number(value),
+                None => match (results.result(*reference).ok_or(FormulaError::Missing(reference.name))?, reference.part) {
+                    (ResultValue::List(values), _) => Value::List(values),
+                    (ResultValue::Number { value, .. }, Part::Value) => {
+                        Value::Number(value.ok_or(FormulaError::Missing(reference.name))?)
+                    }
+                    (ResultValue::Number { uncertainty, .. }, Part::Uncertainty) => {
+                        Value::Number(uncertainty.ok_or(FormulaError::Missing(reference.name))?)
+                    }
+                },
+            },
+            Self::List(parts) => Value::List(parts.iter().map(number).collect::<Result<_, _>>()?),
+            Self::Index(inner, index) => match inner.value(results, critical, moved)? {
+                Value::List(values) => Value::Number(*values.get(*index).ok_or(FormulaError::NoSuchEntry(*index))?),
+                Value::Number(_) => return Err(FormulaError::NotANumber),
+            },
+            Self::Negate(inner) => Value::Number(-number(inner)?),
+            Self::Binary(operator, left, right) => {
+                let (left, right) = (number(left)?, number(right)?);
+                Value::Number(match operator {
+                    Operator::Add => left + right,
+                    Operator::Subtract => left - right,
+                    Operator::Multiply => left * right,
+                    Operator::Divide => left / right,
+                    Operator::Power => left.powf(right),
+                })
+            }
+            Self::Call(function, arguments) => {
+                let mut values = Vec::new();
+                for argument in arguments {
+                    match argument.value(results, critical, moved)? {
+                        Value::Number(value) => values.push(value),
+                        Value::List(list) => values.extend(list),
+                    }
+                }
+                Value::Number(function.apply(&values))
+            }
+        })
+    }
+}
+
+impl Function {
+    pub const ALL: &'static [(&'static str, Function)] = &[
+        ("abs", Self::Abs),
+        ("min", Self::Min),
+        ("max", Self::Max),
+        ("sum", Self::Sum),
+        ("mean", Self::Mean),
+        ("sqrt", Self::Sqrt),
+        ("sin", Self::Sin),
+        ("cos", Self::Cos),
+    ];
+
+    /// Value of the function over its arguments, lists spread out; NaN of nothing.
+    fn apply(self, values: &[f64]) -> f64 {
+        let Some(&first) = values.first() else { return f64::NAN };
+        match self {
+            Self::Abs => first.abs(),
+            Self::Sqrt => first.sqrt(),
+            Self::Sin => first.sin(),
+            Self::Cos => first.cos(),
+            Self::Min => values.iter().copied().fold(first, f64::min),
+            Self::Max => values.iter().copied().fold(first, f64::max),
+            Self::Sum => values.iter().sum(),
+            #[expect(clippy::cast_precision_loss, reason = "a list has at most some million entries")]
+            Self::Mean => values.iter().sum::<f64>() / values.len() as f64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct One;
+    impl Results for One {
+        fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+            (reference.name == "stiffness").then_some(ResultValue::Number { value: Some(100.0), uncertainty: Some(2.0) })
+        }
+    }
+
+    fn stiffness() -> Formula {
+        Formula::Result(ResultReference { procedure: ProcedureId(0), name: "stiffness", part: Part::Value })
+    }
+
+    #[test]
+    fn uncertainty_is_propagated_to_first_order() {
+        let half = Formula::Binary(Operator::Divide, Box::new(stiffness()), Box::new(Formula::Constant(2.0)));
+        assert_eq!(half.evaluate(&One, None), Ok(Estimate { value: 50.0, uncertainty: Some(1.0) }));
+        let root = Formula::Call(Function::Sqrt, vec![stiffness()]).evaluate(&One, None).unwrap();
+        assert!((root.uncertainty.unwrap() - 0.1).abs() < 1e-4);
+        let difference = Formula::Binary(Operator::Subtract, Box::new(stiffness()), Box::new(stiffness()));
+        assert_eq!(difference.evaluate(&One, None), Ok(Estimate { value: 0.0, uncertainty: Some(0.0) }));
+    }
+
+    #[test]
+    fn a_result_that_does_not_exist_is_an_error_and_so_is_a_division_by_zero() {
+        assert_eq!(stiffness().evaluate(&NoResults, None), Err(FormulaError::Missing("stiffness")));
+        let zero = Formula::Binary(Operator::Divide, Box::new(stiffness()), Box::new(Formula::Constant(0.0)));
+        assert_eq!(zero.evaluate(&One, None), Err(FormulaError::NotFinite));
+    }
+}

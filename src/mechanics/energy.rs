@@ -1,0 +1,21 @@
+//! The energy balance of an impact (physics: every dynamic run, every step).
+
+/// Energies at the end of a step, all in J. They add up:
+/// `striker + structure + restoring + damping + contact_loss + error = ½ Ms V0²`.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Energies {
+    /// ½ Ms Ẋs²
+    pub striker: f64,
+    /// ½ M Ẋ²
+    pub structure: f64,
+    /// ∫ R dX over the computed X, trapezoid.
+    pub restoring: f64,
+    /// ∫ C Ẋ dX
+    pub damping: f64,
+    /// Σ F₁ ΔXs − ½(F₀ + F₁) ΔX, cumulated.
+    pub contact_loss: f64,
+    /// F_lim Δδp, cumulated: an indicator, not a part of the sum.
+    pub indentation: f64,
+    /// What remains of the input: the integration error.
+    pub error: f64,
+}

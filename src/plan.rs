@@ -1,0 +1,446 @@
+//! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
+//! it; nobody after `check` sees text but what the plan carries for the certificate.
+
+use crate::formula::{Formula, ProcedureId};
+use crate::quantity::Dimension;
+
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub title: String,
+    /// Certificate data of the `plan` block in the schema's order: (field, text). Only what was given.
+    pub particulars: Vec<(&'static str, String)>,
+    pub parameters: Vec<Parameter>,
+    pub specimens: Vec<Specimen>,
+    pub strikers: Vec<Striker>,
+    /// The rig this run uses: the one named, else the first virtual one of the plan itself, else an ideal virtual rig.
+    pub rig: RigPlan,
+    /// The intersection of the plan's limits and the rig's.
+    pub limits: Limits,
+    pub procedures: Vec<Procedure>,
+    pub requirements: Vec<Requirement>,
+    pub report: Report,
+    /// The plan first, then every file it used, by the name it was used under.
+    pub files: Vec<PlanFile>,
+    /// `--set` values as given, in order of name.
+    pub settings: Vec<(String, String)>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlanFile {
+    pub name: String,
+    pub text: String,
+}
+
+/// A `param` as it was for this run.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    pub name: String,
+    pub value: f64,
+    pub dimension: Dimension,
+    /// Whether `--set` gave it.
+    pub set: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct Specimen {
+    pub name: String,
+    /// Equivalent mass at the struck section, kg.
+    pub mass: f64,
+    /// What a virtual rig bends.
+    pub behaviour: Option<Behaviour>,
+    /// c of c·v on the virtual load cell while the actuator moves, N·s/m.
+    pub damping: f64,
+    /// Friction on the virtual load cell, N.
+    pub coulomb: f64,
+}
+
+/// Restoring force of a virtual specimen against displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Behaviour {
+    /// R = K X; K in N/m.
+    Elastic { stiffness: f64 },
+    /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
+    Bilinear { stiffness: f64, yield_force: f64, hardening: f64 },
+    /// A beam by geometry: already its stiffness (N/m), and what it was made from, for the report.
+    Beam { stiffness: f64, length: f64, youngs_modulus: f64, second_moment: f64, ends: Ends },
+}
+
+/// How the ends of a beam are held (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ends {
+    Cantilever,
+    SimplySupported,
+    BuiltIn,
+    /// Rotational stiffness of each end, N·m/rad.
+    PartlyBuiltIn {
+        rotational_stiffness: f64,
+    },
+}
+
+impl Behaviour {
+    /// Stiffness at no displacement, N/m.
+    #[must_use]
+    pub const fn initial_stiffness(&self) -> f64 {
+        match *self {
+            Self::Elastic { stiffness } | Self::Bilinear { stiffness, .. } | Self::Beam { stiffness, .. } => stiffness,
+        }
+    }
+}
+
+/// A computed body: only the structure is on the rig.
+#[derive(Clone, Debug)]
+pub struct Striker {
+    pub name: String,
+    /// kg
+    pub mass: f64,
+    /// m/s, towards the structure.
+    pub velocity: f64,
+    /// Distance to the structure at the start, m, at least 0.
+    pub gap: f64,
+}
+
+/// Closed intervals (SI); an absent bound is infinite, so that `lo <= x && x <= hi` is the whole test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    pub low: f64,
+    pub high: f64,
+}
+
+impl Interval {
+    pub const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
+    /// Whether `x` lies inside; NaN never does.
+    #[must_use]
+    pub fn contains(self, x: f64) -> bool {
+        self.low <= x && x <= self.high
+    }
+
+    #[must_use]
+    pub fn intersection(self, other: Self) -> Self {
+        Self { low: self.low.max(other.low), high: self.high.min(other.high) }
+    }
+
+    #[must_use]
+    pub fn is_bounded(self) -> bool {
+        self.low > f64::NEG_INFINITY || self.high < f64::INFINITY
+    }
+}
+
+/// What nothing may drive the rig past.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// m, of every target and every reading.
+    pub displacement: Interval,
+    /// N, of every reading.
+    pub force: Interval,
+    /// m/s, of the actuator; 0 ≤ speed ≤ high.
+    pub speed: Interval,
+    /// m, largest change of target in one step, by size.
+    pub increment: Interval,
+    /// m, |measured − target| after settling.
+    pub tracking_error: Interval,
+    /// |energy error| over the input energy.
+    pub energy_error: Interval,
+}
+
+impl Limits {
+    pub const NONE: Self = Self {
+        displacement: Interval::ALL,
+        force: Interval::ALL,
+        speed: Interval::ALL,
+        increment: Interval::ALL,
+        tracking_error: Interval::ALL,
+        energy_error: Interval::ALL,
+    };
+}
+
+#[derive(Clone, Debug)]
+pub struct RigPlan {
+    /// `ideal` where the plan declares none.
+    pub name: String,
+    pub link: Link,
+    pub settle: Settle,
+    /// Factor on displacement and force signs: +1 or −1.
+    pub sign: f64,
+    /// Text of the calibration reference, if given.
+    pub calibration: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Link {
+    Virtual(VirtualLink),
+}
+
+/// What a virtual rig adds to its specimen. All zero: an ideal rig.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct VirtualLink {
+    /// Standard deviation of the load cell, N.
+    pub noise: f64,
+    /// Quantum of the displacement reading, m.
+    pub resolution: f64,
+    /// Quantum of the force reading, N.
+    pub force_resolution: f64,
+    /// First-order time constant of the actuator, s.
+    pub lag: f64,
+    /// Fraction of each increment not reached.
+    pub tracking: f64,
+    /// Drift of the load cell, N/s of rig time.
+    pub drift: f64,
+    pub seed: u64,
+}
+
+/// When a reading counts. A zero band is "at once".
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settle {
+    /// Displacement stays within this of the target, m.
+    pub band: f64,
+    /// |dF/dt| stays under this, N/s.
+    pub force_rate: f64,
+    /// … for this long, s.
+    pub dwell: f64,
+    /// Longest wait, s; past it the rig holds and the run is aborted.
+    pub timeout: f64,
+}
+
+#[derive(Clone, Debug)]
+pub struct Procedure {
+    pub name: String,
+    pub kind: ProcedureKind,
+}
+
+#[derive(Clone, Debug)]
+pub enum ProcedureKind {
+    StiffnessRamp(StiffnessRamp),
+    DampingSweep(DampingSweep),
+    Impact(Impact),
+    Move(Move),
+    /// A person looks at the specimen.
+    Inspect {
+        note: String,
+    },
+}
+
+impl ProcedureKind {
+    /// The block's keyword, as in `summary.json`.
+    #[must_use]
+    pub const fn keyword(&self) -> &'static str {
+        match self {
+            Self::StiffnessRamp(_) => "stiffness ramp",
+            Self::DampingSweep(_) => "damping sweep",
+            Self::Impact(_) => "impact",
+            Self::Move(_) => "move",
+            Self::Inspect { .. } => "inspect",
+        }
+    }
+}
+
+/// Sec. 5 step 1: prescribed displacements, a pause at each, the mean of some samples.
+#[derive(Clone, Debug)]
+pub struct StiffnessRamp {
+    /// Index into `Plan::specimens`.
+    pub specimen: usize,
+    /// m
+    pub displacements: Vec<Formula>,
+    /// s
+    pub pause: Formula,
+    /// Readings averaged at each pause, at least 1.
+    pub samples: u32,
+    /// Times the whole ramp is run, at least 1.
+    pub repeats: u32,
+    /// Also back to the start through the same displacements.
+    pub return_path: bool,
+    /// Actuator speed, m/s.
+    pub speed: Option<Formula>,
+}
+
+/// Sec. 6 (b): constant-velocity ramps at rising velocities.
+#[derive(Clone, Debug)]
+pub struct DampingSweep {
+    pub specimen: usize,
+    /// m/s
+    pub velocities: Vec<Formula>,
+    /// m
+    pub stroke: Formula,
+    /// K of F_d = R − K·X, N/m.
+    pub stiffness: Formula,
+    /// Sampling rate, Hz. None: at least 50 samples on the steady part of each ramp.
+    pub rate: Option<Formula>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Impact {
+    pub specimen: usize,
+    /// Index into `Plan::strikers`.
+    pub striker: usize,
+    /// M, kg
+    pub mass: Formula,
+    /// K0, N/m
+    pub stiffness: Formula,
+    /// C of eqs. 4–5, N·s/m
+    pub damping: Formula,
+    pub contact: Contact,
+    /// s; may read `critical`.
+    pub time_step: Formula,
+    /// Upper bound of virtual time, s.
+    pub duration: Formula,
+    pub until: Until,
+    /// s, at every step.
+    pub pause: Formula,
+    /// c of "K_t is clamped to [0, c·K0]".
+    pub max_tangent_ratio: Formula,
+    pub inspect: Vec<InspectTrigger>,
+}
+
+#[derive(Clone, Debug)]
+pub enum Contact {
+    Rigid,
+    /// N
+    Limit {
+        force: Formula,
+    },
+    Restitution {
+        coefficient: Formula,
+    },
+    /// k in N/m^1.5; `loss` is the Hunt–Crossley factor in s/m: F = k δ^1.5 (1 + loss·δ̇).
+    Hertz {
+        stiffness: Formula,
+        loss: Formula,
+        force_limit: Option<Formula>,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// The first step end with Ẋs ≤ 0 and Ẋ ≤ 0.
+    StrikerStop,
+    /// The whole `duration`.
+    Duration,
+}
+
+/// When a person is asked to look.
+#[derive(Clone, Debug)]
+pub enum InspectTrigger {
+    /// Every n steps.
+    Every(u32),
+    /// The restoring force fell by this fraction of its largest so far.
+    ForceDrop(f64),
+    /// At this virtual time, s.
+    At(f64),
+}
+
+#[derive(Clone, Debug)]
+pub struct Move {
+    /// m, absolute.
+    pub to: Formula,
+    /// m/s
+    pub speed: Option<Formula>,
+}
+
+/// `require "label" condition`, one condition for each part joined with `and`.
+#[derive(Clone, Debug)]
+pub struct Requirement {
+    pub label: String,
+    pub conditions: Vec<Condition>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Condition {
+    /// As the plan wrote it.
+    pub text: String,
+    pub value: Formula,
+    pub test: Test,
+    pub dimension: Dimension,
+}
+
+#[derive(Clone, Debug)]
+pub enum Test {
+    Compare {
+        comparison: Comparison,
+        limit: Formula,
+    },
+    /// |value − target| ≤ tolerance, or ≤ tolerance·|target| if relative.
+    Within {
+        target: Formula,
+        tolerance: Formula,
+        relative: bool,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Equal,
+    NotEqual,
+}
+
+#[derive(Clone, Debug)]
+pub struct Report {
+    pub title: Option<String>,
+    pub figures: Vec<Figure>,
+    pub formats: Vec<Format>,
+    pub sign: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Figure {
+    pub kind: FigureKind,
+    pub procedure: ProcedureId,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FigureKind {
+    /// Displacement of structure and striker against virtual time (paper Fig. 9–11, 16).
+    Displacement,
+    /// Striker's velocity (paper Fig. 16).
+    StrikerVelocity,
+    /// Structure's and striker's velocity on one axis.
+    Velocity,
+    ContactForce,
+    ForceDisplacement,
+    Energy,
+    DampingFit,
+}
+
+impl FigureKind {
+    /// Name in `figures = [...]` and in file names.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::StrikerVelocity => "striker_velocity",
+            Self::Velocity => "velocity",
+            Self::ContactForce => "contact_force",
+            Self::ForceDisplacement => "force_displacement",
+            Self::Energy => "energy",
+            Self::DampingFit => "damping_fit",
+        }
+    }
+
+    /// The figures a procedure can draw, in the order of a report.
+    #[must_use]
+    pub const fn of(kind: &ProcedureKind) -> &'static [FigureKind] {
+        match kind {
+            ProcedureKind::StiffnessRamp(_) => &[Self::ForceDisplacement],
+            ProcedureKind::DampingSweep(_) => &[Self::DampingFit],
+            ProcedureKind::Impact(_) => &[
+                Self::Displacement,
+                Self::Velocity,
+                Self::StrikerVelocity,
+                Self::ContactForce,
+                Self::ForceDisplacement,
+                Self::Energy,
+            ],
+            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Html,
+    Csv,
+    Parquet,
+}

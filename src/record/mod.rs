@@ -1,0 +1,197 @@
+//! The record of a run: everything that happened, typed, SI. `run` writes it; verdict, tables, figures and
+//! certificates are functions of it.
+
+use crate::formula::{Estimate, Part, ResultReference, ResultValue, Results};
+pub use crate::mechanics::contact::StepState;
+use crate::mechanics::energy::Energies;
+pub use crate::mechanics::identification::LineFit;
+use crate::quantity::Dimension;
+use crate::rig::Identity;
+
+#[derive(Clone, Debug)]
+pub struct Record {
+    pub rig: Identity,
+    /// In the order run; those after a stop are missing.
+    pub procedures: Vec<ProcedureRecord>,
+    pub events: Vec<Event>,
+    pub outcome: Outcome,
+}
+
+/// How the run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    Completed,
+    /// Stopped by a limit or by a person: exit 4.
+    Aborted {
+        reason: String,
+    },
+    /// The rig failed: exit 3.
+    Faulted {
+        reason: String,
+    },
+}
+
+/// Something worth a line in the report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Rig time, s.
+    pub time: f64,
+    pub procedure: Option<String>,
+    pub step: Option<u64>,
+    pub kind: EventKind,
+    pub text: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EventKind {
+    Note,
+    Inspection,
+    LimitBreach,
+    Hold,
+    Fault,
+    /// A numerical remark: the last blow is cut, the peak is not a peak, …
+    Remark,
+}
+
+#[derive(Clone, Debug)]
+pub struct ProcedureRecord {
+    pub name: String,
+    /// The block's keyword: `impact`.
+    pub kind: &'static str,
+    /// Whether it ran to its own end.
+    pub complete: bool,
+    /// Inputs as they were evaluated for this procedure: name, value, dimension.
+    pub inputs: Vec<(&'static str, Estimate, Dimension)>,
+    /// In the schema's order.
+    pub results: Vec<NamedResult>,
+    pub history: History,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedResult {
+    pub name: &'static str,
+    pub value: ResultValue,
+    pub dimension: Dimension,
+}
+
+/// What was recorded step by step.
+#[derive(Clone, Debug)]
+pub enum History {
+    Ramp(RampHistory),
+    Sweep(SweepHistory),
+    Impact(ImpactHistory),
+    Move(Vec<RampStep>),
+    Inspect,
+}
+
+/// One pause of a stiffness ramp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RampStep {
+    pub step: u64,
+    /// Rig time, s.
+    pub wall_time: f64,
+    /// m
+    pub command: f64,
+    /// Mean of the samples, m.
+    pub displacement: f64,
+    /// Mean of the samples, N.
+    pub restoring_force: f64,
+    /// Standard deviation of the samples, N; 0 for one sample.
+    pub force_scatter: f64,
+    /// First reading after settling less the mean at the end of the pause, N.
+    pub relaxation: f64,
+    /// Secant from the step before, N/m; None at the first or without motion.
+    pub tangent_stiffness: Option<f64>,
+    /// Whether this is on the way back.
+    pub returning: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct RampHistory {
+    pub steps: Vec<RampStep>,
+    /// None if too few steps were recorded.
+    pub fit: Option<LineFit>,
+}
+
+/// One reading of a damping sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepStep {
+    pub step: u64,
+    /// Rig time, s.
+    pub wall_time: f64,
+    /// Commanded velocity, signed, m/s.
+    pub velocity: f64,
+    /// m
+    pub displacement: f64,
+    /// N
+    pub restoring_force: f64,
+    /// F_d = R − K·X, N.
+    pub damping_force: f64,
+    /// On the steady part, used by the fit.
+    pub steady: bool,
+}
+
+#[derive(Clone, Debug)]
+pub struct SweepHistory {
+    pub steps: Vec<SweepStep>,
+    /// F_d = intercept·sign v + slope·v: intercept is the Coulomb force.
+    pub fit: Option<LineFit>,
+}
+
+/// One row of an impact's table; step 0 is the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactStep {
+    pub step: u64,
+    /// Virtual time, s.
+    pub time: f64,
+    /// Rig time, s.
+    pub wall_time: f64,
+    pub state: StepState,
+    /// Computed displacement X, commanded to the actuator, m.
+    pub command: f64,
+    /// Measured, m.
+    pub displacement: f64,
+    pub velocity: f64,
+    pub acceleration: f64,
+    pub restoring_force: f64,
+    /// Mean over the step, N; at step 0 none.
+    pub contact_force: f64,
+    pub striker_displacement: f64,
+    pub striker_velocity: f64,
+    pub tangent_stiffness: f64,
+    /// Permanent, m.
+    pub indentation: f64,
+    pub energies: Energies,
+}
+
+#[derive(Clone, Debug)]
+pub struct ImpactHistory {
+    pub steps: Vec<ImpactStep>,
+    /// s
+    pub time_step: f64,
+    /// s
+    pub critical_time_step: f64,
+}
+
+impl Record {
+    #[must_use]
+    pub fn procedure(&self, name: &str) -> Option<&ProcedureRecord> {
+        self.procedures.iter().find(|procedure| procedure.name == name)
+    }
+}
+
+impl ProcedureRecord {
+    #[must_use]
+    pub fn result(&self, name: &str) -> Option<&NamedResult> {
+        self.results.iter().find(|result| result.name == name)
+    }
+}
+
+impl Results for Record {
+    /// Procedures are recorded in the plan's order, so that their place there is their place here.
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        let found = self.procedures.get(reference.procedure.0)?.result(reference.name)?;
+        debug_assert!(matches!(reference.part, Part::Value | Part::Uncertainty));
+        Some(found.value.clone())
+    }
+}

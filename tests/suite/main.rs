@@ -1,0 +1,9 @@
+//! All integration tests in one binary: one link, one module a concern.
+
+mod cli;
+mod explain;
+mod house;
+mod lang;
+mod outputs;
+mod physics;
+mod plans;
