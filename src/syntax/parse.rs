@@ -157,6 +157,10 @@ impl Pieces<'_> {
 
     /// An item that is no block; of a faulty one, its name with a faulty value.
     fn item(&mut self, statement: Statement) -> Option<Item> {
+        if !layout::ITEM_WORDS.iter().any(|word| self.tokens.is(statement.start, word)) {
+            self.no_item(statement);
+            return None;
+        }
         if let Some(item) = self.alone(statement, Rule::item_alone, |lowering, pair| lowering.item(pair)) {
             return Some(item);
         }
@@ -176,6 +180,17 @@ impl Pieces<'_> {
             _ => return None,
         };
         Some(Item { span, kind })
+    }
+
+    /// What stands among the items and is none: a field, or a block without its `{`.
+    fn no_item(&mut self, statement: Statement) {
+        let key = self.word(statement.start).filter(|_| self.tokens.is(statement.start + 1, "="));
+        if let Some(key) = key {
+            self.faults.push(faults::field_outside(key.span, &key.node));
+        } else if self.alone(statement, Rule::head_alone, |lowering, pair| lowering.head(pair)).is_some() {
+            let (_, end) = self.bounds(statement);
+            self.faults.push(faults::unexpected(self.tokens.span(end, end), "the end of the line", "`{`"));
+        }
     }
 
     fn block(&mut self, head: Statement, open: usize, fields: &[Statement], close: Option<usize>) -> Option<Item> {
