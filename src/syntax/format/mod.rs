@@ -55,15 +55,24 @@ fn run_end(rows: &[Row], start: usize) -> usize {
 
 fn write_run(tokens: &Tokens, run: &[Row], lines: &mut Vec<String>) {
     let widths: Vec<usize> = (0..3)
-        .map(|column| run.iter().filter_map(|row| row.lead.get(column)).map(|text| text.chars().count()).max().unwrap_or(0))
+        .map(|column| {
+            run.iter()
+                .filter(|row| row.kind != Kind::Comment)
+                .filter_map(|row| row.lead.get(column))
+                .map(|text| text.chars().count())
+                .max()
+                .unwrap_or(0)
+        })
         .collect();
     let several = run.iter().filter(|row| row.kind != Kind::Comment).count() > 1;
     let written: Vec<Vec<String>> = run.iter().map(|row| row_lines(tokens, row, &widths, several)).collect();
-    let width = |lines: &Vec<String>| lines.last().map_or(0, |line| line.chars().count());
-    let commented = run.iter().zip(&written).filter(|(row, _)| row.comment.is_some());
-    let column = commented.map(|(_, lines)| width(lines)).max().unwrap_or(0);
+    // A value over several lines stays out of the column: its comment follows its last bracket.
+    let commented = run.iter().zip(&written).filter(|(row, lines)| row.comment.is_some() && lines.len() == 1);
+    let column = commented.map(|(_, lines)| lines[0].chars().count()).max().unwrap_or(0);
     for (row, mut row_lines) in run.iter().zip(written) {
+        let single = row_lines.len() == 1;
         if let (Some(comment), Some(last)) = (&row.comment, row_lines.last_mut()) {
+            let column = if single { column } else { 0 };
             *last = format!("{last:<column$}  {comment}");
         }
         lines.append(&mut row_lines);

@@ -67,7 +67,7 @@ fn comments_stay_where_they_were() {
     let text = "# top\nb { # open\n# first\nx = 1 # one\n # between\nlonger = [ # in\n 1 # a\n , # b\n # own\n 2, # c\n # last\n] # after\n\n# end of block\n} # closed\n# end";
     assert_eq!(
         formatted(text),
-        "# top\nb {  # open\n  # first\n  x      = 1  # one\n  # between\n  longer = [  # in\n    1,  # a\n    # b\n    # own\n    2,  # c\n    # last\n  ]           # after\n\n  # end of block\n}  # closed\n# end\n"
+        "# top\nb {  # open\n  # first\n  x      = 1  # one\n  # between\n  longer = [  # in\n    1,  # a\n    # b\n    # own\n    2,  # c\n    # last\n  ]  # after\n\n  # end of block\n}  # closed\n# end\n"
     );
     let text =
         "let x = 1 + # why\n  # own\n 2 +\n\n f(\n 3 # three\n)\nlet yy = (1 +\n2)\nlet z = f([1, # one\n2], a: # name\n 3)\n";
