@@ -87,7 +87,7 @@ fn what_only_meaning_can_refuse_is_read() {
 }
 
 /// Pieces of plans in any order.
-fn soup() -> impl Strategy<Value = String> {
+pub fn soup() -> impl Strategy<Value = String> {
     let pieces = prop::sample::select(vec![
         "let ",
         "use ",
