@@ -8,19 +8,26 @@ use crate::verdict::{Bound, ConditionOutcome};
 
 /// A value in its readable unit: `7.922 mm`, `−2.000 kN`, `20` for a count.
 pub(super) fn text(value: f64, dimension: Dimension) -> String {
-    let (unit, factor) = readable_unit(value, dimension);
+    let (unit, factor) = unit(value, dimension);
     join(&number(value, factor, dimension), &unit)
 }
 
 /// A value and its standard uncertainty in one unit, both to the uncertainty's second digit: `300.02 ± 0.15 kN/m`.
 pub(super) fn with_uncertainty(value: f64, uncertainty: Option<f64>, dimension: Dimension) -> String {
     let Some(uncertainty) = uncertainty.filter(|u| u.is_finite()) else { return text(value, dimension) };
-    let (unit, factor) = readable_unit(value, dimension);
+    let (unit, factor) = unit(value, dimension);
     let (scaled, scaled_uncertainty) = (value / factor, uncertainty / factor);
     let Some(decimals) = decimals_of(scaled, scaled_uncertainty) else {
         return join(&format!("{} ± {}", number(value, factor, dimension), significant(scaled_uncertainty, 2)), &unit);
     };
     join(&minus(&format!("{scaled:.decimals$} ± {scaled_uncertainty:.decimals$}")), &unit)
+}
+
+/// The unit to print a value in, and how many SI units it is. Forces, stiffnesses and energies keep three digits before
+/// the decimal (`327.7 N/m`); the others go by the shared rule (`0.1579 m`).
+pub(super) fn unit(value: f64, dimension: Dimension) -> (String, f64) {
+    let by_thousands = matches!(dimension, Dimension::FORCE | Dimension::STIFFNESS | Dimension::ENERGY);
+    readable_unit(if by_thousands { 0.1 * value } else { value }, dimension)
 }
 
 /// Decimals that show two digits of the uncertainty; None where plain decimals would not be readable.
