@@ -14,13 +14,16 @@ const PARTICULARS: &[(&str, &str)] = &[
     ("laboratory", "Laboratory"),
     ("place", "Place of the test"),
     ("customer", "Customer"),
+    ("project", "Project"),
     ("operator", "Operator"),
     ("standard", "Method"),
+    ("revision", "Revision of the plan"),
     ("specimen_id", "Item tested"),
+    ("material", "Material"),
     ("received", "Item received"),
+    ("equipment", "Equipment"),
     ("temperature", "Temperature"),
     ("humidity", "Humidity"),
-    ("revision", "Revision"),
 ];
 
 /// Everything about how the test was set up.
@@ -52,7 +55,9 @@ fn particulars(run: &Run<'_>) -> Markup {
     let mut rows: Vec<(String, Markup)> =
         PARTICULARS.iter().map(|(field, name)| ((*name).to_owned(), given(text(field)))).collect();
     rows.push(("Date of the test".to_owned(), given(run.provenance.date.as_deref())));
-    let known = |field: &str| field == "date" || field == "edition" || PARTICULARS.iter().any(|(name, _)| *name == field);
+    // The edition is the language's, the decision rule stands beside the requirements.
+    let known =
+        |field: &str| matches!(field, "date" | "edition" | "decision_rule") || PARTICULARS.iter().any(|(name, _)| *name == field);
     for (field, text) in run.plan.particulars.iter().filter(|(field, _)| !known(field)) {
         rows.push((words(field), given(Some(text))));
     }
