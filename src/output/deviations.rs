@@ -13,7 +13,12 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
         Outcome::Aborted { reason } => found.push(format!("The run was stopped: {reason}.")),
         Outcome::Faulted { reason } => found.push(format!("The rig failed: {reason}.")),
     }
-    for event in &run.record.events {
+    // The event that ended the run says what the outcome has said already.
+    let ending = match &run.record.outcome {
+        Outcome::Completed => "",
+        Outcome::Aborted { reason } | Outcome::Faulted { reason } => reason,
+    };
+    for event in run.record.events.iter().filter(|event| event.text != ending) {
         let what = match event.kind {
             EventKind::LimitBreach => "Limit reached",
             EventKind::Hold => "Hold",

@@ -85,7 +85,7 @@ pub fn finished() -> Finished {
             number("stop_time", stop, None, Dimension::TIME),
             number("max_contact_force", Some(peak), None, Dimension::FORCE),
             number("impulse", Some(impulse), None, Dimension::IMPULSE),
-            number("contacts", Some(3.0), None, Dimension::NUMBER),
+            number("contacts", Some(6.0), None, Dimension::NUMBER),
             number("restitution", None, None, Dimension::NUMBER),
             number("energy_error", Some(error), None, Dimension::NUMBER),
         ],
