@@ -1,1 +1,310 @@
-//! outputs
+//! What a run leaves: the bytes of every output, read back as their readers would.
+
+mod fixture;
+
+use std::io::Cursor;
+
+use fixture::{Finished, finished};
+use polars::prelude::{ParquetReader, SerReader as _};
+use psd::output::summary::Summary;
+use psd::output::{OutputFile, console, everything};
+use psd::plan::Format;
+use psd::record::{History, ImpactStep, Outcome, RampHistory};
+use psd::verdict::Verdict;
+
+const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
+restoring_force_n,contact_force_n,striker_displacement_m,striker_velocity_m_per_s,tangent_stiffness_n_per_m,indentation_m,\
+striker_energy_j,structure_energy_j,restoring_energy_j,damping_energy_j,contact_loss_j,indentation_energy_j,energy_error_j";
+
+fn files(finished: &Finished) -> Vec<OutputFile> {
+    everything(&finished.run()).expect("every output can be made")
+}
+
+fn text<'a>(files: &'a [OutputFile], path: &str) -> &'a str {
+    std::str::from_utf8(bytes(files, path)).expect("text is UTF-8")
+}
+
+fn bytes<'a>(files: &'a [OutputFile], path: &str) -> &'a [u8] {
+    &files.iter().find(|file| file.path == path).unwrap_or_else(|| panic!("{path} is missing")).bytes
+}
+
+fn impact_steps(finished: &Finished) -> &[ImpactStep] {
+    let History::Impact(history) = &finished.record.procedures[2].history else { panic!("an impact") };
+    &history.steps
+}
+
+#[test]
+fn the_same_run_gives_the_same_bytes_and_the_files_of_the_language() {
+    let (first, second) = (files(&finished()), files(&finished()));
+    assert_eq!(first, second);
+    let mut paths: Vec<&str> = first.iter().map(|file| file.path.as_str()).collect();
+    assert_eq!(paths.last(), Some(&"manifest.sha256"));
+    paths.sort_unstable();
+    assert_eq!(
+        paths,
+        [
+            "certificate.html",
+            "figures/c_damping_fit.png",
+            "figures/hit_contact_force.png",
+            "figures/hit_displacement.png",
+            "figures/hit_energy.png",
+            "figures/hit_force_displacement.png",
+            "figures/hit_striker_velocity.png",
+            "figures/hit_velocity.png",
+            "figures/k0_force_displacement.png",
+            "manifest.sha256",
+            "plan/beam.psd",
+            "plan/lib/frame.psd",
+            "summary.json",
+            "tables/c.csv",
+            "tables/c.parquet",
+            "tables/hit.csv",
+            "tables/hit.parquet",
+            "tables/k0.csv",
+            "tables/k0.parquet",
+        ]
+    );
+    assert_eq!(text(&first, "manifest.sha256").lines().count(), paths.len() - 1);
+}
+
+#[test]
+fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
+    let finished = finished();
+    let files = files(&finished);
+    let mut lines = text(&files, "tables/hit.csv").lines();
+    assert_eq!(lines.next(), Some(IMPACT_COLUMNS));
+    let steps = impact_steps(&finished);
+    assert_eq!(lines.clone().count(), steps.len());
+    for (line, step) in lines.zip(steps) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!((cells[0], cells[3]), (step.step.to_string().as_str(), step.state.name()));
+        let wanted = row(step);
+        let read: Vec<u64> = cells[1..]
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != 2)
+            .map(|(_, cell)| cell.parse::<f64>().unwrap().to_bits())
+            .collect();
+        assert_eq!(read, wanted.map(f64::to_bits));
+    }
+    let header = |path| text(&files, path).lines().next().unwrap().to_owned();
+    assert_eq!(
+        header("tables/k0.csv"),
+        "step,wall_time_s,command_m,displacement_m,restoring_force_n,force_scatter_n,relaxation_n,tangent_stiffness_n_per_m,returning"
+    );
+    assert_eq!(
+        header("tables/c.csv"),
+        "step,wall_time_s,velocity_m_per_s,displacement_m,restoring_force_n,damping_force_n,steady"
+    );
+}
+
+/// The numbers of a row in the order of the columns, step and state apart.
+fn row(step: &ImpactStep) -> [f64; 19] {
+    let e = step.energies;
+    [
+        step.time,
+        step.wall_time,
+        step.command,
+        step.displacement,
+        step.velocity,
+        step.acceleration,
+        step.restoring_force,
+        step.contact_force,
+        step.striker_displacement,
+        step.striker_velocity,
+        step.tangent_stiffness,
+        step.indentation,
+        e.striker,
+        e.structure,
+        e.restoring,
+        e.damping,
+        e.contact_loss,
+        e.indentation,
+        e.error,
+    ]
+}
+
+#[test]
+fn parquet_reads_back_as_the_record() {
+    let finished = finished();
+    let files = files(&finished);
+    let frame = ParquetReader::new(Cursor::new(bytes(&files, "tables/hit.parquet"))).finish().unwrap();
+    let names: Vec<&str> = frame.get_column_names().into_iter().map(polars::prelude::PlSmallStr::as_str).collect();
+    assert_eq!(names.join(","), IMPACT_COLUMNS);
+    let column = frame.column("displacement_m").unwrap().f64().unwrap();
+    let read: Vec<u64> = column.into_no_null_iter().map(f64::to_bits).collect();
+    let wanted: Vec<u64> = impact_steps(&finished).iter().map(|step| step.displacement.to_bits()).collect();
+    assert_eq!(read, wanted);
+}
+
+#[test]
+fn the_committed_schema_is_the_generated_one_and_holds_for_a_summary() {
+    let generated = Summary::json_schema().unwrap();
+    // Where the types have changed on purpose, SNAPSHOTS=overwrite writes the file anew.
+    snapbox::assert_data_eq!(generated.clone(), snapbox::file!["../../grammar/summary.schema.json": Text].raw());
+    let schema: serde_json::Value = serde_json::from_str(&generated).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let finished = finished();
+    let mut summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+    let faults: Vec<String> = validator.iter_errors(&summary).map(|error| error.to_string()).collect();
+    assert_eq!(faults, [] as [String; 0]);
+    summary["procedures"]["hit"]["results"]["contacts"]["value"] = "three".into();
+    assert!(!validator.is_valid(&summary), "a wrong summary must not pass");
+}
+
+#[test]
+fn the_summary_says_what_the_language_promises() {
+    let finished = finished();
+    let summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+    assert_eq!(summary["schema"], "psd.summary/1");
+    assert_eq!(summary["verdict"], "pass");
+    assert_eq!(summary["rig"]["simulated"], true);
+    let hit = &summary["procedures"]["hit"];
+    assert_eq!(hit["kind"], "impact");
+    let largest = hit["results"]["max_displacement"]["value"].as_f64().unwrap();
+    assert!((largest - 0.157_353).abs() < 1e-6, "Example 1 at 1 ms: {largest}");
+    assert_eq!(hit["results"]["max_displacement"]["unit"], "m");
+    assert_eq!(hit["results"]["restitution"]["value"], serde_json::Value::Null);
+    assert_eq!(summary["procedures"]["k0"]["results"]["stiffness"]["u"], 0.41);
+    let requirement = &summary["requirements"][0];
+    assert_eq!(requirement["name"], "stays in travel");
+    assert_eq!(requirement["limit"], 0.17);
+    assert_eq!(requirement["margin"].as_f64(), Some(0.17 - largest));
+    let order: Vec<&String> = summary["procedures"].as_object().unwrap().keys().collect();
+    assert_eq!(order, ["k0", "c", "hit"]);
+}
+
+#[test]
+fn the_certificate_loads_and_runs_nothing_and_says_what_it_is() {
+    let finished = hostile();
+    let files = files(&finished);
+    let html = text(&files, "certificate.html");
+    for forbidden in ["<script", "<img src=x", "<b>at</b>", "src=\"http", "href=", "@import", "url(", "ISO 17025 certified"] {
+        assert!(!html.contains(forbidden), "{forbidden} stands in the certificate");
+    }
+    assert!(html.contains("default-src 'none'"));
+    assert!(html.contains("&lt;script&gt;"));
+    for wanted in [
+        "Simulated rig: rehearsal, not a test of a specimen.",
+        "NOT CERTIFIABLE",
+        "not given",
+        "clause 7.8",
+        "relate only to the items tested",
+        "e = Ms/(Ms + 2M) = 0.8333",
+        "End of report, run 0123456789abcdef",
+    ] {
+        assert!(html.contains(wanted), "{wanted} is missing");
+    }
+    let pictures = html.matches("data:image/png;base64,").count();
+    assert_eq!(pictures, finished.plan.report.figures.len());
+    assert_eq!(html.matches("<figcaption>").count(), pictures);
+}
+
+/// A run whose every text wants to be something else.
+fn hostile() -> Finished {
+    let mut finished = finished();
+    let label = "</td><script>alert(1)</script><img src=x onerror=alert(1)>\u{1b}[31m";
+    finished.plan.title = label.into();
+    finished.plan.requirements[0].label = label.into();
+    finished.assessment.requirements[0].label = label.into();
+    finished.assessment.requirements[0].conditions[0].text = label.into();
+    finished.plan.particulars.push(("customer", label.into()));
+    finished.plan.files[0].name = "../../escape.psd".into();
+    finished.record.rig.name = label.into();
+    finished
+}
+
+#[test]
+fn hostile_texts_stay_in_the_run_folder_and_off_the_terminal() {
+    let finished = hostile();
+    let files = files(&finished);
+    assert!(files.iter().all(|file| !file.path.contains("..") && !file.path.starts_with('/')));
+    assert_eq!(text(&files, "plan/escape.psd"), finished.plan.files[0].text);
+    assert!(!console::verdict_text(&finished.run(), false).contains('\u{1b}'));
+}
+
+#[test]
+fn the_console_aligns_requirements_and_colours_only_when_asked() {
+    let finished = finished();
+    let plain = console::verdict_text(&finished.run(), false).replace('\u{a0}', " ");
+    insta::assert_snapshot!(plain, @r"
+    PASS  Simply supported beam, midspan impact  (simulated rig: rehearsal)
+      pass  stays in travel  0.15735 ± 0.00020 m  ≤ 0.17 m  margin 0.01265 m
+      pass  energy closes    1.599 × 10⁻¹⁵        ≤ 0.01    margin 0.01000
+      note: Parameter impact_speed was set to 1 m/s for this run.
+      run 0123456789abcdef
+    ");
+    let coloured = console::verdict_text(&finished.run(), true);
+    assert!(coloured.starts_with("\u{1b}[1;32mPASS\u{1b}[0m"));
+}
+
+#[test]
+fn figures_are_pictures_at_192_dpi_with_something_on_them() {
+    let files = files(&finished());
+    let figures: Vec<&OutputFile> = files.iter().filter(|file| file.path.starts_with("figures/")).collect();
+    assert_eq!(figures.len(), 8);
+    for figure in figures {
+        let mut reader = png::Decoder::new(Cursor::new(&figure.bytes)).read_info().unwrap();
+        let size = reader.info().pixel_dims.unwrap();
+        assert_eq!((size.xppu, size.yppu, size.unit), (7559, 7559, png::Unit::Meter));
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let inked = pixels.chunks_exact(3).filter(|pixel| pixel.iter().any(|channel| *channel < 200)).count();
+        let (least, most) = (pixels.len() / 3 / 200, pixels.len() / 3 / 5);
+        assert!((least..most).contains(&inked), "{}: {inked} pixels are inked", figure.path);
+    }
+}
+
+#[test]
+fn a_run_stopped_early_still_leaves_a_whole_folder() {
+    let mut finished = finished();
+    finished.record.procedures.truncate(3);
+    let History::Impact(history) = &mut finished.record.procedures[2].history else { panic!("an impact") };
+    history.steps.truncate(1);
+    finished.record.procedures[2].complete = false;
+    finished.record.procedures[2].results.clear();
+    finished.record.procedures[0].history = History::Ramp(RampHistory { steps: Vec::new(), fit: None });
+    finished.record.outcome = Outcome::Aborted { reason: "force 12.1 kN is outside its limit".into() };
+    finished.assessment.verdict = Verdict::Aborted;
+    finished.assessment.requirements[0].verdict = Verdict::Inconclusive;
+    let condition = &mut finished.assessment.requirements[0].conditions[0];
+    (condition.value, condition.bound, condition.margin) = (None, None, None);
+    condition.reason = Some("the result `max_displacement` does not exist in this run".into());
+    let files = files(&finished);
+    let html = text(&files, "certificate.html");
+    assert!(html.contains("ABORTED") && html.contains("The run was stopped: force 12.1 kN is outside its limit."));
+    assert!(html.contains("Procedure hit did not run to its end."));
+    assert!(!files.iter().any(|file| file.path == "figures/k0_force_displacement.png"), "nothing was recorded to draw");
+    assert_eq!(text(&files, "tables/hit.csv").lines().count(), 2);
+    let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
+    assert_eq!(summary["outcome"]["kind"], "aborted");
+    assert_eq!(summary["requirements"][0]["value"], serde_json::Value::Null);
+    assert!(console::verdict_text(&finished.run(), false).contains("does not exist in this run"));
+
+    finished.record.procedures.clear();
+    let nothing = self::files(&finished);
+    assert!(text(&nothing, "certificate.html").contains("No procedure was run."));
+    assert!(!nothing.iter().any(|file| file.path.starts_with("figures/") || file.path.starts_with("tables/")));
+}
+
+#[test]
+fn only_the_formats_asked_for_are_written() {
+    let mut finished = finished();
+    finished.plan.report.formats = vec![Format::Csv];
+    finished.plan.report.figures.truncate(1);
+    let written = files(&finished);
+    let paths: Vec<&str> = written.iter().map(|file| file.path.as_str()).collect();
+    assert_eq!(
+        paths,
+        [
+            "summary.json",
+            "tables/k0.csv",
+            "tables/c.csv",
+            "tables/hit.csv",
+            "figures/k0_force_displacement.png",
+            "plan/beam.psd",
+            "plan/lib/frame.psd",
+            "manifest.sha256"
+        ]
+    );
+}

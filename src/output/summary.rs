@@ -1,0 +1,201 @@
+//! `summary.json`, the results for machines: schema `psd.summary/1`, SI, order stable. In: a run. Out: [`Summary`] and
+//! its JSON. The committed `grammar/summary.schema.json` is generated from these types.
+
+mod of_run;
+
+use std::collections::BTreeMap;
+
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Serialize;
+use serde::ser::SerializeMap as _;
+
+pub(super) use of_run::{event_kind, governing};
+
+/// Name and version of the format; a change that breaks a reader raises the number.
+pub const SCHEMA: &str = "psd.summary/1";
+
+/// Results of one run of one plan. Every value is in the SI unit beside it.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Summary {
+    #[schemars(extend("const" = SCHEMA))]
+    pub schema: &'static str,
+    /// First 16 hex digits of SHA-256 over plan, used files, settings, seed and version.
+    pub run_id: String,
+    /// Version of psd that ran the plan.
+    pub psd: String,
+    /// From the plan or the command line.
+    pub date: Option<String>,
+    pub plan: PlanSummary,
+    pub rig: RigSummary,
+    /// The worst of all requirements, or how the run ended if that is worse.
+    #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
+    pub verdict: &'static str,
+    pub outcome: OutcomeSummary,
+    /// By name, in the order run.
+    pub procedures: Ordered<ProcedureSummary>,
+    /// In the plan's order.
+    pub requirements: Vec<RequirementSummary>,
+    pub events: Vec<EventSummary>,
+    /// By name, in the plan's order.
+    pub parameters: Ordered<ParameterSummary>,
+    /// What departed from the plan as written.
+    pub deviations: Vec<String>,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct PlanSummary {
+    pub title: String,
+    /// SHA-256 of the plan's text, hex.
+    pub sha256: String,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RigSummary {
+    pub name: String,
+    pub model: String,
+    pub serial: String,
+    pub firmware: String,
+    /// Nothing real moved.
+    pub simulated: bool,
+    /// Seed of a virtual rig's noise.
+    pub seed: Option<u64>,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct OutcomeSummary {
+    #[schemars(extend("enum" = ["completed", "aborted", "faulted"]))]
+    pub kind: &'static str,
+    pub reason: Option<String>,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ProcedureSummary {
+    /// The block's keyword, such as `impact`.
+    pub kind: &'static str,
+    /// Whether it ran to its own end.
+    pub complete: bool,
+    /// Values the procedure was run with.
+    pub inputs: Ordered<Quantity>,
+    pub results: Ordered<Quantity>,
+}
+
+/// A value, its SI unit and its standard uncertainty in that unit.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Quantity {
+    pub value: Value,
+    pub unit: String,
+    pub u: Option<f64>,
+}
+
+/// A number, null where the result does not exist in this run, or a list in one unit.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Value {
+    Number(Option<f64>),
+    List(Vec<Option<f64>>),
+}
+
+/// A requirement with the numbers of the condition that decides it: the worst, and of equal ones the first.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RequirementSummary {
+    pub name: String,
+    #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
+    pub verdict: &'static str,
+    pub value: Option<f64>,
+    /// What the value was held against; the target of `within`.
+    pub limit: Option<f64>,
+    /// Distance inside the bound; negative: missed by so much.
+    pub margin: Option<f64>,
+    pub unit: Option<String>,
+    /// Standard uncertainty of the value.
+    pub u: Option<f64>,
+    /// As the plan wrote it.
+    pub condition: Option<String>,
+    /// Every condition of the requirement.
+    pub conditions: Vec<ConditionSummary>,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ConditionSummary {
+    /// As the plan wrote it.
+    pub condition: String,
+    #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
+    pub verdict: &'static str,
+    pub value: Option<f64>,
+    pub limit: Option<f64>,
+    /// Of `within`, absolute.
+    pub tolerance: Option<f64>,
+    pub margin: Option<f64>,
+    pub unit: String,
+    pub u: Option<f64>,
+    /// Why it is inconclusive.
+    pub reason: Option<String>,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct EventSummary {
+    /// Rig time, s.
+    pub wall_time_s: Option<f64>,
+    pub procedure: Option<String>,
+    pub step: Option<u64>,
+    #[schemars(extend("enum" = ["note", "inspection", "limit breach", "hold", "fault", "remark"]))]
+    pub kind: &'static str,
+    pub text: String,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ParameterSummary {
+    pub value: Option<f64>,
+    pub unit: String,
+    /// Whether the command line gave it.
+    pub set: bool,
+}
+
+/// A JSON object whose keys keep their order.
+#[derive(Clone, Debug)]
+pub struct Ordered<T>(pub Vec<(String, T)>);
+
+impl<T: Serialize> Serialize for Ordered<T> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Ordered<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        format!("Ordered_{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        BTreeMap::<String, T>::json_schema(generator)
+    }
+}
+
+impl Summary {
+    /// Indented JSON with a newline at its end; floats are the shortest that read back the same.
+    ///
+    /// # Errors
+    /// Never in practice: every value is a plain number or text.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string_pretty(self).map(|json| json + "\n")
+    }
+
+    /// The JSON Schema of `psd.summary/1`, as committed in `grammar/summary.schema.json`.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn json_schema() -> Result<String, serde_json::Error> {
+        // As written, not as read: every field is always there, null where it has no value.
+        let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+        serde_json::to_string_pretty(&generator.into_root_schema_for::<Self>()).map(|json| json + "\n")
+    }
+}

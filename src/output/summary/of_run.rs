@@ -1,0 +1,145 @@
+//! Fills a [`Summary`] from a run. Knows the record; the format itself is one file up.
+
+use super::super::{Run, deviations};
+use super::{
+    ConditionSummary, EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity,
+    RequirementSummary, RigSummary, SCHEMA, Summary, Value,
+};
+use crate::formula::{Estimate, ResultValue};
+use crate::plan::Link;
+use crate::quantity::Dimension;
+use crate::quantity::display::si_unit;
+use crate::record::{EventKind, Outcome, ProcedureRecord};
+use crate::verdict::{Bound, ConditionOutcome, RequirementOutcome};
+
+impl Summary {
+    /// The summary of a run.
+    #[must_use]
+    pub fn of(run: &Run<'_>) -> Self {
+        let Run { plan, record, assessment, provenance } = run;
+        let Link::Virtual(link) = &plan.rig.link;
+        let (kind, reason) = match &record.outcome {
+            Outcome::Completed => ("completed", None),
+            Outcome::Aborted { reason } => ("aborted", Some(reason.clone())),
+            Outcome::Faulted { reason } => ("faulted", Some(reason.clone())),
+        };
+        Self {
+            schema: SCHEMA,
+            run_id: provenance.run_id.clone(),
+            psd: provenance.psd_version.clone(),
+            date: provenance.date.clone(),
+            plan: PlanSummary { title: plan.title.clone(), sha256: provenance.plan_sha256.clone() },
+            rig: RigSummary {
+                name: record.rig.name.clone(),
+                model: record.rig.model.clone(),
+                serial: record.rig.serial.clone(),
+                firmware: record.rig.firmware.clone(),
+                simulated: record.rig.simulated,
+                seed: record.rig.simulated.then_some(link.seed),
+            },
+            verdict: assessment.verdict.name(),
+            outcome: OutcomeSummary { kind, reason },
+            procedures: Ordered(record.procedures.iter().map(|p| (p.name.clone(), procedure(p))).collect()),
+            requirements: assessment.requirements.iter().map(requirement).collect(),
+            events: record
+                .events
+                .iter()
+                .map(|event| EventSummary {
+                    wall_time_s: finite(event.time),
+                    procedure: event.procedure.clone(),
+                    step: event.step,
+                    kind: event_kind(event.kind),
+                    text: event.text.clone(),
+                })
+                .collect(),
+            parameters: Ordered(
+                plan.parameters
+                    .iter()
+                    .map(|p| {
+                        (p.name.clone(), ParameterSummary { value: finite(p.value), unit: si_unit(p.dimension), set: p.set })
+                    })
+                    .collect(),
+            ),
+            deviations: deviations::of(run),
+        }
+    }
+}
+
+/// The word of an event kind in the summary and the certificate.
+pub(in crate::output) const fn event_kind(kind: EventKind) -> &'static str {
+    match kind {
+        EventKind::Note => "note",
+        EventKind::Inspection => "inspection",
+        EventKind::LimitBreach => "limit breach",
+        EventKind::Hold => "hold",
+        EventKind::Fault => "fault",
+        EventKind::Remark => "remark",
+    }
+}
+
+/// The condition that decides a requirement: the worst, and of equal ones the first.
+pub(in crate::output) fn governing(requirement: &RequirementOutcome) -> Option<&ConditionOutcome> {
+    let worst = requirement.conditions.iter().map(|condition| condition.verdict).max()?;
+    requirement.conditions.iter().find(|condition| condition.verdict == worst)
+}
+
+fn procedure(procedure: &ProcedureRecord) -> ProcedureSummary {
+    let input = |(name, estimate, dimension): &(&'static str, Estimate, Dimension)| {
+        let value = ResultValue::Number { value: Some(estimate.value), uncertainty: estimate.uncertainty };
+        ((*name).to_owned(), quantity(&value, *dimension))
+    };
+    ProcedureSummary {
+        kind: procedure.kind,
+        complete: procedure.complete,
+        inputs: Ordered(procedure.inputs.iter().map(input).collect()),
+        results: Ordered(procedure.results.iter().map(|r| (r.name.to_owned(), quantity(&r.value, r.dimension))).collect()),
+    }
+}
+
+fn quantity(value: &ResultValue, dimension: Dimension) -> Quantity {
+    let (value, u) = match value {
+        ResultValue::Number { value, uncertainty } => (Value::Number(value.and_then(finite)), uncertainty.and_then(finite)),
+        ResultValue::List(values) => (Value::List(values.iter().map(|value| finite(*value)).collect()), None),
+    };
+    Quantity { value, unit: si_unit(dimension), u }
+}
+
+fn requirement(requirement: &RequirementOutcome) -> RequirementSummary {
+    let conditions: Vec<ConditionSummary> = requirement.conditions.iter().map(condition).collect();
+    let deciding = governing(requirement).map(condition);
+    RequirementSummary {
+        name: requirement.label.clone(),
+        verdict: requirement.verdict.name(),
+        value: deciding.as_ref().and_then(|c| c.value),
+        limit: deciding.as_ref().and_then(|c| c.limit),
+        margin: deciding.as_ref().and_then(|c| c.margin),
+        unit: deciding.as_ref().map(|c| c.unit.clone()),
+        u: deciding.as_ref().and_then(|c| c.u),
+        condition: deciding.map(|c| c.condition),
+        conditions,
+    }
+}
+
+fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
+    let (limit, tolerance) = match outcome.bound {
+        None => (None, None),
+        Some(Bound::Compare { limit, .. }) => (finite(limit), None),
+        Some(Bound::Within { target, tolerance }) => (finite(target), finite(tolerance)),
+    };
+    ConditionSummary {
+        condition: outcome.text.clone(),
+        verdict: outcome.verdict.name(),
+        value: outcome.value.and_then(finite),
+        limit,
+        tolerance,
+        margin: outcome.margin.and_then(finite),
+        unit: si_unit(outcome.dimension),
+        u: outcome.uncertainty.and_then(finite),
+        reason: outcome.reason.clone(),
+    }
+}
+
+/// JSON has no NaN and no infinity: such a value does not exist.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
