@@ -8,6 +8,8 @@ mod inputs;
 mod inspect;
 mod move_to;
 mod results;
+#[cfg(test)]
+mod rig_fault_tests;
 mod session;
 mod stiffness_ramp;
 mod stop;
