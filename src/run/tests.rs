@@ -128,9 +128,8 @@ fn identification_finds_the_specimen_within_honest_standard_errors_over_many_see
             }
         }
     }
-    eprintln!("{within:?}");
     // Of 500, Student's t with 8 degrees of freedom (the ramp) expects 327, 460, 491; the normal one (the sweep, with
-    // some 500 readings) 341, 477, 499. Four standard deviations of a count are 42, 21 and 10 or fewer.
+    // some 250 pairs of readings) 341, 477, 499. Four standard deviations of a count are 42, 21 and 10 or fewer.
     for (expected, found) in [[327, 460, 491], [341, 477, 499], [341, 477, 499]].into_iter().zip(within) {
         for ((expected, found), spread) in expected.into_iter().zip(found).zip([42, 21, 10]) {
             assert!(found.abs_diff(expected) <= spread, "{within:?}");
