@@ -98,11 +98,11 @@ impl Setting {
 fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
     Ok(match contact {
         Contact::Rigid => ContactLaw::Rigid,
-        Contact::Limit { force } => ContactLaw::Limit { force: inputs.positive("force", force, Dimension::FORCE)? },
+        Contact::Limit { force } => ContactLaw::Limit { force: inputs.positive("force_limit", force, Dimension::FORCE)? },
         Contact::Restitution { coefficient } => {
-            let coefficient = inputs.not_negative("coefficient", coefficient, Dimension::NUMBER)?;
+            let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
             if coefficient > 1.0 {
-                return Err(Stop::BadInput { field: "coefficient", value: coefficient, wanted: "at most 1" });
+                return Err(Stop::BadInput { field: "restitution", value: coefficient, wanted: "at most 1" });
             }
             ContactLaw::Restitution { coefficient }
         }
