@@ -1,6 +1,15 @@
 //! The door to hardware. A [`Rig`] moves actuators to absolute targets and reads displacement and force, one entry a
 //! degree of freedom. A virtual rig and a real one are the same to `run`, which drives them only through the guard.
 
+mod actuator;
+mod guard;
+mod load_cell;
+mod settling;
+mod virtual_rig;
+
+pub use guard::{Guard, Traversed};
+pub use virtual_rig::{OWN_SPEED, VirtualRig};
+
 /// Who the rig says it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
@@ -25,7 +34,7 @@ pub struct Reading {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RigFault {
     /// A target or reading lies outside a limit: the run is aborted.
-    #[error("{quantity} {value} is outside its limit {low} .. {high}")]
+    #[error("{quantity} {value}{unit} is outside its limit {low} .. {high}{unit}", unit = quantity.unit())]
     LimitBreached { quantity: LimitedQuantity, value: f64, low: f64, high: f64 },
     #[error("the rig did not settle within {timeout} s")]
     NotSettled { timeout: f64 },
@@ -43,6 +52,19 @@ pub enum LimitedQuantity {
     Increment,
     TrackingError,
     EnergyError,
+}
+
+impl LimitedQuantity {
+    /// The SI unit as it follows a number; nothing for a fraction.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::TargetDisplacement | Self::MeasuredDisplacement | Self::Increment | Self::TrackingError => " m",
+            Self::Force => " N",
+            Self::Speed => " m/s",
+            Self::EnergyError => "",
+        }
+    }
 }
 
 impl std::fmt::Display for LimitedQuantity {
