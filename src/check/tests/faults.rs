@@ -43,7 +43,7 @@ fn each_fault_is_said_once_at_its_place() {
             "specimen s { mass = 1 kg\n behaviour = elastic(k.stiffness) }\nstiffness ramp k { specimen = s\n displacements = [1, 2] mm }",
             "E403 k.stiffness",
         ),
-        ("let a = b\nlet b = a", "E404 b"),
+        ("let a = b\nlet b = a", "E404 a"),
         ("impact h { striker = ball\n duration = 1 s\n time_step = 1 us / 100 }", "E405 1 s"),
         ("let a = 1 / 0", "E407 1 / 0"),
         ("plan \"p\" { edition = 2 }", "E408 2"),
@@ -73,4 +73,26 @@ fn each_fault_is_said_once_at_its_place() {
         })
         .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_plan_as_a_whole_and_the_command_line() {
+    let only = |text: &str, settings: &[(&str, &str)]| checked(text, &Files(&[]), settings).1;
+    assert_eq!(only("stiffness ramp k { displacements = [1, 2] mm }", &[]), "E210 stiffness ramp k");
+    assert_eq!(only("param v = 1 m/s", &[("w", "1 m/s")]), "E214 ");
+    assert_eq!(only("param v = 1 m/s between 0 m/s .. 2 m/s", &[("v", "9 m/s")]), "E406 9 m/s");
+    assert_eq!(only("param v = 1 m/s", &[("v", "9 kg")]), "E301 9 kg");
+    assert_eq!(only(BODY, &[]), "W705 ");
+    assert_eq!(only(&format!("{BODY}let a = 1\nmove m {{ to = 1 mm }}"), &[]), "W706 a\nW704 move m");
+    let rig = crate::check::Options { rig: Some("x".to_owned()), ..Default::default() };
+    let found = crate::check::check("p.psd", BODY, &Files(&[]), &rig).diagnostics;
+    assert_eq!(found.iter().map(|fault| fault.code.id()).collect::<Vec<_>>(), ["E603"]);
+}
+
+#[test]
+fn nothing_is_said_that_only_follows_from_another_fault() {
+    assert_eq!(said("let a = 3 kq\nlet b = a + 2 mm\nmove m { to = b }"), "E204 kq");
+    assert_eq!(said("ground g { record = 1 }\nlet a = g"), "E211 ground");
+    let found = said("let width 3 mm\nmove m { to = width }");
+    assert!(found.starts_with("E101") && found.lines().count() == 1, "{found}");
 }
