@@ -1,5 +1,7 @@
 //! Numbers, lists and ranges: units looked up, ranges expanded.
 
+#![expect(clippy::cast_precision_loss, reason = "a list has at most 100,000 entries")]
+
 use super::checker::{Checker, Place, Shape, Typed, literal};
 use super::faults::{names, types as fault, values};
 use crate::formula::Formula;

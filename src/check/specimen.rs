@@ -78,7 +78,7 @@ pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<
 }
 
 /// Midspan or tip stiffness of a beam: cantilever 3EI/L³, simply supported 48EI/L³, built in 192EI/L³, partly built in
-/// (192EI/L³)(r+2)/(r+8) with r = k_θL/EI at each end.
+/// (192EI/L³)(r+2)/(r+8) with r = `k_θ`·L/EI at each end.
 fn beam<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<Behaviour> {
     let length = checker.constant_argument(chosen, "length", place);
     let youngs_modulus = checker.constant_argument(chosen, "youngs_modulus", place);

@@ -15,6 +15,7 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
     let return_path = checker.word(block, "return", "false").map(|word| word == "true");
     let speed = checker.optional(block, "speed");
     let (displacements, samples, repeats) = (displacements?, samples?, repeats?);
+    #[expect(clippy::cast_precision_loss, reason = "a list has at most 100,000 entries")]
     let readings = displacements.len() as f64 * f64::from(samples) * f64::from(repeats);
     if readings > MOST_READINGS {
         let head = checker.scope.blocks[block].block.head;

@@ -113,7 +113,7 @@ pub fn step_does_not_divide(range: Span, step: Span, length: f64, count: f64, di
     Diagnostic::new(Code::BadRange, "the step does not divide the range")
         .at(step, "leaves a rest at the end")
         .at(range, "both ends belong to the range")
-        .help(format!("{nearest}"))
+        .help(nearest)
 }
 
 pub fn too_many_entries(span: Span, found: f64, most: usize) -> Diagnostic {
