@@ -11,6 +11,7 @@ use psd::diagnostic::{Code, Severity};
 use psd::quantity::display::readable;
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
+use psd::schema::{BLOCKS, FieldType, Need};
 use psd::run::{Unwatched, run};
 use psd::verdict::{Assessment, Verdict, assess};
 
@@ -186,4 +187,26 @@ fn every_code_has_a_case() {
 fn line_ends_of_other_systems_are_tested() {
     let crlf = |case: &&Case| case.name == "crlf" && case.text.contains("\r\n");
     assert_eq!(cases().iter().filter(crlf).count(), 3, "the line ends of tests/lang/*/crlf.psd were changed");
+}
+
+#[test]
+fn every_required_field_and_argument_has_a_case() {
+    let names: Vec<String> = cases().into_iter().map(|case| case.name).collect();
+    let mut absent = Vec::new();
+    for block in BLOCKS {
+        for field in block.fields.iter().filter(|field| field.available) {
+            if field.need == Need::Required {
+                absent.push(format!("e209_{}_{}", block.words().replace(' ', "_"), field.name));
+            }
+            let (FieldType::Choice(variants) | FieldType::Choices(variants)) = field.ty else { continue };
+            for variant in variants.iter().filter(|variant| variant.available) {
+                if let Some(argument) = variant.arguments.iter().find(|argument| argument.need == Need::Required) {
+                    absent.push(format!("e213_{}_{}", variant.name, argument.name));
+                }
+            }
+        }
+    }
+    assert!(absent.len() > 10, "the schema has required fields");
+    absent.retain(|name| !names.contains(name));
+    assert!(absent.is_empty(), "no case in tests/lang/check_error for: {}", absent.join(", "));
 }
