@@ -1,9 +1,8 @@
 //! An axis: its range, its ticks and its words. In: the data's range in SI and the quantity. Out: an [`Axis`] in a
 //! readable unit. Knows no pixels.
 
-use super::super::number::{minus, typeset};
-use super::chart::Quantity;
-use crate::quantity::display::readable_unit;
+use super::super::number::{minus, typeset, unit};
+use super::chart::{End, Quantity};
 
 /// A scaled axis; `low..high` and the ticks are in its own unit.
 pub(super) struct Axis {
@@ -24,7 +23,7 @@ impl Axis {
             Some(range.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))
         });
         let (low, high) = range.unwrap_or((0.0, 1.0));
-        let (unit, factor) = readable_unit(low.abs().max(high.abs()), quantity.dimension);
+        let (unit, factor) = unit(low.abs().max(high.abs()), quantity.dimension);
         let (mut low, mut high) = (low / factor, high / factor);
         if high - low <= f64::EPSILON * high.abs().max(low.abs()) {
             // One value only: a range around it, so that it stands in the middle.
@@ -32,11 +31,12 @@ impl Axis {
             (low, high) = (low - half, high + half);
         }
         let step = nice_step((high - low) / f64::from(wanted));
-        if !quantity.tight {
-            // A little air, so that no curve runs along the frame, then out to whole ticks.
-            let air = 0.02 * (high - low);
-            low = if low == 0.0 { 0.0 } else { ((low - air) / step).floor() * step };
-            high = if high == 0.0 { 0.0 } else { ((high + air) / step).ceil() * step };
+        if quantity.end != End::Data {
+            let air = 0.025 * (high - low);
+            (low, high) = (if low == 0.0 { 0.0 } else { low - air }, if high == 0.0 { 0.0 } else { high + air });
+        }
+        if quantity.end == End::Tick {
+            (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
         }
         let title = if unit.is_empty() { quantity.name.to_owned() } else { format!("{} ({})", quantity.name, typeset(&unit)) };
         Self { low, high, ticks: ticks(low, high, step), title, factor }

@@ -133,6 +133,9 @@ impl Canvas<'_> {
     }
 
     pub fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String> {
+        // The font's box is taller below its letters than above: a centred text is let down to look centred.
+        let sinks = matches!(style.anchor.vertical, VPos::Center) && !style.upright;
+        let at = if sinks { (at.0, at.1 + 0.17 * style.size) } else { at };
         let style = style.resolved();
         self.area.draw(&Text::new(text.to_owned(), fine(at), style)).map_err(|error| error.to_string())
     }

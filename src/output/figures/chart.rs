@@ -16,19 +16,34 @@ pub(super) struct Chart {
 pub(super) struct Quantity {
     pub name: &'static str,
     pub dimension: Dimension,
-    /// Whether the axis ends with the data (a time) or at whole ticks.
-    pub tight: bool,
+    pub end: End,
     /// Whether zero must be on the axis.
     pub from_zero: bool,
 }
 
+/// Where an axis ends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// With the data: a time.
+    Data,
+    /// A little past the data, so that no marker stands on the frame.
+    Air,
+    /// At a whole tick past the data.
+    Tick,
+}
+
 impl Quantity {
     pub const fn time() -> Self {
-        Self { name: "Virtual time", dimension: Dimension::TIME, tight: true, from_zero: false }
+        Self { name: "Virtual time", dimension: Dimension::TIME, end: End::Data, from_zero: false }
     }
 
     pub const fn of(name: &'static str, dimension: Dimension) -> Self {
-        Self { name, dimension, tight: false, from_zero: true }
+        Self { name, dimension, end: End::Tick, from_zero: true }
+    }
+
+    /// The same, along x.
+    pub const fn along(name: &'static str, dimension: Dimension) -> Self {
+        Self { name, dimension, end: End::Air, from_zero: true }
     }
 }
 

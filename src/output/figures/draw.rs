@@ -184,6 +184,14 @@ enum Entry<'a> {
 }
 
 impl Entry<'_> {
+    fn sample(&self) -> f64 {
+        match self {
+            Self::Series(series) if series.style.line.is_some() => SAMPLE,
+            Self::Series(_) => 10.0,
+            Self::Band(..) => 18.0,
+        }
+    }
+
     fn label(&self) -> &str {
         match self {
             Self::Series(series) => &series.label,
@@ -198,14 +206,19 @@ fn legend_entries(chart: &Chart) -> Vec<Entry<'_>> {
     series.chain(bands).collect()
 }
 
-const SAMPLE: f64 = 34.0;
+/// Length of a line's sample.
+const SAMPLE: f64 = 30.0;
+/// Space before the next entry.
+const GAP: f64 = 18.0;
+/// From a sample to its words.
+const NEAR: f64 = 7.0;
 
 /// Entries with the left end of each, broken into lines that fit the frame.
 fn legend_rows<'a, 'b>(canvas: &Canvas<'_>, entries: &'b [Entry<'a>]) -> Result<Vec<Vec<(&'b Entry<'a>, f64)>>, String> {
     let mut rows: Vec<Vec<(&Entry<'_>, f64)>> = vec![Vec::new()];
     let mut left = LEFT;
     for entry in entries {
-        let width = SAMPLE + 7.0 + canvas.width(entry.label(), &lettering(13.0, HPos::Left, VPos::Center))?;
+        let width = entry.sample() + NEAR + canvas.width(entry.label(), &lettering(13.0, HPos::Left, VPos::Center))?;
         if left + width > RIGHT && left > LEFT {
             rows.push(Vec::new());
             left = LEFT;
@@ -213,27 +226,28 @@ fn legend_rows<'a, 'b>(canvas: &Canvas<'_>, entries: &'b [Entry<'a>]) -> Result<
         if let Some(row) = rows.last_mut() {
             row.push((entry, left));
         }
-        left += width + 22.0;
+        left += width + GAP;
     }
     Ok(rows)
 }
 
 fn legend_entry(canvas: &Canvas<'_>, entry: &Entry<'_>, (left, middle): Point) -> Result<(), String> {
+    let sample = entry.sample();
     match entry {
         Entry::Series(series) => {
             if let Some(line) = series.style.line {
-                canvas.polyline(&[(left, middle), (left + SAMPLE, middle)], line, series.style.colour)?;
+                canvas.polyline(&[(left, middle), (left + sample, middle)], line, series.style.colour)?;
             }
             if let Some(marker) = series.style.marker {
-                mark(canvas, marker, (left + 0.5 * SAMPLE, middle), series.style.colour)?;
+                mark(canvas, marker, (left + 0.5 * sample, middle), series.style.colour)?;
             }
         }
         Entry::Band(_, colour) => {
-            canvas.rectangle((left + 6.0, middle - 6.0), (left + SAMPLE - 6.0, middle + 6.0), palette::CLOUD)?;
-            canvas.rectangle((left + 6.8, middle - 5.2), (left + SAMPLE - 6.8, middle + 5.2), *colour)?;
+            canvas.rectangle((left, middle - 6.0), (left + sample, middle + 6.0), palette::CLOUD)?;
+            canvas.rectangle((left + 0.8, middle - 5.2), (left + sample - 0.8, middle + 5.2), *colour)?;
         }
     }
-    canvas.text(entry.label(), (left + SAMPLE + 7.0, middle), &lettering(13.0, HPos::Left, VPos::Center))
+    canvas.text(entry.label(), (left + sample + NEAR, middle), &lettering(13.0, HPos::Left, VPos::Center))
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ pub(super) fn force_displacement(history: &RampHistory) -> Chart {
     }
     series.push(Series { label: "measured".to_owned(), points: points(false), style: MEASURED });
     Chart {
-        x: Quantity::of("Displacement X", Dimension::LENGTH),
+        x: Quantity::along("Displacement X", Dimension::LENGTH),
         y: Quantity::of("Restoring force R", Dimension::FORCE),
         bands: Vec::new(),
         series,
@@ -70,7 +70,7 @@ pub(super) fn damping_fit(history: &SweepHistory) -> Chart {
     }
     series.push(Series { label: "mean".to_owned(), points: means, style: MEASURED });
     Chart {
-        x: Quantity::of("Velocity", Dimension::VELOCITY),
+        x: Quantity::along("Velocity", Dimension::VELOCITY),
         y: Quantity::of("Damping force", Dimension::FORCE),
         bands: Vec::new(),
         series,

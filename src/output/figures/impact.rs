@@ -50,7 +50,7 @@ pub(super) fn contact_force(history: &ImpactHistory, limits: &[Reference]) -> Ch
 pub(super) fn force_displacement(history: &ImpactHistory) -> Chart {
     let points = history.steps.iter().map(|step| (step.command, step.restoring_force)).collect();
     Chart {
-        x: Quantity::of("Displacement X", Dimension::LENGTH),
+        x: Quantity::along("Displacement X", Dimension::LENGTH),
         y: Quantity::of("Restoring force R", Dimension::FORCE),
         bands: Vec::new(),
         series: vec![Series { label: "measured R".to_owned(), points, style: Style::line(palette::BLUE, 1.8, SOLID) }],
@@ -88,7 +88,7 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
             }
             let mut add = |sign: &str, y: f64| {
                 lines.push(Reference {
-                    label: format!("{}: {sign} {}", requirement.label, number::text(y, condition.dimension)),
+                    label: format!("{}: {sign} {}", requirement.label, number::stated(y, condition.dimension)),
                     y,
                 });
             };
