@@ -3,7 +3,20 @@
 
 pub mod ast;
 pub mod format;
+pub mod limits;
 pub mod parse;
+
+mod characters;
+mod expr;
+mod faults;
+mod layout;
+mod lower;
+mod numbers;
+mod rule_names;
+mod tokens;
+
+#[cfg(test)]
+mod tests;
 
 pub use format::format;
 pub use parse::parse;

@@ -1,11 +1,214 @@
-//! parse
-use super::ast::Ast;
+//! One file, read whole: [`parse`] gives the tree of all that could be read and every fault of the text. A sound file
+//! goes through the grammar at once; a faulty one is cut into pieces (`layout`) and each piece is read alone.
+
+use pest::{
+    Parser as _,
+    error::{ErrorVariant, InputLocation},
+    iterators::Pair,
+};
+use pest_derive::Parser;
+
+use super::{
+    ast::{Ast, Block, Entry, Ident, Item, ItemKind},
+    faults,
+    layout::{self, Piece, Statement},
+    limits,
+    lower::{Lowering, unescape},
+    rule_names,
+    tokens::{Kind, Tokens},
+};
 use crate::{
     diagnostic::Diagnostic,
-    source::{FileId, Sources},
+    source::{FileId, Sources, Span, Spanned},
 };
-/// Reads one file.
+
+#[derive(Parser)]
+#[grammar = "../grammar/psd.pest"]
+pub struct Grammar;
+
+/// Reads one file. Never panics; what could be read of a faulty file is in the tree, with
+/// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) where a value could not.
 #[must_use]
-pub fn parse(_sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
-    (Ast { file, items: Vec::new(), comments: Vec::new() }, Vec::new())
+pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
+    let text = sources.file(file).text.as_str();
+    let mut ast = Ast { file, items: Vec::new(), comments: Vec::new() };
+    if text.len() > limits::FILE_BYTES {
+        let start = Span::new(file, 0, 0);
+        return (ast, vec![faults::too_large(start, "this file", limits::FILE_BYTES, "bytes")]);
+    }
+    let mut tokens = Tokens::read(text, file);
+    ast.comments = tokens.comments();
+    if tokens.faults.is_empty()
+        && let Some(items) = whole(text, file)
+    {
+        ast.items = items;
+        return (ast, Vec::new());
+    }
+    let found = std::mem::take(&mut tokens.faults);
+    let mut reader = Pieces { tokens: &tokens, lexical: found.len(), faults: found };
+    reader.read(&mut ast.items);
+    let mut faults = reader.faults;
+    if faults.is_empty() {
+        // The grammar refused what its pieces allow: say where it stopped.
+        faults.extend(refused(&tokens, text, 0, Rule::file));
+    }
+    faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
+    (ast, faults)
+}
+
+/// A sound file; `None` where there is any fault.
+fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
+    let lowering = Lowering::new(file, 0);
+    let pairs = Grammar::parse(Rule::file, text).ok()?.next()?.into_inner();
+    let items = pairs.filter(|pair| !matches!(pair.as_rule(), Rule::end_of_line | Rule::EOI));
+    let items: Option<Vec<Item>> = items.map(|pair| lowering.item(pair)).collect();
+    lowering.faults.into_inner().is_empty().then_some(items)?
+}
+
+/// Why the grammar refuses `text`, which starts at byte `base`; `None` where it does not.
+fn refused(tokens: &Tokens, text: &str, base: usize, rule: Rule) -> Option<Diagnostic> {
+    let error = Grammar::parse(rule, text).err()?;
+    let offset = match error.location {
+        InputLocation::Pos(offset) | InputLocation::Span((offset, _)) => offset,
+    };
+    let expected = match &error.variant {
+        ErrorVariant::ParsingError { positives, .. } => rule_names::expected(positives),
+        ErrorVariant::CustomError { .. } => "something else".to_owned(),
+    };
+    let at = base + offset;
+    let later = &tokens.list[tokens.list.partition_point(|token| token.end <= at)..];
+    let next = later.iter().find(|token| token.kind != Kind::Comment);
+    let inside = next.filter(|token| token.start < base + text.len() || token.kind == Kind::Newline);
+    Some(match inside.filter(|token| token.kind != Kind::Newline) {
+        Some(token) => {
+            let mut found: String = tokens.text_of(*token).chars().take(30).collect();
+            if found.len() < token.end - token.start {
+                found.push('…');
+            }
+            faults::unexpected(tokens.span(token.start, token.end), &format!("`{found}`"), &expected)
+        }
+        None => {
+            let end = base + text.len().min(offset);
+            let end = base + tokens.text[base..end].trim_end().len();
+            let place = if inside.is_some() { "the end of the line" } else { "the end of the file" };
+            faults::unexpected(tokens.span(end, end), place, &expected)
+        }
+    })
+}
+
+/// Reads the pieces of a faulty file.
+struct Pieces<'a> {
+    tokens: &'a Tokens<'a>,
+    /// How many of `faults` were found by `tokens`.
+    lexical: usize,
+    faults: Vec<Diagnostic>,
+}
+
+impl Pieces<'_> {
+    fn read(&mut self, items: &mut Vec<Item>) {
+        let (pieces, brackets) = layout::cut(self.tokens);
+        self.faults.extend(brackets);
+        for piece in pieces {
+            if self.faults.len() > limits::FAULTS + self.lexical {
+                break;
+            }
+            match piece {
+                Piece::Item(statement) => items.extend(self.item(statement)),
+                Piece::Block { head, open, fields, close } => items.extend(self.block(head, open, &fields, close)),
+            }
+        }
+    }
+
+    fn bounds(&self, statement: Statement) -> (usize, usize) {
+        let start = self.tokens.list[statement.start].start;
+        (start, statement.end.checked_sub(1).map_or(start, |last| self.tokens.list[last].end.max(start)))
+    }
+
+    /// Reads one statement by `rule`. `None`: it is at fault, and that has been said.
+    fn alone<T>(
+        &mut self,
+        statement: Statement,
+        rule: Rule,
+        lower: impl Fn(&Lowering, Pair<'_, Rule>) -> Option<T>,
+    ) -> Option<T> {
+        let (start, end) = self.bounds(statement);
+        let within = |fault: &Diagnostic| fault.span().is_some_and(|at| at.start as usize <= end && at.end as usize > start);
+        if statement.broken || self.faults[..self.lexical].iter().any(within) {
+            return None;
+        }
+        let text = &self.tokens.text[start..end];
+        if let Some(fault) = refused(self.tokens, text, start, rule) {
+            self.faults.push(fault);
+            return None;
+        }
+        let lowering = Lowering::new(self.tokens.file, start);
+        let pair = Grammar::parse(rule, text).ok()?.next()?.into_inner().next()?;
+        let lowered = lower(&lowering, pair);
+        let faults = lowering.faults.into_inner();
+        let sound = faults.is_empty();
+        self.faults.extend(faults);
+        lowered.filter(|_| sound)
+    }
+
+    fn word(&self, index: usize) -> Option<Ident> {
+        let token = *self.tokens.list.get(index).filter(|token| token.kind == Kind::Word)?;
+        Some(Spanned::new(self.tokens.text_of(token).to_owned(), self.tokens.span(token.start, token.end)))
+    }
+
+    /// An item that is no block; of a faulty one, its name with a faulty value.
+    fn item(&mut self, statement: Statement) -> Option<Item> {
+        if let Some(item) = self.alone(statement, Rule::item_alone, |lowering, pair| lowering.item(pair)) {
+            return Some(item);
+        }
+        let (start, end) = self.bounds(statement);
+        let span = self.tokens.span(start, end);
+        let value = Lowering::faulty(span);
+        let second = (statement.start + 1 < statement.end).then_some(statement.start + 1)?;
+        let keyword = self.word(statement.start)?;
+        let kind = match keyword.node.as_str() {
+            "let" => ItemKind::Let { name: self.word(second)?, value },
+            "param" => ItemKind::Param { name: self.word(second)?, value, bounds: None },
+            "require" => {
+                let token = *self.tokens.list.get(second).filter(|token| token.kind == Kind::Text)?;
+                let label = Spanned::new(unescape(self.tokens.text_of(token)), self.tokens.span(token.start, token.end));
+                ItemKind::Require { label, condition: value }
+            }
+            _ => return None,
+        };
+        Some(Item { span, kind })
+    }
+
+    fn block(&mut self, head: Statement, open: usize, fields: &[Statement], close: Option<usize>) -> Option<Item> {
+        let sound = (head.end > head.start).then(|| self.alone(head, Rule::head_alone, |lowering, pair| lowering.head(pair)));
+        if sound.is_none() {
+            let brace = self.tokens.list[open];
+            let span = self.tokens.span(brace.start, brace.end);
+            self.faults.push(faults::unexpected(span, "`{`", "the name of a block"));
+        }
+        let block = sound.flatten().or_else(|| self.faulty_head(head));
+        let entries: Vec<Entry> = fields.iter().filter_map(|field| self.entry(*field)).collect();
+        let mut block = block?;
+        block.fields = entries;
+        let last = close.or_else(|| fields.last().map(|field| field.end - 1)).unwrap_or(open);
+        let span = self.tokens.span(block.head.start as usize, self.tokens.list[last].end);
+        Some(Item { span, kind: ItemKind::Block(block) })
+    }
+
+    /// The words of a head that could not be read.
+    fn faulty_head(&self, head: Statement) -> Option<Block> {
+        let words: Vec<Ident> = (head.start..head.end).map_while(|index| self.word(index)).collect();
+        let span = words.first()?.span.to(words.last()?.span);
+        Some(Block { words, title: None, fields: Vec::new(), head: span })
+    }
+
+    /// A field; of a faulty one, its key with a faulty value, so that it is not missed as well.
+    fn entry(&mut self, statement: Statement) -> Option<Entry> {
+        if let Some(entry) = self.alone(statement, Rule::entry_alone, |lowering, pair| lowering.entry(pair)) {
+            return Some(entry);
+        }
+        let key = self.word(statement.start)?;
+        let (start, end) = self.bounds(statement);
+        let value = self.tokens.span(end.min(key.span.end as usize), end);
+        Some(Entry { span: self.tokens.span(start, end), key, value: Lowering::faulty(value) })
+    }
 }

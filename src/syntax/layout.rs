@@ -1,0 +1,233 @@
+//! Recovery: cuts a faulty file into items and fields by its lines and brackets, so that each can be read alone and
+//! none swallows the next. In: tokens. Out: [`Piece`]s and the faults of brackets. Knows lines, not grammar.
+
+use super::{
+    faults,
+    tokens::{JOINING_WORDS, Kind, Tokens},
+};
+use crate::diagnostic::Diagnostic;
+
+/// One statement: tokens `start..end`, the last of which is no line end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Statement {
+    pub start: usize,
+    pub end: usize,
+    /// Its brackets are at fault, and that has been said.
+    pub broken: bool,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// `let`, `param`, `use`, `require`, or something that is no item at all.
+    Item(Statement),
+    /// `open` is the token of `{`, `close` that of `}`.
+    Block { head: Statement, open: usize, fields: Vec<Statement>, close: Option<usize> },
+}
+
+#[must_use]
+pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
+    let mut cutter = Cutter { tokens, at: 0, faults: Vec::new() };
+    let mut pieces = Vec::new();
+    while cutter.skip_lines() {
+        if cutter.is("}") {
+            cutter.unexpected("an item");
+            cutter.at += 1;
+            continue;
+        }
+        let statement = cutter.statement();
+        if cutter.is("{") {
+            let block = cutter.block(statement);
+            let closed = matches!(block, Piece::Block { close: Some(_), .. });
+            pieces.push(block);
+            if closed && !cutter.ends_line() && !cutter.is("}") {
+                cutter.unexpected("the end of the line");
+            }
+        } else {
+            pieces.push(Piece::Item(statement));
+        }
+    }
+    (pieces, cutter.faults)
+}
+
+/// Words a top-level item starts with, other than a block.
+pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
+
+struct Cutter<'a> {
+    tokens: &'a Tokens<'a>,
+    at: usize,
+    faults: Vec<Diagnostic>,
+}
+
+impl Cutter<'_> {
+    fn is(&self, text: &str) -> bool {
+        self.tokens.is(self.at, text)
+    }
+
+    fn ends_line(&self) -> bool {
+        matches!(self.tokens.kind(self.at), None | Some(Kind::Newline | Kind::Comment))
+    }
+
+    /// Past line ends and comments; whether anything is left.
+    fn skip_lines(&mut self) -> bool {
+        while matches!(self.tokens.kind(self.at), Some(Kind::Newline | Kind::Comment)) {
+            self.at += 1;
+        }
+        self.at < self.tokens.list.len()
+    }
+
+    fn unexpected(&mut self, expected: &str) {
+        let token = self.tokens.list[self.at];
+        let found = format!("`{}`", self.tokens.text_of(token));
+        self.faults.push(faults::unexpected(self.tokens.span(token.start, token.end), &found, expected));
+    }
+
+    fn unclosed(&mut self, open: usize) {
+        let token = self.tokens.list[open];
+        let text = self.tokens.text_of(token);
+        let close = closing(text);
+        self.faults.push(faults::unclosed(self.tokens.span(token.start, token.end), text, close));
+    }
+
+    /// One statement from here: to the end of its line, further where a bracket is open or an operator stands last,
+    /// but never past a line that starts something new, nor past a brace.
+    fn statement(&mut self) -> Statement {
+        let start = self.at;
+        let mut end = start;
+        let mut open: Vec<usize> = Vec::new();
+        let mut broken = false;
+        while let Some(kind) = self.tokens.kind(self.at) {
+            match kind {
+                Kind::Newline if open.is_empty() && !self.continues(end) => break,
+                Kind::Newline if self.starts_something() => break,
+                Kind::Newline | Kind::Comment => {}
+                _ if self.is("{") || self.is("}") => break,
+                _ => {
+                    if self.is("(") || self.is("[") {
+                        open.push(self.at);
+                    } else if self.is(")") || self.is("]") {
+                        let fits = |bracket: &usize| self.is(closing(self.tokens.text_of(self.tokens.list[*bracket])));
+                        if let Some(position) = open.iter().rposition(fits) {
+                            if position + 1 < open.len() {
+                                self.unclosed(open[open.len() - 1]);
+                                broken = true;
+                            }
+                            open.truncate(position);
+                        }
+                    }
+                    end = self.at + 1;
+                }
+            }
+            self.at += 1;
+        }
+        if let Some(innermost) = open.last() {
+            self.unclosed(*innermost);
+            broken = true;
+        }
+        Statement { start, end, broken }
+    }
+
+    /// Whether the token before `end` wants a value after it.
+    fn continues(&self, end: usize) -> bool {
+        let Some(last) = end.checked_sub(1) else { return false };
+        let signs = ["+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!="];
+        signs.iter().chain(&JOINING_WORDS).any(|operator| self.tokens.is(last, operator))
+    }
+
+    /// Whether the line after this line end starts a field, an item, a block or ends a block.
+    fn starts_something(&self) -> bool {
+        let mut next = self.at;
+        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
+            next += 1;
+        }
+        self.tokens.is(next, "}")
+            || (self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "="))
+            || self.starts_item(next)
+    }
+
+    /// Whether an item other than a field starts at `index`.
+    fn starts_item(&self, index: usize) -> bool {
+        if self.tokens.kind(index) != Some(Kind::Word) || self.tokens.is(index + 1, "=") {
+            return false;
+        }
+        let keyword = ITEM_WORDS.iter().any(|word| self.tokens.is(index, word));
+        let mut after = index + 1;
+        while self.tokens.kind(after) == Some(Kind::Word) {
+            after += 1;
+        }
+        let named = after > index + 1 || self.tokens.kind(after) == Some(Kind::Text);
+        if self.tokens.kind(after) == Some(Kind::Text) {
+            after += 1;
+        }
+        (keyword && named) || self.tokens.is(after, "{")
+    }
+
+    fn column(&self, index: usize) -> usize {
+        let start = self.tokens.list[index].start;
+        start - self.tokens.text[..start].rfind('\n').map_or(0, |newline| newline + 1)
+    }
+
+    /// The block whose `{` is here.
+    fn block(&mut self, head: Statement) -> Piece {
+        let open = self.at;
+        let mut fields = Vec::new();
+        self.at += 1;
+        loop {
+            if !self.skip_lines() {
+                self.unclosed(open);
+                return Piece::Block { head, open, fields, close: None };
+            }
+            if self.is("}") {
+                self.at += 1;
+                return Piece::Block { head, open, fields, close: Some(self.at - 1) };
+            }
+            if self.starts_item(self.at) {
+                // A line no further in than the block's own head is the next item: this block was never closed.
+                if self.column(self.at) <= self.column(head.start.min(open)) {
+                    self.unclosed(open);
+                    return Piece::Block { head, open, fields, close: None };
+                }
+                self.skip_misplaced();
+                continue;
+            }
+            let before = self.at;
+            let field = self.statement();
+            if field.end > field.start {
+                fields.push(field);
+            }
+            if self.is("{") || self.at == before {
+                self.unexpected("the end of the line");
+                self.skip_braces();
+            }
+        }
+    }
+
+    fn skip_misplaced(&mut self) {
+        let token = self.tokens.list[self.at];
+        self.faults.push(faults::misplaced_block(self.tokens.span(token.start, token.end)));
+        self.statement();
+        if self.is("{") {
+            self.skip_braces();
+        }
+    }
+
+    /// Past the `{` here and the `}` that belongs to it, whatever is between, or past this one token.
+    fn skip_braces(&mut self) {
+        let mut depth = 0_usize;
+        while self.at < self.tokens.list.len() {
+            depth += usize::from(self.is("{"));
+            depth = depth.saturating_sub(usize::from(self.is("}")));
+            self.at += 1;
+            if depth == 0 {
+                return;
+            }
+        }
+    }
+}
+
+fn closing(open: &str) -> &'static str {
+    match open {
+        "(" => ")",
+        "[" => "]",
+        _ => "}",
+    }
+}

@@ -1,0 +1,89 @@
+//! What each rule of the grammar is called in a message. Exhaustive, so that a new rule cannot go without a name.
+
+use super::parse::Rule;
+
+/// The name of `rule` in a message, or `None` where it would say nothing (helpers of other rules).
+#[must_use]
+pub const fn human(rule: Rule) -> Option<&'static str> {
+    Some(match rule {
+        Rule::file | Rule::item | Rule::item_alone => "an item",
+        Rule::use_item | Rule::use_word => "`use`",
+        Rule::param_item | Rule::param_word => "`param`",
+        Rule::let_item | Rule::let_word => "`let`",
+        Rule::require_item | Rule::require_word => "`require`",
+        Rule::block => "a block",
+        Rule::head | Rule::head_alone => "the name of a block",
+        Rule::entry | Rule::entry_alone | Rule::key => "a field",
+        Rule::expression
+        | Rule::comparison
+        | Rule::range
+        | Rule::sum
+        | Rule::operand
+        | Rule::quantity
+        | Rule::list
+        | Rule::parenthesised
+        | Rule::named
+        | Rule::variable
+        | Rule::number
+        | Rule::negate
+        | Rule::open_bracket
+        | Rule::open_paren => "a value",
+        Rule::argument | Rule::argument_name => "an argument",
+        Rule::infix
+        | Rule::plus
+        | Rule::minus
+        | Rule::times
+        | Rule::divided
+        | Rule::power
+        | Rule::compare
+        | Rule::dots
+        | Rule::and_word => "an operator",
+        Rule::text => "a text in quotes",
+        Rule::unit => "a unit",
+        Rule::name | Rule::new_name | Rule::word => "a name",
+        Rule::between_word => "`between`",
+        Rule::of_word => "`of`",
+        Rule::within_word | Rule::step_word => return None,
+        Rule::equals => "`=`",
+        Rule::comma => "`,`",
+        Rule::colon => "`:`",
+        Rule::open_brace => "`{`",
+        Rule::close_brace => "`}`",
+        Rule::close_bracket => "`]`",
+        Rule::close_paren => "`)`",
+        Rule::end_of_line | Rule::newline | Rule::EOI => "the end of the line",
+        Rule::WHITESPACE
+        | Rule::comment
+        | Rule::gap
+        | Rule::postfix
+        | Rule::field
+        | Rule::index
+        | Rule::dot
+        | Rule::arguments
+        | Rule::unit_factor
+        | Rule::unit_name
+        | Rule::unit_letter
+        | Rule::name_char
+        | Rule::reserved => return None,
+    })
+}
+
+/// What was expected, in words, from the rules that were tried: `a value`, "`,` or `)`".
+#[must_use]
+pub fn expected(rules: &[Rule]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for name in rules.iter().filter_map(|rule| human(*rule)) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    // Where a value may start, what else may stand there (a text, an argument's name) is only noise.
+    if names.contains(&"a value") {
+        names.retain(|name| !matches!(*name, "a text in quotes" | "an argument"));
+    }
+    match names.split_last() {
+        None => "something else".to_owned(),
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+    }
+}

@@ -1,0 +1,147 @@
+//! Faulty text: each fault with its code and place, the sound rest in the tree.
+
+use super::{faults, outline, read};
+use crate::diagnostic::Code::{self, *};
+
+fn one(text: &str, code: Code, place: &str) {
+    assert_eq!(faults(text), [(code, place.to_owned())], "{text}");
+}
+
+fn field(value: &str, code: Code, place: &str) {
+    one(&format!("b {{\n  x = {value}\n  y = 2\n}}\n"), code, place);
+}
+
+#[test]
+fn syntax_faults_say_what_was_found_and_expected() {
+    field("", Syntax, "");
+    field("1 kg 2", Syntax, "2");
+    field("* 2", Syntax, "*");
+    field("1 + * 2", Syntax, "*");
+    field("a b", Syntax, "b");
+    field("[1, 2", UnclosedBracket, "[");
+    field("f(1; 2)", Syntax, ";");
+    field("f(a: 1, 2)", Syntax, "2");
+    field("1)", Syntax, ")");
+    field("--1", Syntax, "-");
+    field("step", Syntax, "step");
+    field("1 < 2 < 3", Syntax, "<");
+    field("a.", Syntax, "");
+    one("let = 3\n", Syntax, "=");
+    one("require 3 < 4\n", Syntax, "3");
+    one("}\n", Syntax, "}");
+    one("limits 3 {\n  x = 1\n}\n", Syntax, "3");
+    one("a {\n x = 1\n  limits {\n  y = 2\n }\n}\n", Syntax, "limits");
+    one("a { x = 1 } let b = 2\n", Syntax, "let");
+    one("a { x = 1 kg y = 2 }\n", Syntax, "y");
+    one("x = 3\n", Syntax, "=");
+    let (_, found, _) = read("b {\n  mass =\n}\n");
+    assert_eq!(found[0].message, "found the end of the line, expected a value");
+    let (_, found, _) = read("b {\n  mass 3\n}\n");
+    assert_eq!(found[0].message, "found `3`, expected `=`");
+    let (_, found, _) = read("b {\n  mass = 3 kg x\n}\n");
+    assert!(found[0].message.starts_with("found `x`, expected an operator"), "{}", found[0].message);
+    assert!(found[0].help.is_some());
+}
+
+#[test]
+fn an_open_bracket_is_reported_where_it_opens_and_swallows_nothing() {
+    for open in ["f(1", "[1, 2", "(1 + (2)", "f(1,\n    [2"] {
+        let text = format!("a {{\n  x = {open}\n  y = 2\n}}\nlet z = 3\n");
+        let (ast, found, sources) = read(&text);
+        assert_eq!(found.len(), 1, "{found:#?}");
+        assert_eq!(found[0].code, UnclosedBracket);
+        assert!(["(", "["].contains(&sources.text(found[0].span().unwrap())));
+        assert_eq!(outline(&ast), "a\n  x = ?\n  y = 2\nlet z = 3\n");
+    }
+    let (ast, found, sources) = read("a {\n  x = 1\n\nb {\n  y = 2\n}\nlet c = [1\n");
+    assert_eq!(found.iter().map(|fault| fault.code).collect::<Vec<_>>(), [UnclosedBracket, UnclosedBracket]);
+    assert_eq!(sources.position(found[0].span().unwrap()).line, 1);
+    assert_eq!(outline(&ast), "a\n  x = 1\nb\n  y = 2\nlet c = ?\n");
+    one("a {", UnclosedBracket, "{");
+    field("f([1, 2)", UnclosedBracket, "[");
+}
+
+#[test]
+fn numbers_are_decimal_with_digits_on_both_sides() {
+    for (written, help) in [
+        ("1,5", "write `1.5`"),
+        ("1_000", "write `1000`"),
+        ("0x10", "write `16`"),
+        (".5", "write `0.5`"),
+        ("5.", "write `5`"),
+        ("1e", "write `1`"),
+        ("1e-400", "write `0`"),
+        ("1e400", "write a number such as `0.5` or `1.5e6`"),
+        ("1.2.3", "write a number such as `0.5` or `1.5e6`"),
+        (".5e3", "write `0.5e3`"),
+    ] {
+        field(&format!("{written} kg"), BadNumber, written);
+        let (_, found, _) = read(&format!("let x = {written}\n"));
+        assert_eq!(found[0].help.as_deref(), Some(help), "{written}");
+    }
+    let long = "1".repeat(41);
+    field(&long, BadNumber, &long);
+    assert_eq!(faults(&format!("let x = {}\n", "1".repeat(40))), []);
+    assert_eq!(faults("let x = [1,5] m\n"), []);
+}
+
+#[test]
+fn operators_keep_off_units() {
+    for (written, glued, mended) in [
+        ("2 kg*3", "kg*3", "kg * 3"),
+        ("2 kg*(x)", "kg*(x", "kg * (x"),
+        ("2 kg*k0.mass", "kg*k0.mass", "kg * k0.mass"),
+        ("[1, 2] m/2", "m/2", "m / 2"),
+        ("10 %*2", "%*2", "% * 2"),
+        ("2 m* 3", "m*", "m *"),
+    ] {
+        field(written, UnitWithoutBlank, glued);
+        let (_, found, _) = read(&format!("let x = {written}\n"));
+        assert!(found[0].help.as_ref().unwrap().contains(mended), "{:?}", found[0].help);
+    }
+    assert_eq!(faults("let x = 2 kg*x\nlet y = 1 m/s..3 m/s\nlet z = 2*x\n"), []);
+}
+
+#[test]
+fn characters_that_hide_are_refused_and_shown() {
+    one("\u{feff}let x = 1\n", BadText, "\u{feff}");
+    one("let x = 1\0\n", BadText, "\0");
+    one("let x = \"a\u{202e}b\"\n", BadText, "\u{202e}");
+    one("let x\u{200d}y = 1\n", BadText, "\u{200d}");
+    one("let l\u{456}m = 1\n", BadText, "\u{456}");
+    one("let x = \"\u{1b}]0;t\"\n", BadText, "\u{1b}");
+    one("# \u{1b}[2J\n", BadText, "\u{1b}");
+    one("let x = \"abc\n", BadText, "\"");
+    one("let x = \"a\\qb\"\n", BadText, "\\q");
+    one("let x = 1\rlet y = 2\n", BadText, "\r");
+    assert_eq!(faults("# \u{202e} in a comment\n"), []);
+    let (_, found, _) = read("let x = \"a\u{202e}b\"\n");
+    assert!(found[0].message.contains("\\u{202e}"));
+}
+
+#[test]
+fn all_faults_of_a_file_are_found_at_once() {
+    let text = "use lib\n\nspecimen beam {\n  length = 1,4 m\n  mass = elastic(3 kg\n  density = 5 kg\n  q = = 3\n  r = \"ok\"\n}\n\nlet good = 1 m\nrequire \"r\" 1 <\n\nstriker p {\n  mass = 20 kg\n  velocity = 2 m*3\n}\nlet k = (1\n";
+    assert_eq!(
+        faults(text).iter().map(|(code, place)| (*code, place.as_str())).collect::<Vec<_>>(),
+        [
+            (Syntax, "lib"),
+            (BadNumber, "1,4"),
+            (UnclosedBracket, "("),
+            (Syntax, "="),
+            (Syntax, ""),
+            (UnitWithoutBlank, "m*3"),
+            (UnclosedBracket, "(")
+        ]
+    );
+    let (ast, ..) = read(text);
+    assert_eq!(
+        outline(&ast),
+        "specimen beam\n  length = ?\n  mass = ?\n  density = 5 kg\n  q = ?\n  r = \"ok\"\nlet good = 1 m\nrequire \"r\" ?\nstriker p\n  mass = 20 kg\n  velocity = ?\nlet k = ?\n"
+    );
+}
+
+#[test]
+fn a_faulty_list_over_lines_is_one_fault() {
+    one("a {\n  x = [\n    f(1, 2),\n    f(; 2),\n    f(3),\n  ]\n  y = 1\n}\n", Syntax, ";");
+}
