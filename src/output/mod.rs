@@ -1,7 +1,16 @@
 //! Pure functions of (plan, record, assessment): tables, figures, summary, certificate, console text. They return
-//! bytes; only `cli` writes files.
+//! bytes; only `cli` writes files. Knows no clock, no file, no environment: the same run gives the same bytes.
 
-use crate::plan::Plan;
+mod certificate;
+pub mod console;
+mod deviations;
+mod figures;
+mod manifest;
+mod number;
+pub mod summary;
+mod tables;
+
+use crate::plan::{Format, Plan};
 use crate::record::Record;
 use crate::verdict::Assessment;
 
@@ -31,4 +40,70 @@ pub struct Provenance {
 pub struct OutputFile {
     pub path: String,
     pub bytes: Vec<u8>,
+}
+
+/// Why an output could not be made. None of these is the run's fault: its record is whole.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    #[error("the table of `{procedure}` could not be written: {reason}")]
+    Table { procedure: String, reason: String },
+    #[error("the figure `{figure}` of `{procedure}` could not be drawn: {reason}")]
+    Figure { figure: &'static str, procedure: String, reason: String },
+    #[error("the summary could not be written: {0}")]
+    Summary(#[from] serde_json::Error),
+}
+
+/// Every file a run leaves, the manifest last.
+///
+/// # Errors
+/// A table, figure or summary that cannot be encoded.
+pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let figures = figures::all(run)?;
+    let mut files = Vec::new();
+    if wants(run.plan, Format::Html) {
+        files.push(OutputFile { path: "certificate.html".to_owned(), bytes: certificate::html(run, &figures).into_bytes() });
+    }
+    files.push(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() });
+    files.extend(tables::all(run)?);
+    files.extend(figures.into_iter().map(|figure| OutputFile { path: figure.path, bytes: figure.png }));
+    files.extend(
+        run.plan
+            .files
+            .iter()
+            .map(|file| OutputFile { path: format!("plan/{}", safe_path(&file.name)), bytes: file.text.clone().into_bytes() }),
+    );
+    files.push(manifest::of(&files));
+    Ok(files)
+}
+
+/// Whether the plan's report asks for a format; a report that names none asks for all.
+fn wants(plan: &Plan, format: Format) -> bool {
+    plan.report.formats.is_empty() || plan.report.formats.contains(&format)
+}
+
+/// A relative path that cannot leave the run folder: no empty, `.` or `..` part, no drive, no control character.
+fn safe_path(name: &str) -> String {
+    let parts: Vec<String> = name
+        .split(['/', '\\'])
+        .filter(|part| !matches!(*part, "" | "." | ".."))
+        .map(|part| {
+            part.chars()
+                .map(|c| if c.is_control() || matches!(c, ':' | '*' | '?' | '"' | '<' | '>' | '|') { '_' } else { c })
+                .collect()
+        })
+        .collect();
+    if parts.is_empty() { "plan.psd".to_owned() } else { parts.join("/") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::safe_path;
+
+    #[test]
+    fn a_path_never_leaves_the_run_folder() {
+        assert_eq!(safe_path("lib/frame.psd"), "lib/frame.psd");
+        assert_eq!(safe_path("../../etc/passwd"), "etc/passwd");
+        assert_eq!(safe_path("C:\\plans\\a\n.psd"), "C_/plans/a_.psd");
+        assert_eq!(safe_path(".."), "plan.psd");
+    }
 }

@@ -1,0 +1,143 @@
+//! The top of the certificate: what was tested, the verdict, and what must be known before it is believed.
+
+use maud::{Markup, html};
+
+use super::super::{Run, deviations, number, summary};
+use super::title;
+use crate::record::EventKind;
+use crate::verdict::{RequirementOutcome, Verdict};
+
+/// Title, run id, verdict and marks.
+pub(super) fn title_and_verdict(run: &Run<'_>) -> Markup {
+    let verdict = run.assessment.verdict;
+    html! {
+        header.title {
+            div {
+                p.kind { "Report of a pseudo-dynamic test" }
+                h1 { (title(run)) }
+            }
+            div.run {
+                "run " span.id { (run.provenance.run_id) } br;
+                @if let Some(date) = &run.provenance.date { (date) } @else { "date not given" }
+            }
+        }
+        section class={ "verdict " (verdict.name()) } {
+            strong { (verdict.name().to_uppercase()) }
+            (sentence(run))
+        }
+        @if run.record.rig.simulated {
+            div.marks {
+                span.mark { "REHEARSAL" }
+                span.mark { "NOT CERTIFIABLE" }
+                span { "Simulated rig: rehearsal, not a test of a specimen." }
+            }
+        }
+    }
+}
+
+fn sentence(run: &Run<'_>) -> String {
+    let all = &run.assessment.requirements;
+    let with = |verdict: Verdict| all.iter().filter(|requirement| requirement.verdict == verdict).count();
+    match run.assessment.verdict {
+        Verdict::Pass if all.is_empty() => "The plan states no requirement.".to_owned(),
+        Verdict::Pass if all.len() == 1 => "The requirement is met.".to_owned(),
+        Verdict::Pass => format!("All {} requirements are met.", all.len()),
+        Verdict::Inconclusive => {
+            format!("{} of {} requirements cannot be decided from this run.", with(Verdict::Inconclusive), all.len())
+        }
+        Verdict::Fail => format!("{} of {} requirements are not met.", with(Verdict::Fail), all.len()),
+        Verdict::Aborted => "The run was stopped before its end; what follows is what was recorded until then.".to_owned(),
+        Verdict::Error => "The rig failed; what follows is what was recorded until then.".to_owned(),
+    }
+}
+
+/// Every requirement with value, uncertainty, limit and margin, and the rule by which it was decided.
+pub(super) fn requirements(run: &Run<'_>) -> Markup {
+    let rule = run.plan.particulars.iter().find(|(name, _)| *name == "decision_rule").map_or("simple", |(_, text)| text);
+    html! {
+        section {
+            h2 { "Requirements" }
+            @if run.assessment.requirements.is_empty() {
+                p { "No requirement: the verdict says only that the run came to its end." }
+            } @else {
+                table {
+                    thead {
+                        tr {
+                            th { "Requirement" }
+                            th.number { "Value ± u" }
+                            th.number { "Limit" }
+                            th.number { "Margin" }
+                            th { "Verdict" }
+                        }
+                    }
+                    tbody { @for requirement in &run.assessment.requirements { (conditions(requirement)) } }
+                }
+                p.note {
+                    "Decision rule: " (rule) ". With the rule “simple” the value alone is held against the limit, whatever its "
+                    "uncertainty. u is the standard uncertainty (k = 1) where a measured result carries one. Margin is the distance "
+                    "inside the limit; a negative margin is the distance by which it is missed."
+                }
+            }
+        }
+    }
+}
+
+fn conditions(requirement: &RequirementOutcome) -> Markup {
+    let deciding = summary::governing(requirement).map(|condition| condition.text.as_str());
+    html! {
+        @for (index, condition) in requirement.conditions.iter().enumerate() {
+            tr {
+                td {
+                    @if index == 0 { (requirement.label) br; }
+                    code.soft { (condition.text) }
+                    @if let Some(reason) = &condition.reason { br; span.note { (reason) } }
+                }
+                td.number {
+                    @match condition.value {
+                        Some(value) => { (number::with_uncertainty(value, condition.uncertainty, condition.dimension)) }
+                        None => { span.missing { "no value" } }
+                    }
+                }
+                td.number { (number::bound(condition)) }
+                td.number { @if let Some(margin) = condition.margin { (number::text(margin, condition.dimension)) } @else { "—" } }
+                td class=(condition.verdict.name()) { (condition.verdict.name()) }
+            }
+        }
+        @if deciding.is_none() {
+            tr { td colspan="4" { (requirement.label) } td class=(requirement.verdict.name()) { (requirement.verdict.name()) } }
+        }
+    }
+}
+
+/// Deviations from the plan, and remarks on the numbers.
+pub(super) fn deviations(run: &Run<'_>) -> Markup {
+    let found = deviations::of(run);
+    let remarks: Vec<_> = run
+        .record
+        .events
+        .iter()
+        .filter(|event| matches!(event.kind, EventKind::Remark | EventKind::Note | EventKind::Inspection))
+        .collect();
+    html! {
+        section {
+            h2 { "Deviations and remarks" }
+            @if found.is_empty() { p { "No deviation from the plan was recorded." } }
+            @else { ul { @for deviation in &found { li { (deviation) } } } }
+            @if !remarks.is_empty() {
+                ul {
+                    @for event in remarks {
+                        li {
+                            (capital(summary::event_kind(event.kind)))
+                            (deviations::place(event.procedure.as_deref(), event.step)) ": " (event.text)
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}

@@ -1,0 +1,177 @@
+//! Results of each procedure with unit and uncertainty, the reading of an impact's contact, its energy balance, and
+//! the figures.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use maud::{Markup, html};
+
+use super::super::figures::Drawn;
+use super::super::{Run, number};
+use super::{pairs, words};
+use crate::formula::ResultValue;
+use crate::plan::{Contact, Impact, ProcedureKind};
+use crate::quantity::Dimension;
+use crate::record::{History, ImpactHistory, NamedResult, ProcedureRecord};
+
+/// Every procedure that was run, in order.
+pub(super) fn procedures(run: &Run<'_>) -> Markup {
+    html! {
+        section {
+            h2 { "Results" }
+            @if run.record.procedures.is_empty() { p { "No procedure was run." } }
+            @for (index, procedure) in run.record.procedures.iter().enumerate() {
+                h3 { (procedure.name) " " span.soft { "· " (procedure.kind) @if !procedure.complete { " · not complete" } } }
+                (inputs(procedure))
+                @if !procedure.results.is_empty() { (table(&procedure.results)) }
+                @if let History::Impact(history) = &procedure.history {
+                    (force_note(run, index, procedure, history))
+                    (energy_balance(history))
+                }
+            }
+        }
+    }
+}
+
+fn inputs(procedure: &ProcedureRecord) -> Markup {
+    let texts: Vec<String> = procedure
+        .inputs
+        .iter()
+        .map(|(name, estimate, dimension)| {
+            format!("{} {}", words(name), number::with_uncertainty(estimate.value, estimate.uncertainty, *dimension))
+        })
+        .collect();
+    html! { @if !texts.is_empty() { p.note { "Run with: " (texts.join("; ")) "." } } }
+}
+
+fn table(results: &[NamedResult]) -> Markup {
+    html! {
+        table {
+            thead { tr { th { "Result" } th.number { "Value ± u" } th { "In the plan" } } }
+            tbody {
+                @for result in results {
+                    tr {
+                        td { (words(result.name)) }
+                        td.number { (value(result)) }
+                        td { code.soft { (result.name) } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn value(result: &NamedResult) -> Markup {
+    match &result.value {
+        ResultValue::Number { value: Some(value), uncertainty } => {
+            html! { (number::with_uncertainty(*value, *uncertainty, result.dimension)) }
+        }
+        ResultValue::Number { value: None, .. } => html! { span.missing { "none in this run" } },
+        ResultValue::List(values) => {
+            let texts: Vec<String> = values.iter().map(|value| number::text(*value, result.dimension)).collect();
+            html! { (texts.join(", ")) }
+        }
+    }
+}
+
+/// What a reader of a peak contact force must know: the impulse, the step, and what the law makes of them.
+fn force_note(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history: &ImpactHistory) -> Markup {
+    let Some(ProcedureKind::Impact(impact)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else {
+        return html! {};
+    };
+    let result = |name: &str| match procedure.result(name).map(|result| &result.value) {
+        Some(ResultValue::Number { value, .. }) => *value,
+        _ => None,
+    };
+    let step = number::text(history.time_step, Dimension::TIME);
+    let critical = number::text(history.critical_time_step, Dimension::TIME);
+    html! {
+        p {
+            @if let (Some(peak), Some(impulse)) = (result("max_contact_force"), result("impulse")) {
+                "Peak contact force " (number::text(peak, Dimension::FORCE)) " with an impulse of "
+                (number::text(impulse, Dimension::IMPULSE)) " at a time step of " (step) ". "
+            } @else { "Time step " (step) ". " }
+            "Critical time step (Melo et al. 2006, eq. 7) " (critical) ". "
+            @if matches!(impact.contact, Contact::Rigid) {
+                "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the "
+                "blow, the peak is not. " (implied_restitution(run, procedure, impact))
+            }
+        }
+    }
+}
+
+/// e = Ms/(Ms + 2M): what the rigid law is as the time step goes to zero.
+fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> Markup {
+    let mass = procedure.inputs.iter().find(|(name, ..)| *name == "mass").map(|(_, estimate, _)| estimate.value);
+    let striker = run.plan.strikers.get(impact.striker).map(|striker| striker.mass);
+    let (Some(mass), Some(striker)) = (mass.or_else(|| impact.mass.constant()), striker) else { return html! {} };
+    let restitution = striker / (striker + 2.0 * mass);
+    html! {
+        "It implies a coefficient of restitution e = Ms/(Ms + 2M) = " (number::text(restitution, Dimension::NUMBER))
+        " (Ms striker mass, M equivalent mass of the structure)."
+    }
+}
+
+/// Where the striker's energy was at the end of the run.
+fn energy_balance(history: &ImpactHistory) -> Markup {
+    let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else { return html! {} };
+    let input = first.energies.striker;
+    let e = last.energies;
+    let parts = [
+        ("striker, kinetic", e.striker),
+        ("structure, kinetic", e.structure),
+        ("restoring force, ∫R dX", e.restoring),
+        ("damping, ∫CẊ dX", e.damping),
+        ("contact loss", e.contact_loss),
+        ("integration error", e.error),
+    ];
+    html! {
+        table {
+            thead { tr { th { "Energy balance at the end of the run" } th.number { "Energy" } th.number { "Of the input" } } }
+            tbody {
+                tr { td { "input, ½MsV₀²" } td.number { (number::text(input, Dimension::ENERGY)) } td.number { "100 %" } }
+                @for (name, energy) in parts {
+                    tr {
+                        td { (name) }
+                        td.number { (number::text(energy, Dimension::ENERGY)) }
+                        td.number { @if input > 0.0 { (percent(energy / input)) } @else { "—" } }
+                    }
+                }
+            }
+        }
+        @if e.indentation > 0.0 {
+            p.note {
+                "Indentation energy F·Δδp, an indicator and no part of the balance: " (number::text(e.indentation, Dimension::ENERGY))
+                ". It equals the contact loss only as the time step goes to zero."
+            }
+        }
+    }
+}
+
+fn percent(share: f64) -> String {
+    let text =
+        if share != 0.0 && share.abs() < 1e-4 { format!("{:.1e} %", 100.0 * share) } else { format!("{:.2} %", 100.0 * share) };
+    number::minus(&text)
+}
+
+/// Every figure, numbered, its picture inside the page.
+pub(super) fn figures(figures: &[Drawn]) -> Markup {
+    html! {
+        @if !figures.is_empty() {
+            section {
+                h2 { "Figures" }
+                @for (index, figure) in figures.iter().enumerate() {
+                    figure {
+                        img alt=(figure.caption) src={ "data:image/png;base64," (STANDARD.encode(&figure.png)) };
+                        figcaption { b { "Figure " (index + 1) ". " } (figure.caption) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A table of plain pairs for the sections that follow.
+pub(super) fn described(rows: Vec<(&str, String)>) -> Markup {
+    let rows: Vec<(String, Markup)> = rows.into_iter().map(|(name, text)| (name.to_owned(), html! { (text) })).collect();
+    pairs(&rows)
+}

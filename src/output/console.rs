@@ -1,0 +1,74 @@
+//! The verdict for a person at a terminal. In: a run. Out: text for stderr, aligned; plain or coloured, as the caller says.
+
+use std::fmt::Write as _;
+
+use super::{Run, deviations, number, summary};
+use crate::verdict::Verdict;
+
+/// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
+#[must_use]
+pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
+    let mut text = String::new();
+    let paint = |verdict: Verdict, words: &str| paint(verdict, words, coloured);
+    let _ = writeln!(
+        text,
+        "{}  {}{}",
+        paint(run.assessment.verdict, &run.assessment.verdict.name().to_uppercase()),
+        printable(&run.plan.title),
+        if run.record.rig.simulated { "  (simulated rig: rehearsal)" } else { "" }
+    );
+    if run.assessment.requirements.is_empty() {
+        text.push_str("  no requirement\n");
+    }
+    let rows: Vec<[String; 5]> = run
+        .assessment
+        .requirements
+        .iter()
+        .map(|requirement| {
+            let name = printable(&requirement.label);
+            let Some(deciding) = summary::governing(requirement) else {
+                return [requirement.verdict.name().to_owned(), name, String::new(), String::new(), String::new()];
+            };
+            let value = deciding.value.map_or_else(
+                || "no value".to_owned(),
+                |value| number::with_uncertainty(value, deciding.uncertainty, deciding.dimension),
+            );
+            let margin = deciding.margin.map_or_else(
+                || deciding.reason.clone().unwrap_or_default(),
+                |margin| format!("margin {}", number::text(margin, deciding.dimension)),
+            );
+            [requirement.verdict.name().to_owned(), name, value, number::bound(deciding), printable(&margin)]
+        })
+        .collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths = [width(0), width(1), width(2), width(3)];
+    for (row, requirement) in rows.iter().zip(&run.assessment.requirements) {
+        let verdict = paint(requirement.verdict, &padded(&row[0], widths[0]));
+        let cells: Vec<String> = (1..4).map(|column| padded(&row[column], widths[column])).collect();
+        let line = format!("  {verdict}  {}  {}", cells.join("  "), row[4]);
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    for deviation in deviations::of(run) {
+        let _ = writeln!(text, "  note: {}", printable(&deviation));
+    }
+    let _ = writeln!(text, "  run {}", run.provenance.run_id);
+    text
+}
+
+/// A label on one line and without control characters: a plan's text must not drive a terminal.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
+fn padded(text: &str, width: usize) -> String {
+    format!("{text}{}", " ".repeat(width.saturating_sub(text.chars().count())))
+}
+
+fn paint(verdict: Verdict, words: &str, coloured: bool) -> String {
+    let code = match verdict {
+        Verdict::Pass => "32",
+        Verdict::Inconclusive => "33",
+        Verdict::Fail | Verdict::Aborted | Verdict::Error => "31",
+    };
+    if coloured { format!("\u{1b}[1;{code}m{words}\u{1b}[0m") } else { words.to_owned() }
+}

@@ -1,0 +1,42 @@
+//! Deviations from the plan as written, found in the record itself: what a reader of the certificate must know before
+//! the numbers. In: a run. Out: one sentence each, in the order they happened.
+
+use super::Run;
+use crate::record::{EventKind, Outcome};
+
+/// Every deviation and interruption of the run.
+pub(super) fn of(run: &Run<'_>) -> Vec<String> {
+    let mut found: Vec<String> =
+        run.plan.settings.iter().map(|(name, value)| format!("Parameter {name} was set to {value} for this run.")).collect();
+    match &run.record.outcome {
+        Outcome::Completed => {}
+        Outcome::Aborted { reason } => found.push(format!("The run was stopped: {reason}.")),
+        Outcome::Faulted { reason } => found.push(format!("The rig failed: {reason}.")),
+    }
+    for event in &run.record.events {
+        let what = match event.kind {
+            EventKind::LimitBreach => "Limit reached",
+            EventKind::Hold => "Hold",
+            EventKind::Fault => "Rig fault",
+            EventKind::Note | EventKind::Inspection | EventKind::Remark => continue,
+        };
+        found.push(format!("{what}{}: {}.", place(event.procedure.as_deref(), event.step), event.text.trim_end_matches('.')));
+    }
+    for (index, procedure) in run.plan.procedures.iter().enumerate() {
+        match run.record.procedures.get(index) {
+            None => found.push(format!("Procedure {} was not run.", procedure.name)),
+            Some(record) if !record.complete => found.push(format!("Procedure {} did not run to its end.", procedure.name)),
+            Some(_) => {}
+        }
+    }
+    found
+}
+
+/// ` in hit, step 12`, as far as it is known.
+pub(super) fn place(procedure: Option<&str>, step: Option<u64>) -> String {
+    match (procedure, step) {
+        (Some(name), Some(step)) => format!(" in {name}, step {step}"),
+        (Some(name), None) => format!(" in {name}"),
+        (None, _) => String::new(),
+    }
+}

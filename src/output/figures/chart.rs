@@ -1,0 +1,124 @@
+//! What a chart shows, before anything is drawn: series, bands and reference lines in SI, and the style of each. A
+//! style is told apart by colour and by dash or marker, so that a grey print can be read.
+
+use crate::quantity::Dimension;
+
+/// A picture of two quantities.
+pub(super) struct Chart {
+    pub x: Quantity,
+    pub y: Quantity,
+    pub bands: Vec<Band>,
+    pub series: Vec<Series>,
+    pub references: Vec<Reference>,
+}
+
+/// What an axis measures.
+pub(super) struct Quantity {
+    pub name: &'static str,
+    pub dimension: Dimension,
+    pub end: End,
+    /// Whether zero must be on the axis.
+    pub from_zero: bool,
+}
+
+/// Where an axis ends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// With the data: a time.
+    Data,
+    /// A little past the data, so that no marker stands on the frame.
+    Air,
+    /// At a whole tick past the data.
+    Tick,
+}
+
+impl Quantity {
+    pub const fn time() -> Self {
+        Self { name: "Virtual time", dimension: Dimension::TIME, end: End::Data, from_zero: false }
+    }
+
+    pub const fn of(name: &'static str, dimension: Dimension) -> Self {
+        Self { name, dimension, end: End::Tick, from_zero: true }
+    }
+
+    /// The same, along x.
+    pub const fn along(name: &'static str, dimension: Dimension) -> Self {
+        Self { name, dimension, end: End::Air, from_zero: true }
+    }
+}
+
+/// A named set of points, SI.
+pub(super) struct Series {
+    pub label: String,
+    pub points: Vec<(f64, f64)>,
+    pub style: Style,
+}
+
+/// Upright shaded intervals of x with one name.
+pub(super) struct Band {
+    pub label: &'static str,
+    pub intervals: Vec<(f64, f64)>,
+    pub colour: Colour,
+}
+
+/// A level line across the plot with its text on it.
+pub(super) struct Reference {
+    pub label: String,
+    pub y: f64,
+}
+
+pub(super) type Colour = (u8, u8, u8);
+
+/// Okabe and Ito's colours, told apart by every common kind of colour vision.
+pub(super) mod palette {
+    use super::Colour;
+
+    pub const BLACK: Colour = (0, 0, 0);
+    pub const BLUE: Colour = (0, 114, 178);
+    pub const VERMILION: Colour = (213, 94, 0);
+    pub const GREEN: Colour = (0, 158, 115);
+    pub const PURPLE: Colour = (204, 121, 167);
+    pub const SKY: Colour = (86, 180, 233);
+    pub const CONTACT: Colour = (226, 232, 238);
+    pub const LIMIT: Colour = (250, 226, 196);
+    pub const CLOUD: Colour = (176, 190, 200);
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Style {
+    pub colour: Colour,
+    /// None: markers only.
+    pub line: Option<Line>,
+    pub marker: Option<Marker>,
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct Line {
+    /// Reference pixels (96 to the inch).
+    pub width: f64,
+    /// Lengths drawn and left out, in turn, reference pixels; empty: solid.
+    pub dash: &'static [f64],
+}
+
+#[derive(Clone, Copy)]
+pub(super) enum Marker {
+    Disc(f64),
+    Ring(f64),
+}
+
+impl Style {
+    pub const fn line(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
+        Self { colour, line: Some(Line { width, dash }), marker: None }
+    }
+
+    pub const fn marker(colour: Colour, marker: Marker) -> Self {
+        Self { colour, line: None, marker: Some(marker) }
+    }
+}
+
+pub(super) const SOLID: &[f64] = &[];
+pub(super) const DASHED: &[f64] = &[9.0, 4.0];
+pub(super) const DOTTED: &[f64] = &[2.0, 3.0];
+pub(super) const DASH_DOT: &[f64] = &[10.0, 3.5, 2.0, 3.5];
+pub(super) const LONG: &[f64] = &[16.0, 4.0];

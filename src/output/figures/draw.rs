@@ -1,0 +1,265 @@
+//! Lays a [`Chart`] out on a sheet: legend above, axes left and below, nothing inside the frame but data. In: a chart
+//! in SI. Out: PNG bytes.
+
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::axis::Axis;
+use super::canvas::{self, Anchor, Canvas, Lettering, Point};
+use super::chart::{Chart, Colour, Line, Marker, Series, palette};
+
+const WIDTH: u32 = 720;
+const HEIGHT: u32 = 430;
+/// The frame, reference pixels; its top moves down where the legend takes two lines.
+const LEFT: f64 = 78.0;
+const RIGHT: f64 = 700.0;
+const BOTTOM: f64 = 372.0;
+const LEGEND_TOP: f64 = 20.0;
+const LEGEND_LINE: f64 = 21.0;
+const INK: Colour = (40, 40, 40);
+const GRID: Colour = (232, 232, 232);
+const LIMIT_INK: Colour = (150, 20, 20);
+/// Marks closer than this are thinned, reference pixels: half a pixel of the picture is not seen.
+const THINNEST: f64 = 0.5;
+
+/// The chart as a PNG.
+pub(super) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
+    let xs = chart.series.iter().flat_map(|series| series.points.iter().map(|point| point.0));
+    let ys = chart.series.iter().flat_map(|series| series.points.iter().map(|point| point.1));
+    let references = chart.references.iter().map(|reference| reference.y);
+    let x = Axis::over(&chart.x, xs, 8);
+    let y = Axis::over(&chart.y, ys.chain(references), 6);
+    canvas::png(WIDTH, HEIGHT, |canvas| {
+        let entries = legend_entries(chart);
+        let rows = legend_rows(canvas, &entries)?;
+        #[expect(clippy::cast_precision_loss, reason = "a legend has a few lines")]
+        let top = LEGEND_TOP + LEGEND_LINE * rows.len().max(1) as f64 - 2.0;
+        let sheet = Sheet { canvas, x: &x, y: &y, top };
+        sheet.bands(chart)?;
+        sheet.grid()?;
+        for series in &chart.series {
+            sheet.series(series)?;
+        }
+        sheet.references(chart)?;
+        sheet.axes()?;
+        for (index, row) in rows.iter().enumerate() {
+            #[expect(clippy::cast_precision_loss, reason = "a legend has a few lines")]
+            let at = LEGEND_TOP + LEGEND_LINE * index as f64 - 4.0;
+            for (entry, left) in row {
+                legend_entry(canvas, entry, (*left, at))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+struct Sheet<'a, 'b> {
+    canvas: &'a Canvas<'b>,
+    x: &'a Axis,
+    y: &'a Axis,
+    top: f64,
+}
+
+impl Sheet<'_, '_> {
+    fn point(&self, (x, y): (f64, f64)) -> Point {
+        (LEFT + self.x.place(x) * (RIGHT - LEFT), BOTTOM - self.y.place(y) * (BOTTOM - self.top))
+    }
+
+    fn bands(&self, chart: &Chart) -> Result<(), String> {
+        for band in &chart.bands {
+            for (from, to) in &band.intervals {
+                let left = self.point((*from, 0.0)).0.clamp(LEFT, RIGHT);
+                // A blow of one step stays visible.
+                let right = self.point((*to, 0.0)).0.max(left + 0.75).clamp(LEFT, RIGHT);
+                self.canvas.rectangle((left, self.top), (right, BOTTOM), band.colour)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn grid(&self) -> Result<(), String> {
+        for (tick, _) in &self.y.ticks {
+            let y = BOTTOM - (tick - self.y.low) / (self.y.high - self.y.low) * (BOTTOM - self.top);
+            let zero_inside = *tick == 0.0 && self.y.low < 0.0;
+            let (colour, width) = if zero_inside { ((150, 150, 150), 0.9) } else { (GRID, 0.7) };
+            self.canvas.polyline(&[(LEFT, y), (RIGHT, y)], Line { width, dash: &[] }, colour)?;
+        }
+        Ok(())
+    }
+
+    fn axes(&self) -> Result<(), String> {
+        let line = |from, to| self.canvas.polyline(&[from, to], Line { width: 1.1, dash: &[] }, INK);
+        line((LEFT, self.top), (LEFT, BOTTOM))?;
+        line((LEFT, BOTTOM), (RIGHT, BOTTOM))?;
+        for (tick, label) in &self.y.ticks {
+            let y = BOTTOM - (tick - self.y.low) / (self.y.high - self.y.low) * (BOTTOM - self.top);
+            line((LEFT - 5.0, y), (LEFT, y))?;
+            self.canvas.text(label, (LEFT - 9.0, y), &lettering(13.0, HPos::Right, VPos::Center))?;
+        }
+        for (tick, label) in &self.x.ticks {
+            let x = LEFT + (tick - self.x.low) / (self.x.high - self.x.low) * (RIGHT - LEFT);
+            line((x, BOTTOM), (x, BOTTOM + 5.0))?;
+            self.canvas.text(label, (x, BOTTOM + 9.0), &lettering(13.0, HPos::Center, VPos::Top))?;
+        }
+        let middle = (0.5 * (LEFT + RIGHT), 0.5 * (self.top + BOTTOM));
+        self.canvas.text(&self.x.title, (middle.0, BOTTOM + 30.0), &lettering(14.0, HPos::Center, VPos::Top))?;
+        let upright = Lettering { upright: true, ..lettering(14.0, HPos::Center, VPos::Top) };
+        self.canvas.text(&self.y.title, (10.0, middle.1), &upright)
+    }
+
+    fn series(&self, series: &Series) -> Result<(), String> {
+        let points: Vec<Point> =
+            series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).map(|point| self.point(*point)).collect();
+        let points = thinned(&points, THINNEST);
+        if let Some(line) = series.style.line {
+            self.canvas.polyline(&points, line, series.style.colour)?;
+        }
+        if let Some(marker) = series.style.marker {
+            for point in &points {
+                mark(self.canvas, marker, *point, series.style.colour)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Each line with its words where they cover the least data.
+    fn references(&self, chart: &Chart) -> Result<(), String> {
+        for reference in &chart.references {
+            let (_, y) = self.point((0.0, reference.y));
+            let line = Line { width: 1.3, dash: &[6.0, 4.0] };
+            self.canvas.polyline(&[(LEFT, y), (RIGHT, y)], line, LIMIT_INK)?;
+            let style = Lettering { colour: LIMIT_INK, ..lettering(12.0, HPos::Left, VPos::Bottom) };
+            let width = self.canvas.width(&reference.label, &style)?;
+            let bottom = if y - 20.0 < self.top { y + 18.0 } else { y - 3.0 };
+            let covered = |left: &f64| {
+                let inside = |(x, y): Point| (*left..left + width).contains(&x) && (bottom - 16.0..bottom).contains(&y);
+                chart.series.iter().flat_map(|series| &series.points).filter(|point| inside(self.point(**point))).count()
+            };
+            let last = (RIGHT - width - 8.0).max(LEFT + 8.0);
+            let places = [last, 0.5 * (last + LEFT + 8.0), LEFT + 8.0];
+            let left = places.into_iter().min_by_key(covered).unwrap_or(last);
+            self.canvas.text(&reference.label, (left, bottom), &style)?;
+        }
+        Ok(())
+    }
+}
+
+fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {
+    Lettering { size, bold: false, colour: INK, anchor: Anchor { horizontal, vertical }, upright: false }
+}
+
+fn mark(canvas: &Canvas<'_>, marker: Marker, at: Point, colour: Colour) -> Result<(), String> {
+    match marker {
+        Marker::Disc(radius) => canvas.disc(at, radius, colour),
+        Marker::Ring(radius) => {
+            canvas.disc(at, radius, colour)?;
+            canvas.disc(at, radius - 1.3, (255, 255, 255))
+        }
+    }
+}
+
+/// The points less those nearer than `least` to the one kept before, except where the line turns back: a short blow
+/// or a sharp peak is never lost. The last point always stays.
+fn thinned(points: &[Point], least: f64) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    for (index, point) in points.iter().enumerate() {
+        let Some(last) = kept.last() else {
+            kept.push(*point);
+            continue;
+        };
+        let far = (point.0 - last.0).hypot(point.1 - last.1) >= least;
+        let turns = points.get(index + 1).is_none_or(|next| {
+            let before = points[index - 1];
+            (point.1 - before.1) * (next.1 - point.1) < 0.0
+        }) && point != last;
+        if far || turns {
+            kept.push(*point);
+        }
+    }
+    kept
+}
+
+enum Entry<'a> {
+    Series(&'a Series),
+    Band(&'static str, Colour),
+}
+
+impl Entry<'_> {
+    fn sample(&self) -> f64 {
+        match self {
+            Self::Series(series) if series.style.line.is_some() => SAMPLE,
+            Self::Series(_) => 10.0,
+            Self::Band(..) => 18.0,
+        }
+    }
+
+    fn label(&self) -> &str {
+        match self {
+            Self::Series(series) => &series.label,
+            Self::Band(label, _) => label,
+        }
+    }
+}
+
+fn legend_entries(chart: &Chart) -> Vec<Entry<'_>> {
+    let series = chart.series.iter().filter(|series| !series.label.is_empty()).map(Entry::Series);
+    let bands = chart.bands.iter().filter(|band| !band.intervals.is_empty()).map(|band| Entry::Band(band.label, band.colour));
+    series.chain(bands).collect()
+}
+
+/// Length of a line's sample.
+const SAMPLE: f64 = 30.0;
+/// Space before the next entry.
+const GAP: f64 = 18.0;
+/// From a sample to its words.
+const NEAR: f64 = 7.0;
+
+/// Entries with the left end of each, broken into lines that fit the frame.
+fn legend_rows<'a, 'b>(canvas: &Canvas<'_>, entries: &'b [Entry<'a>]) -> Result<Vec<Vec<(&'b Entry<'a>, f64)>>, String> {
+    let mut rows: Vec<Vec<(&Entry<'_>, f64)>> = vec![Vec::new()];
+    let mut left = LEFT;
+    for entry in entries {
+        let width = entry.sample() + NEAR + canvas.width(entry.label(), &lettering(13.0, HPos::Left, VPos::Center))?;
+        if left + width > RIGHT && left > LEFT {
+            rows.push(Vec::new());
+            left = LEFT;
+        }
+        if let Some(row) = rows.last_mut() {
+            row.push((entry, left));
+        }
+        left += width + GAP;
+    }
+    Ok(rows)
+}
+
+fn legend_entry(canvas: &Canvas<'_>, entry: &Entry<'_>, (left, middle): Point) -> Result<(), String> {
+    let sample = entry.sample();
+    match entry {
+        Entry::Series(series) => {
+            if let Some(line) = series.style.line {
+                canvas.polyline(&[(left, middle), (left + sample, middle)], line, series.style.colour)?;
+            }
+            if let Some(marker) = series.style.marker {
+                mark(canvas, marker, (left + 0.5 * sample, middle), series.style.colour)?;
+            }
+        }
+        Entry::Band(_, colour) => {
+            canvas.rectangle((left, middle - 6.0), (left + sample, middle + 6.0), palette::CLOUD)?;
+            canvas.rectangle((left + 0.8, middle - 5.2), (left + sample - 0.8, middle + 5.2), *colour)?;
+        }
+    }
+    canvas.text(entry.label(), (left + sample + NEAR, middle), &lettering(13.0, HPos::Left, VPos::Center))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_ends_and_turning_points() {
+        let mut points: Vec<Point> = (0..100).map(|i| (f64::from(i) * 0.01, 0.0)).collect();
+        points[40].1 = 0.3;
+        let kept = thinned(&points, 0.5);
+        assert!(kept.len() < 12);
+        assert!(kept.contains(&(0.4, 0.3)) && kept.first() == points.first() && kept.last() == points.last());
+    }
+}

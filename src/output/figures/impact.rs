@@ -1,0 +1,134 @@
+//! Charts of an impact (paper, Figs. 9–11 and 16). In: the steps of one impact. Out: [`Chart`]s in SI.
+
+use super::super::number;
+use super::chart::{Band, Chart, DASH_DOT, DASHED, DOTTED, LONG, Quantity, Reference, SOLID, Series, Style, palette};
+use crate::formula::ProcedureId;
+use crate::output::Run;
+use crate::quantity::Dimension;
+use crate::record::{ImpactHistory, ImpactStep, StepState};
+use crate::verdict::Bound;
+
+/// Displacement of structure and striker, contact shaded, required bounds as lines.
+pub(super) fn displacement(history: &ImpactHistory, limits: &[Reference]) -> Chart {
+    let mut chart = against_time(history, Quantity::of("Displacement", Dimension::LENGTH));
+    chart.series = vec![
+        series(history, "structure X", |step| step.command, Style::line(palette::BLUE, 2.0, SOLID)),
+        series(history, "striker Xs", |step| step.striker_displacement, Style::line(palette::VERMILION, 2.0, DASHED)),
+    ];
+    chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
+    chart
+}
+
+pub(super) fn velocity(history: &ImpactHistory) -> Chart {
+    let mut chart = against_time(history, Quantity::of("Velocity", Dimension::VELOCITY));
+    chart.series = vec![
+        series(history, "structure", |step| step.velocity, Style::line(palette::BLUE, 1.6, SOLID)),
+        series(history, "striker", |step| step.striker_velocity, Style::line(palette::VERMILION, 2.0, DASHED)),
+    ];
+    chart
+}
+
+pub(super) fn striker_velocity(history: &ImpactHistory) -> Chart {
+    let mut chart = against_time(history, Quantity::of("Striker velocity", Dimension::VELOCITY));
+    chart.series = vec![series(history, "striker", |step| step.striker_velocity, Style::line(palette::VERMILION, 2.0, SOLID))];
+    chart
+}
+
+/// The contact force is a mean over its step, so that it is drawn as steps.
+pub(super) fn contact_force(history: &ImpactHistory, limits: &[Reference]) -> Chart {
+    let mut chart = against_time(history, Quantity::of("Contact force", Dimension::FORCE));
+    let points = history
+        .steps
+        .windows(2)
+        .flat_map(|pair| [(pair[0].time, pair[1].contact_force), (pair[1].time, pair[1].contact_force)])
+        .collect();
+    chart.series = vec![Series { label: "contact force F".to_owned(), points, style: Style::line(palette::BLUE, 1.5, SOLID) }];
+    chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
+    chart
+}
+
+pub(super) fn force_displacement(history: &ImpactHistory) -> Chart {
+    let points = history.steps.iter().map(|step| (step.command, step.restoring_force)).collect();
+    Chart {
+        x: Quantity::along("Displacement X", Dimension::LENGTH),
+        y: Quantity::of("Restoring force R", Dimension::FORCE),
+        bands: Vec::new(),
+        series: vec![Series { label: "measured R".to_owned(), points, style: Style::line(palette::BLUE, 1.8, SOLID) }],
+        references: Vec::new(),
+    }
+}
+
+/// The parts of the balance and their total; damping and contact loss only where there is any.
+pub(super) fn energy(history: &ImpactHistory) -> Chart {
+    let mut chart = against_time(history, Quantity::of("Energy", Dimension::ENERGY));
+    let parts: [(&str, fn(&ImpactStep) -> f64, Style); 5] = [
+        ("striker", |step| step.energies.striker, Style::line(palette::VERMILION, 2.0, DASHED)),
+        ("structure", |step| step.energies.structure, Style::line(palette::SKY, 1.6, SOLID)),
+        ("restoring", |step| step.energies.restoring, Style::line(palette::BLUE, 2.0, LONG)),
+        ("damping", |step| step.energies.damping, Style::line(palette::PURPLE, 2.0, DASH_DOT)),
+        ("contact loss", |step| step.energies.contact_loss, Style::line(palette::GREEN, 2.2, DOTTED)),
+    ];
+    let drawn = parts.into_iter().filter(|(_, read, _)| history.steps.iter().any(|step| read(step) != 0.0));
+    chart.series = drawn.map(|(label, read, style)| series(history, label, read, style)).collect();
+    let total = |step: &ImpactStep| {
+        let e = step.energies;
+        e.striker + e.structure + e.restoring + e.damping + e.contact_loss
+    };
+    chart.series.push(series(history, "total", total, Style::line(palette::BLACK, 1.2, SOLID)));
+    chart
+}
+
+/// Bounds that a requirement sets on a result of one procedure, for that result's figure.
+pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> Vec<Reference> {
+    let mut lines = Vec::new();
+    for (requirement, outcome) in run.plan.requirements.iter().zip(&run.assessment.requirements) {
+        for (condition, held) in requirement.conditions.iter().zip(&outcome.conditions) {
+            if !condition.value.as_result().is_some_and(|r| r.procedure == procedure && r.name == result) {
+                continue;
+            }
+            let mut add = |sign: &str, y: f64| {
+                lines.push(Reference {
+                    label: format!("{}: {sign} {}", requirement.label, number::text(y, condition.dimension)),
+                    y,
+                });
+            };
+            match held.bound {
+                Some(Bound::Compare { comparison, limit }) => add(number::comparison_sign(comparison), limit),
+                Some(Bound::Within { target, tolerance }) => {
+                    add("≥", target - tolerance);
+                    add("≤", target + tolerance);
+                }
+                None => {}
+            }
+        }
+    }
+    lines
+}
+
+/// A chart over virtual time with the contact shaded, still without series.
+fn against_time(history: &ImpactHistory, y: Quantity) -> Chart {
+    let band = |label, state, colour| Band { label, intervals: periods(&history.steps, state), colour };
+    Chart {
+        x: Quantity::time(),
+        y,
+        bands: vec![band("contact", StepState::Contact, palette::CONTACT), band("limit force", StepState::Limit, palette::LIMIT)],
+        series: Vec::new(),
+        references: Vec::new(),
+    }
+}
+
+/// The intervals of time spent in `state`: a step's state holds from the step before to it.
+fn periods(steps: &[ImpactStep], state: StepState) -> Vec<(f64, f64)> {
+    let mut periods: Vec<(f64, f64)> = Vec::new();
+    for pair in steps.windows(2).filter(|pair| pair[1].state == state) {
+        match periods.last_mut() {
+            Some(last) if last.1 == pair[0].time => last.1 = pair[1].time,
+            _ => periods.push((pair[0].time, pair[1].time)),
+        }
+    }
+    periods
+}
+
+fn series(history: &ImpactHistory, label: &str, read: fn(&ImpactStep) -> f64, style: Style) -> Series {
+    Series { label: label.to_owned(), points: history.steps.iter().map(|step| (step.time, read(step))).collect(), style }
+}

@@ -1,0 +1,80 @@
+//! Figures: what the plan's report asks for, drawn as PNG at 192 dpi. In: a run. Out: bytes with the caption the
+//! certificate prints below them. Knows no HTML.
+
+mod axis;
+mod canvas;
+mod chart;
+mod draw;
+mod identification;
+mod impact;
+
+use rayon::prelude::*;
+
+use super::{OutputError, Run};
+use crate::plan::{Figure, FigureKind};
+use crate::record::{History, ProcedureRecord};
+use chart::Chart;
+
+/// A figure, drawn.
+pub(super) struct Drawn {
+    /// `figures/NAME_FIGURE.png`
+    pub path: String,
+    pub png: Vec<u8>,
+    /// What it shows, in one sentence.
+    pub caption: String,
+}
+
+/// Every figure of the report that this record can draw, in the report's order. A procedure that was stopped before
+/// it recorded anything has no figure.
+pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
+    run.plan.report.figures.par_iter().filter_map(|figure| one(run, *figure)).collect()
+}
+
+fn one(run: &Run<'_>, figure: Figure) -> Option<Result<Drawn, OutputError>> {
+    let procedure = run.record.procedures.get(figure.procedure.0)?;
+    let (chart, caption) = chart_of(run, procedure, figure)?;
+    Some(match draw::png(&chart) {
+        Ok(png) => Ok(Drawn { path: format!("figures/{}_{}.png", procedure.name, figure.kind.name()), png, caption }),
+        Err(reason) => Err(OutputError::Figure { figure: figure.kind.name(), procedure: procedure.name.clone(), reason }),
+    })
+}
+
+/// The chart and its caption; None where the procedure does not draw this figure or has no steps.
+fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Option<(Chart, String)> {
+    let name = &procedure.name;
+    Some(match (&procedure.history, figure.kind) {
+        (History::Impact(history), _) if history.steps.is_empty() => return None,
+        (History::Impact(history), FigureKind::Displacement) => (
+            impact::displacement(history, &impact::limits_on(run, figure.procedure, "max_displacement")),
+            format!("{name}: displacement of the structure and of the striker against virtual time."),
+        ),
+        (History::Impact(history), FigureKind::Velocity) => {
+            (impact::velocity(history), format!("{name}: velocity of the structure and of the striker against virtual time."))
+        }
+        (History::Impact(history), FigureKind::StrikerVelocity) => (
+            impact::striker_velocity(history),
+            format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
+        ),
+        (History::Impact(history), FigureKind::ContactForce) => (
+            impact::contact_force(history, &impact::limits_on(run, figure.procedure, "max_contact_force")),
+            format!("{name}: contact force, mean over each step, against virtual time."),
+        ),
+        (History::Impact(history), FigureKind::ForceDisplacement) => (
+            impact::force_displacement(history),
+            format!("{name}: restoring force against computed displacement; the area below is the absorbed energy."),
+        ),
+        (History::Impact(history), FigureKind::Energy) => (
+            impact::energy(history),
+            format!("{name}: where the striker's energy went; the total of the parts stays level where the balance closes."),
+        ),
+        (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
+            identification::force_displacement(history),
+            format!("{name}: measured restoring force against displacement, with the least-squares line."),
+        ),
+        (History::Sweep(history), FigureKind::DampingFit) if history.steps.iter().any(|step| step.steady) => (
+            identification::damping_fit(history),
+            format!("{name}: damping force against velocity: steady readings, their mean at each velocity, and the fitted line."),
+        ),
+        _ => return None,
+    })
+}

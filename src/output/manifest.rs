@@ -1,0 +1,36 @@
+//! The manifest: SHA-256 of every file, in the format that `sha256sum --check` reads. In: the files of a run folder.
+//! Out: `manifest.sha256`, itself not listed.
+
+use std::fmt::Write as _;
+
+use sha2::{Digest as _, Sha256};
+
+use super::OutputFile;
+
+/// The manifest of `files`, in order of path.
+pub(super) fn of(files: &[OutputFile]) -> OutputFile {
+    let mut lines: Vec<(&str, String)> = files.iter().map(|file| (file.path.as_str(), sha256(&file.bytes))).collect();
+    lines.sort();
+    let text: String = lines.into_iter().map(|(path, hash)| format!("{hash}  {path}\n")).collect();
+    OutputFile { path: "manifest.sha256".to_owned(), bytes: text.into_bytes() }
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_every_file_by_path_with_the_known_digest_of_abc() {
+        let file = |path: &str| OutputFile { path: path.to_owned(), bytes: b"abc".to_vec() };
+        let text = String::from_utf8(of(&[file("b"), file("a")]).bytes).unwrap();
+        let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(text, format!("{digest}  a\n{digest}  b\n"));
+    }
+}

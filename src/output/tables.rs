@@ -1,0 +1,137 @@
+//! Tables: one row a step, SI, the column names of the language. In: the record. Out: CSV with shortest round-trip
+//! numbers and Parquet (zstd), both from one Polars frame. Knows nothing of units for people.
+
+use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
+
+use super::{OutputError, OutputFile, Run, wants};
+use crate::plan::Format;
+use crate::record::{History, ImpactStep, ProcedureRecord, RampStep, SweepStep};
+
+/// The tables of every procedure that recorded steps, in the formats the plan asks for.
+pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let mut files = Vec::new();
+    for procedure in &run.record.procedures {
+        let failed = |error: PolarsError| OutputError::Table { procedure: procedure.name.clone(), reason: error.to_string() };
+        let Some(mut frame) = frame(procedure).map_err(failed)? else { continue };
+        if wants(run.plan, Format::Csv) {
+            files.push(OutputFile { path: format!("tables/{}.csv", procedure.name), bytes: csv(&mut frame).map_err(failed)? });
+        }
+        if wants(run.plan, Format::Parquet) {
+            let bytes = parquet(&mut frame).map_err(failed)?;
+            files.push(OutputFile { path: format!("tables/{}.parquet", procedure.name), bytes });
+        }
+    }
+    Ok(files)
+}
+
+fn csv(frame: &mut DataFrame) -> Result<Vec<u8>, PolarsError> {
+    let mut bytes = Vec::new();
+    CsvWriter::new(&mut bytes).include_header(true).finish(frame)?;
+    Ok(bytes)
+}
+
+fn parquet(frame: &mut DataFrame) -> Result<Vec<u8>, PolarsError> {
+    let mut bytes = Vec::new();
+    ParquetWriter::new(&mut bytes).with_compression(ParquetCompression::Zstd(None)).finish(frame)?;
+    Ok(bytes)
+}
+
+/// The frame of a procedure; None where it records no steps.
+fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> {
+    let (height, columns) = match &procedure.history {
+        History::Ramp(history) => (history.steps.len(), ramp(&history.steps)),
+        History::Move(steps) => (steps.len(), ramp(steps)),
+        History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
+        History::Impact(history) => (history.steps.len(), impact(&history.steps)),
+        History::Inspect => return Ok(None),
+    };
+    DataFrame::new(height, columns).map(Some)
+}
+
+fn impact(steps: &[ImpactStep]) -> Vec<Column> {
+    let of = |name, read: fn(&ImpactStep) -> f64| numbers(name, steps, read);
+    vec![
+        integers("step", steps, |step| step.step),
+        of("time_s", |step| step.time),
+        of("wall_time_s", |step| step.wall_time),
+        texts("state", steps, |step| step.state.name()),
+        of("command_m", |step| step.command),
+        of("displacement_m", |step| step.displacement),
+        of("velocity_m_per_s", |step| step.velocity),
+        of("acceleration_m_per_s2", |step| step.acceleration),
+        of("restoring_force_n", |step| step.restoring_force),
+        of("contact_force_n", |step| step.contact_force),
+        of("striker_displacement_m", |step| step.striker_displacement),
+        of("striker_velocity_m_per_s", |step| step.striker_velocity),
+        of("tangent_stiffness_n_per_m", |step| step.tangent_stiffness),
+        of("indentation_m", |step| step.indentation),
+        of("striker_energy_j", |step| step.energies.striker),
+        of("structure_energy_j", |step| step.energies.structure),
+        of("restoring_energy_j", |step| step.energies.restoring),
+        of("damping_energy_j", |step| step.energies.damping),
+        of("contact_loss_j", |step| step.energies.contact_loss),
+        of("indentation_energy_j", |step| step.energies.indentation),
+        of("energy_error_j", |step| step.energies.error),
+    ]
+}
+
+fn ramp(steps: &[RampStep]) -> Vec<Column> {
+    let of = |name, read: fn(&RampStep) -> f64| numbers(name, steps, read);
+    let tangents: Vec<Option<f64>> = steps.iter().map(|step| step.tangent_stiffness).collect();
+    let returning: Vec<bool> = steps.iter().map(|step| step.returning).collect();
+    vec![
+        integers("step", steps, |step| step.step),
+        of("wall_time_s", |step| step.wall_time),
+        of("command_m", |step| step.command),
+        of("displacement_m", |step| step.displacement),
+        of("restoring_force_n", |step| step.restoring_force),
+        of("force_scatter_n", |step| step.force_scatter),
+        of("relaxation_n", |step| step.relaxation),
+        Column::new("tangent_stiffness_n_per_m".into(), tangents),
+        Column::new("returning".into(), returning),
+    ]
+}
+
+fn sweep(steps: &[SweepStep]) -> Vec<Column> {
+    let of = |name, read: fn(&SweepStep) -> f64| numbers(name, steps, read);
+    let steady: Vec<bool> = steps.iter().map(|step| step.steady).collect();
+    vec![
+        integers("step", steps, |step| step.step),
+        of("wall_time_s", |step| step.wall_time),
+        of("velocity_m_per_s", |step| step.velocity),
+        of("displacement_m", |step| step.displacement),
+        of("restoring_force_n", |step| step.restoring_force),
+        of("damping_force_n", |step| step.damping_force),
+        Column::new("steady".into(), steady),
+    ]
+}
+
+fn numbers<T>(name: &str, steps: &[T], read: fn(&T) -> f64) -> Column {
+    Column::new(name.into(), steps.iter().map(read).collect::<Vec<f64>>())
+}
+
+fn integers<T>(name: &str, steps: &[T], read: fn(&T) -> u64) -> Column {
+    Column::new(name.into(), steps.iter().map(read).collect::<Vec<u64>>())
+}
+
+fn texts<T>(name: &str, steps: &[T], read: fn(&T) -> &'static str) -> Column {
+    Column::new(name.into(), steps.iter().map(|step| inert(read(step))).collect::<Vec<String>>())
+}
+
+/// A text cell that no spreadsheet takes for a formula: one that starts like a formula gets a leading `'`.
+fn inert(cell: &str) -> String {
+    if cell.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{cell}") } else { cell.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::inert;
+
+    #[test]
+    fn a_cell_that_starts_like_a_formula_becomes_text() {
+        for hostile in ["=1+1", "+1", "-1", "@sum", "\tx", "\rx"] {
+            assert_eq!(inert(hostile), format!("'{hostile}"));
+        }
+        assert_eq!(inert("contact"), "contact");
+    }
+}

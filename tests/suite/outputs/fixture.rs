@@ -1,0 +1,375 @@
+//! A finished run made by hand: a ramp, a sweep and a rigid impact by the paper's eqs. 2–5 on a linear structure, so
+//! that outputs are tested without a rig.
+
+use psd::formula::{Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue};
+use psd::mechanics::contact::StepState;
+use psd::mechanics::energy::Energies;
+use psd::mechanics::identification::LineFit;
+use psd::output::{Provenance, Run};
+use psd::plan::{
+    Behaviour, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Interval, Limits, Link,
+    Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen, StiffnessRamp, Striker,
+    Test, Until, VirtualLink,
+};
+use psd::quantity::Dimension;
+use psd::record::{
+    Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome, ProcedureRecord, RampHistory, RampStep, Record,
+    SweepHistory, SweepStep,
+};
+use psd::rig::Identity;
+use psd::verdict::{Assessment, Bound, ConditionOutcome, RequirementOutcome, Verdict};
+
+/// Owns what a [`Run`] borrows.
+pub struct Finished {
+    pub plan: Plan,
+    pub record: Record,
+    pub assessment: Assessment,
+    pub provenance: Provenance,
+}
+
+impl Finished {
+    pub fn run(&self) -> Run<'_> {
+        Run { plan: &self.plan, record: &self.record, assessment: &self.assessment, provenance: &self.provenance }
+    }
+}
+
+const MASS: f64 = 1.0;
+const STRIKER_MASS: f64 = 10.0;
+const STIFFNESS: f64 = 327.65;
+const TIME_STEP: f64 = 0.001;
+
+/// The paper's Example 1 at a step of 1 ms, with everything a report can show.
+pub fn finished() -> Finished {
+    let steps = impact_steps();
+    let largest = steps.iter().map(|step| step.command).fold(0.0, f64::max);
+    let peak = steps.iter().map(|step| step.contact_force).fold(0.0, f64::max);
+    let impulse = steps.iter().map(|step| step.contact_force * TIME_STEP).sum();
+    let error = steps.last().map_or(0.0, |step| step.energies.error) / 5.0;
+    let stop = steps.iter().find(|step| step.striker_velocity <= 0.0).map(|step| step.time);
+    let number =
+        |name, value, uncertainty, dimension| NamedResult { name, value: ResultValue::Number { value, uncertainty }, dimension };
+    let ramp = ProcedureRecord {
+        name: "k0".into(),
+        kind: "stiffness ramp",
+        complete: true,
+        inputs: vec![("pause", Estimate { value: 2.0, uncertainty: None }, Dimension::TIME)],
+        results: vec![
+            number("stiffness", Some(327.72), Some(0.41), Dimension::STIFFNESS),
+            number("intercept_force", Some(-0.012), Some(0.035), Dimension::FORCE),
+            number("r_squared", Some(0.999_98), None, Dimension::NUMBER),
+        ],
+        history: History::Ramp(RampHistory { steps: ramp_steps(), fit: Some(line(327.72, 0.41, -0.012, 0.035)) }),
+    };
+    let sweep = ProcedureRecord {
+        name: "c".into(),
+        kind: "damping sweep",
+        complete: true,
+        inputs: vec![("stiffness", Estimate { value: 327.72, uncertainty: Some(0.41) }, Dimension::STIFFNESS)],
+        results: vec![
+            number("damping", Some(4.02), Some(0.08), Dimension::DAMPING),
+            number("coulomb_force", Some(0.31), Some(0.02), Dimension::FORCE),
+        ],
+        history: History::Sweep(SweepHistory { steps: sweep_steps(), fit: Some(line(4.02, 0.08, 0.31, 0.02)) }),
+    };
+    let hit = ProcedureRecord {
+        name: "hit".into(),
+        kind: "impact",
+        complete: true,
+        inputs: vec![
+            ("mass", Estimate { value: MASS, uncertainty: None }, Dimension::MASS),
+            ("stiffness", Estimate { value: STIFFNESS, uncertainty: Some(0.41) }, Dimension::STIFFNESS),
+            ("time_step", Estimate { value: TIME_STEP, uncertainty: None }, Dimension::TIME),
+        ],
+        results: vec![
+            number("max_displacement", Some(largest), None, Dimension::LENGTH),
+            number("stop_time", stop, None, Dimension::TIME),
+            number("max_contact_force", Some(peak), None, Dimension::FORCE),
+            number("impulse", Some(impulse), None, Dimension::IMPULSE),
+            number("contacts", Some(3.0), None, Dimension::NUMBER),
+            number("restitution", None, None, Dimension::NUMBER),
+            number("energy_error", Some(error), None, Dimension::NUMBER),
+        ],
+        history: History::Impact(ImpactHistory { steps, time_step: TIME_STEP, critical_time_step: 0.0347 }),
+    };
+    Finished {
+        plan: plan(),
+        record: Record {
+            rig: Identity {
+                name: "ideal".into(),
+                model: "virtual".into(),
+                serial: String::new(),
+                firmware: "0.1.0".into(),
+                simulated: true,
+            },
+            procedures: vec![ramp, sweep, hit],
+            events: vec![
+                event(EventKind::Remark, 31.0, "the peak contact force depends on the time step under the rigid law"),
+                event(EventKind::Inspection, 12.5, "no visible crack <b>at</b> the support"),
+            ],
+            outcome: Outcome::Completed,
+        },
+        assessment: assessment(largest, error),
+        provenance: Provenance {
+            run_id: "0123456789abcdef".into(),
+            psd_version: "0.1.0".into(),
+            plan_sha256: "ab".repeat(32),
+            date: None,
+        },
+    }
+}
+
+fn event(kind: EventKind, time: f64, text: &str) -> Event {
+    Event { time, procedure: Some("hit".into()), step: Some(20), kind, text: text.into() }
+}
+
+const fn line(slope: f64, slope_error: f64, intercept: f64, intercept_error: f64) -> LineFit {
+    LineFit { slope, slope_error, intercept, intercept_error, r_squared: 0.999_98 }
+}
+
+/// Eqs. 4 and 5 for a linear structure without damping, one row a step.
+fn impact_steps() -> Vec<ImpactStep> {
+    let (m, ms, k, dt) = (MASS, STRIKER_MASS, STIFFNESS, TIME_STEP);
+    let mut now = ImpactStep {
+        step: 0,
+        time: 0.0,
+        wall_time: 40.0,
+        state: StepState::Free,
+        command: 0.0,
+        displacement: 0.0,
+        velocity: 0.0,
+        acceleration: 0.0,
+        restoring_force: 0.0,
+        contact_force: 0.0,
+        striker_displacement: 0.0,
+        striker_velocity: 1.0,
+        tangent_stiffness: k,
+        indentation: 0.0,
+        energies: Energies { striker: 0.5 * ms, ..Energies::default() },
+    };
+    let mut steps = vec![now];
+    while now.striker_velocity > 0.0 || now.velocity > 0.0 {
+        let predicted = dt * now.velocity + 0.25 * dt * dt * now.acceleration;
+        let free = -now.restoring_force - k * predicted;
+        let mut a1 = (free - ms / dt * (now.velocity - now.striker_velocity) - 0.5 * ms * now.acceleration)
+            / (m + 0.25 * dt * dt * k + 0.5 * ms);
+        let mut v1 = now.velocity + 0.5 * dt * (now.acceleration + a1);
+        let mut vs1 = v1;
+        let mut force = ms / dt * (now.striker_velocity - vs1);
+        let mut state = StepState::Contact;
+        if now.striker_displacement < now.command || force < 0.0 {
+            a1 = free / (m + 0.25 * dt * dt * k);
+            v1 = now.velocity + 0.5 * dt * (now.acceleration + a1);
+            (vs1, force, state) = (now.striker_velocity, 0.0, StepState::Free);
+        }
+        let x1 = now.command + 0.5 * dt * (now.velocity + v1);
+        let xs1 = now.striker_displacement + 0.5 * dt * (now.striker_velocity + vs1);
+        let (dx, dxs) = (x1 - now.command, xs1 - now.striker_displacement);
+        let mut energies = Energies {
+            striker: 0.5 * ms * vs1 * vs1,
+            structure: 0.5 * m * v1 * v1,
+            restoring: now.energies.restoring + 0.5 * (now.restoring_force + k * x1) * dx,
+            contact_loss: now.energies.contact_loss + force * dxs - 0.5 * (now.contact_force + force) * dx,
+            ..Energies::default()
+        };
+        energies.error = 0.5 * ms - energies.striker - energies.structure - energies.restoring - energies.contact_loss;
+        now = ImpactStep {
+            step: now.step + 1,
+            time: now.time + dt,
+            wall_time: now.wall_time + 0.6,
+            state,
+            command: x1,
+            displacement: x1 + 1e-6 / 3.0,
+            velocity: v1,
+            acceleration: a1,
+            restoring_force: k * x1,
+            contact_force: force,
+            striker_displacement: xs1,
+            striker_velocity: vs1,
+            tangent_stiffness: k,
+            indentation: 0.0,
+            energies,
+        };
+        steps.push(now);
+    }
+    steps
+}
+
+fn ramp_steps() -> Vec<RampStep> {
+    (0..21_u32)
+        .map(|index| {
+            let x = 0.002 * f64::from(if index <= 10 { index } else { 20 - index });
+            let scatter = 0.15 * f64::from(index * 7 % 5) - 0.3;
+            RampStep {
+                step: u64::from(index),
+                wall_time: 2.0 * f64::from(index),
+                command: x,
+                displacement: x,
+                restoring_force: STIFFNESS * x + scatter,
+                force_scatter: 0.1,
+                relaxation: 0.01,
+                tangent_stiffness: (index > 0).then_some(STIFFNESS),
+                returning: index > 10,
+            }
+        })
+        .collect()
+}
+
+fn sweep_steps() -> Vec<SweepStep> {
+    let velocities = [0.005, -0.005, 0.02, -0.02, 0.05, -0.05, 0.1, -0.1];
+    (0..400_u32)
+        .map(|index| {
+            let velocity: f64 = velocities[(index / 50) as usize];
+            let scatter = 0.02 * (f64::from(index * 37 % 19) - 9.0);
+            let damping_force = 4.0 * velocity + 0.3 * velocity.signum() + 0.3 * scatter;
+            SweepStep {
+                step: u64::from(index),
+                wall_time: 50.0 + 0.02 * f64::from(index),
+                velocity,
+                displacement: 0.001,
+                restoring_force: 0.327_65 + damping_force,
+                damping_force,
+                steady: index % 50 >= 5,
+            }
+        })
+        .collect()
+}
+
+fn plan() -> Plan {
+    let constant = Formula::Constant;
+    let figure = |procedure, kind| Figure { kind, procedure: ProcedureId(procedure) };
+    let result =
+        |procedure, name| Formula::Result(ResultReference { procedure: ProcedureId(procedure), name, part: Part::Value });
+    let compare = |text: &str, value, limit, dimension| Condition {
+        text: text.into(),
+        value,
+        test: Test::Compare { comparison: Comparison::LessEqual, limit: constant(limit) },
+        dimension,
+    };
+    let procedures = vec![
+        (
+            "k0",
+            ProcedureKind::StiffnessRamp(StiffnessRamp {
+                specimen: 0,
+                displacements: (1..=10).map(|i| constant(0.002 * f64::from(i))).collect(),
+                pause: constant(2.0),
+                samples: 10,
+                repeats: 1,
+                return_path: true,
+                speed: None,
+            }),
+        ),
+        (
+            "c",
+            ProcedureKind::DampingSweep(DampingSweep {
+                specimen: 0,
+                velocities: vec![constant(0.005), constant(0.02), constant(0.05), constant(0.1)],
+                stroke: constant(0.01),
+                stiffness: result(0, "stiffness"),
+                rate: None,
+            }),
+        ),
+        (
+            "hit",
+            ProcedureKind::Impact(Impact {
+                specimen: 0,
+                striker: 0,
+                mass: constant(MASS),
+                stiffness: result(0, "stiffness"),
+                damping: constant(0.0),
+                contact: Contact::Rigid,
+                time_step: constant(TIME_STEP),
+                duration: constant(0.4),
+                until: Until::StrikerStop,
+                pause: constant(0.5),
+                max_tangent_ratio: constant(1.5),
+                inspect: vec![InspectTrigger::Every(20)],
+            }),
+        ),
+    ];
+    let mut figures = vec![figure(0, FigureKind::ForceDisplacement), figure(1, FigureKind::DampingFit)];
+    figures.extend(
+        [
+            FigureKind::Displacement,
+            FigureKind::Velocity,
+            FigureKind::StrikerVelocity,
+            FigureKind::ContactForce,
+            FigureKind::ForceDisplacement,
+            FigureKind::Energy,
+        ]
+        .map(|kind| figure(2, kind)),
+    );
+    Plan {
+        title: "Simply supported beam, midspan impact".into(),
+        particulars: vec![("standard", "In-house procedure 12".into()), ("specimen_id", "GFRP-0147".into())],
+        parameters: vec![Parameter { name: "impact_speed".into(), value: 1.0, dimension: Dimension::VELOCITY, set: true }],
+        specimens: vec![Specimen {
+            name: "beam".into(),
+            mass: MASS,
+            behaviour: Some(Behaviour::Elastic { stiffness: STIFFNESS }),
+            damping: 4.0,
+            coulomb: 0.3,
+        }],
+        strikers: vec![Striker { name: "pendulum".into(), mass: STRIKER_MASS, velocity: 1.0, gap: 0.0 }],
+        rig: RigPlan {
+            name: "rehearsal".into(),
+            link: Link::Virtual(VirtualLink { noise: 0.1, resolution: 1e-6, lag: 0.002, seed: 7, ..VirtualLink::default() }),
+            settle: Settle { band: 1e-5, force_rate: 5.0, dwell: 0.3, timeout: 10.0 },
+            sign: 1.0,
+            calibration: None,
+        },
+        limits: Limits {
+            displacement: Interval { low: -0.01, high: 0.2 },
+            force: Interval { low: f64::NEG_INFINITY, high: 12_000.0 },
+            ..Limits::NONE
+        },
+        procedures: procedures.into_iter().map(|(name, kind)| Procedure { name: name.into(), kind }).collect(),
+        requirements: vec![
+            Requirement {
+                label: "stays in travel".into(),
+                conditions: vec![compare(
+                    "hit.max_displacement <= 170 mm",
+                    result(2, "max_displacement"),
+                    0.17,
+                    Dimension::LENGTH,
+                )],
+            },
+            Requirement {
+                label: "energy closes".into(),
+                conditions: vec![compare("abs(hit.energy_error) <= 0.01", result(2, "energy_error"), 0.01, Dimension::NUMBER)],
+            },
+        ],
+        report: Report { title: None, figures, formats: Vec::new(), sign: vec!["Test engineer".into(), "Quality".into()] },
+        files: vec![
+            PlanFile {
+                name: "beam.psd".into(),
+                text: "plan \"Beam\" {}\nuse \"lib/frame.psd\"  # <script>alert(1)</script>\n".into(),
+            },
+            PlanFile { name: "lib/frame.psd".into(), text: "rig rehearsal { link = virtual }\n".into() },
+        ],
+        settings: vec![("impact_speed".into(), "1 m/s".into())],
+    }
+}
+
+fn assessment(largest: f64, error: f64) -> Assessment {
+    let outcome = |label: &str, text: &str, value: f64, limit: f64, uncertainty, dimension| RequirementOutcome {
+        label: label.into(),
+        verdict: Verdict::Pass,
+        conditions: vec![ConditionOutcome {
+            text: text.into(),
+            verdict: Verdict::Pass,
+            dimension,
+            value: Some(value),
+            uncertainty,
+            bound: Some(Bound::Compare { comparison: Comparison::LessEqual, limit }),
+            margin: Some(limit - value),
+            reason: None,
+        }],
+    };
+    Assessment {
+        verdict: Verdict::Pass,
+        requirements: vec![
+            outcome("stays in travel", "hit.max_displacement <= 170 mm", largest, 0.17, Some(0.000_2), Dimension::LENGTH),
+            outcome("energy closes", "abs(hit.energy_error) <= 0.01", error.abs(), 0.01, None, Dimension::NUMBER),
+        ],
+    }
+}
