@@ -33,7 +33,7 @@ fn write_block(text: &mut String, block: &BlockKind) {
         Naming::MaybeNamed => " [NAME]",
     };
     let _ = write!(text, "\n### `{}{naming} {{ … }}`\n\n{}.", block.words(), block.doc);
-    let _ = writeln!(text, "{}\n", if block.procedure { " It is run, in its turn." } else { "" });
+    let _ = writeln!(text, "{}\n", if block.procedure { " A procedure." } else { "" });
     let _ = writeln!(text, "| field | takes | if absent | |\n|---|---|---|---|");
     for field in block.fields.iter().filter(|field| field.available) {
         let _ = writeln!(text, "| `{}` | {} | {} | {} |", field.name, takes(field), absent(field), field.doc);

@@ -10,9 +10,9 @@ use psd::diagnostic::render::{Appearance, render_all};
 use psd::diagnostic::{Code, Severity};
 use psd::quantity::display::readable;
 use psd::record::{Outcome, Record};
-use psd::rig::virtual_rig;
-use psd::schema::{BLOCKS, FieldType, Need};
+use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
+use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, Variant};
 use psd::verdict::{Assessment, Verdict, assess};
 
 /// Where a plan's way ends, and the exit code that goes with it.
@@ -93,8 +93,8 @@ fn cases() -> Vec<Case> {
 /// How a run ended, and its verdict.
 fn play(checked: &Checked) -> Option<(Record, Assessment)> {
     let plan = checked.plan.as_ref()?;
-    let mut rig = virtual_rig(plan);
-    let record = run(plan, &mut *rig, &mut Unwatched);
+    let mut rig = VirtualRig::of_plan(plan);
+    let record = run(plan, &mut rig, &mut Unwatched);
     let assessment = assess(plan, &record);
     Some((record, assessment))
 }
@@ -189,24 +189,41 @@ fn line_ends_of_other_systems_are_tested() {
     assert_eq!(cases().iter().filter(crlf).count(), 3, "the line ends of tests/lang/*/crlf.psd were changed");
 }
 
+/// The names of the cases that leave out a required argument, also of choices inside choices.
+fn argument_cases(field: &Field) -> Vec<String> {
+    let (FieldType::Choice(variants) | FieldType::Choices(variants)) = field.ty else { return Vec::new() };
+    let available = variants.iter().filter(|variant| variant.available);
+    let of_variant = |variant: &'static Variant| {
+        let required = variant.arguments.iter().filter(|argument| argument.need == Need::Required);
+        let own = required.map(|argument| format!("e213_{}_{}", variant.name, argument.name));
+        own.chain(variant.arguments.iter().flat_map(argument_cases)).collect::<Vec<_>>()
+    };
+    available.flat_map(of_variant).collect()
+}
+
 #[test]
 fn every_required_field_and_argument_has_a_case() {
     let names: Vec<String> = cases().into_iter().map(|case| case.name).collect();
-    let mut absent = Vec::new();
+    let mut wanted = Vec::new();
     for block in BLOCKS {
         for field in block.fields.iter().filter(|field| field.available) {
             if field.need == Need::Required {
-                absent.push(format!("e209_{}_{}", block.words().replace(' ', "_"), field.name));
+                wanted.push(format!("e209_{}_{}", block.words().replace(' ', "_"), field.name));
             }
-            let (FieldType::Choice(variants) | FieldType::Choices(variants)) = field.ty else { continue };
-            for variant in variants.iter().filter(|variant| variant.available) {
-                if let Some(argument) = variant.arguments.iter().find(|argument| argument.need == Need::Required) {
-                    absent.push(format!("e213_{}_{}", variant.name, argument.name));
-                }
-            }
+            wanted.extend(argument_cases(field));
         }
     }
-    assert!(absent.len() > 10, "the schema has required fields");
-    absent.retain(|name| !names.contains(name));
-    assert!(absent.is_empty(), "no case in tests/lang/check_error for: {}", absent.join(", "));
+    assert!(wanted.len() > 25, "the schema has required fields");
+    wanted.retain(|name| !names.contains(name));
+    assert!(wanted.is_empty(), "no case in tests/lang/check_error for: {}", wanted.join(", "));
+}
+
+#[test]
+fn every_block_has_a_case_that_is_right() {
+    let cases = cases();
+    for block in BLOCKS.iter().filter(|block| block.kind != Kind::Later) {
+        let head = format!("{} ", block.words());
+        let found = cases.iter().any(|case| case.stage == "ok" && case.text.lines().any(|line| line.starts_with(&head)));
+        assert!(found, "no case in tests/lang/ok has a `{}` block", block.words());
+    }
 }
