@@ -56,7 +56,9 @@ impl<'a> DryRun<'a> {
         };
         section("What moves", self.motions());
         for procedure in &self.record.procedures {
-            if let History::Impact(history) = &procedure.history {
+            if let History::Impact(history) = &procedure.history
+                && !history.steps.is_empty()
+            {
                 section(&format!("{}, impact", procedure.name), impact(history));
             }
         }

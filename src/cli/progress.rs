@@ -22,7 +22,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// The observer of `psd run`.
 pub struct Watcher {
     /// None without a terminal.
-    style: Option<ProgressStyle>,
+    styles: Option<Styles>,
     bar: Option<ProgressBar>,
     stop: Arc<AtomicBool>,
     asking: Asking,
@@ -53,7 +53,7 @@ impl Watcher {
             (false, false, true) => Asking::NobodyNeeded,
             (false, false, false) => Asking::Nobody,
         };
-        Ok(Self { style: settings.stderr_terminal.then(|| style(settings.unicode)), bar: None, stop, asking })
+        Ok(Self { styles: settings.stderr_terminal.then(|| Styles::new(settings.unicode)), bar: None, stop, asking })
     }
 
     /// Takes the bar off the terminal.
@@ -91,7 +91,8 @@ impl Watcher {
 
 impl Observer for Watcher {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
-        let Some(style) = self.style.clone() else { return };
+        let Some(styles) = &self.styles else { return };
+        let style = if steps.is_some() { styles.counted.clone() } else { styles.endless.clone() };
         self.finish();
         let bar = ProgressBar::with_draw_target(steps, ProgressDrawTarget::stderr()).with_style(style);
         bar.set_prefix(format!("{name}, {keyword}"));
@@ -166,10 +167,21 @@ fn typed_lines() -> Receiver<String> {
     receive
 }
 
-fn style(unicode: bool) -> ProgressStyle {
-    let style = ProgressStyle::with_template("  {prefix}  {bar:28} {percent:>3} %  {msg}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    style.progress_chars(if unicode { "━╸ " } else { "=> " })
+/// How the bar looks where the number of steps is known before, and where it is not.
+struct Styles {
+    counted: ProgressStyle,
+    endless: ProgressStyle,
+}
+
+impl Styles {
+    fn new(unicode: bool) -> Self {
+        let template = |text| ProgressStyle::with_template(text).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let filled = if unicode { "━╸ " } else { "=> " };
+        Self {
+            counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
+            endless: template("  {prefix}  step {pos}  {msg}"),
+        }
+    }
 }
 
 #[cfg(test)]
