@@ -13,6 +13,10 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         .at(span, format!("expected {expected}"))
         .help(match found {
         "`}`" => "each `}` closes one `{`: take this one away, or open the block it should close".to_owned(),
+        "`use`" | "`param`" | "`let`" | "`require`" | "`and`" | "`within`" | "`of`" | "`step`" | "`between`" => {
+            format!("{found} is a word of the language: names are other words")
+        }
+        _ if expected == "a field" => "write `key = value`".to_owned(),
         _ if expected == "a value" => "a value is a number with its unit, a text, a name, a list or a range".to_owned(),
         "`<`" | "`<=`" | "`>`" | "`>=`" | "`==`" | "`!=`" if expected.contains("the end of the line") => {
             "one comparison holds two values; join two with `and`: `1 mm < x and x < 2 mm`".to_owned()

@@ -107,8 +107,9 @@ fn plan() -> impl Strategy<Value = String> {
     });
     let after = prop::sample::select(vec!["\n", " # c\n", "\n\n\n", "\n# own\n"]);
     prop::collection::vec((prop::sample::select(vec!["x", "longer_key"]), value, after), 0..6).prop_map(|fields| {
-        let lines: String = fields.iter().map(|(key, value, after)| format!(" {key} = {value}{after}")).collect();
-        let items: String = fields.iter().map(|(key, value, after)| format!("let {key} = {value} < 2{after}")).collect();
+        let lines: String = fields.iter().map(|(key, value, after)| [" ", *key, " = ", value, after].concat()).collect();
+        let items: String =
+            fields.iter().map(|(key, value, after)| ["let ", *key, " = ", value, " < 2", after].concat()).collect();
         format!("b {{\n{lines}}}\n{items}")
     })
 }
