@@ -1,1 +1,354 @@
-//! The guard.
+//! The guard: the only door of `run` to a rig. In: what a procedure wants of the rig. Out: readings, each inside every
+//! limit. Nothing beyond a limit is ever proposed, nothing is clamped, and whatever goes wrong holds the rig. It knows
+//! no procedure.
+
+use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault};
+use crate::plan::{Interval, Limits};
+
+/// A rig and what nothing may drive it past.
+pub struct Guard<'rig> {
+    rig: &'rig mut dyn Rig,
+    limits: Limits,
+    /// The last target carried out, m; at first where the rig was found.
+    commanded: Vec<f64>,
+    /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
+    settled: bool,
+}
+
+/// Readings of a traverse, all inside the limits, and what ended it early.
+#[derive(Debug)]
+pub struct Traversed {
+    pub readings: Vec<Reading>,
+    pub fault: Option<RigFault>,
+}
+
+impl<'rig> Guard<'rig> {
+    /// Reads where the rig stands.
+    ///
+    /// # Errors
+    /// It cannot be read, or stands outside a limit already.
+    pub fn new(rig: &'rig mut dyn Rig, limits: Limits) -> Result<Self, RigFault> {
+        let mut guard = Self { rig, limits, commanded: Vec::new(), settled: false };
+        guard.commanded = guard.read()?.displacement;
+        Ok(guard)
+    }
+
+    /// The last targets carried out, m.
+    #[must_use]
+    pub fn commanded(&self) -> &[f64] {
+        &self.commanded
+    }
+
+    /// Rig time, s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.rig.time()
+    }
+
+    #[must_use]
+    pub fn declared_noise(&self) -> DeclaredNoise {
+        self.rig.declared_noise()
+    }
+
+    /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the highest allowed where the plan
+    /// limits it, else the rig's own.
+    ///
+    /// # Errors
+    /// A limit stands in the way, or the rig fails.
+    pub fn move_to(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        let speed = speed.or_else(|| Some(self.limits.speed.high).filter(|high| high.is_finite()));
+        self.check_targets(targets)?;
+        for index in 0..targets.len() {
+            let (target, from) = (targets[index], self.commanded[index]);
+            // The rounding of this subtraction is not held against the plan: 0.3 − 0.2 is not quite 0.1.
+            let rounding = 4.0 * f64::EPSILON * target.abs().max(from.abs());
+            let increment = (target - from).abs();
+            let increment = if increment <= rounding { 0.0 } else { increment - rounding };
+            self.check(LimitedQuantity::Increment, self.limits.increment, increment)?;
+        }
+        if let Some(speed) = speed {
+            self.check(LimitedQuantity::Speed, self.limits.speed, speed)?;
+        }
+        self.settled = false;
+        let proposed = self.rig.propose(targets, speed);
+        self.or_hold(proposed)?;
+        let executed = self.rig.execute();
+        self.or_hold(executed)?;
+        self.commanded.copy_from_slice(targets);
+        self.settled = true;
+        Ok(())
+    }
+
+    /// The targets on the way to `targets`, in equal increments none of which is longer than the limit; the last is
+    /// `targets` itself. What the plan asks for as one move, a limited increment makes several.
+    #[must_use]
+    pub fn way_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
+        let longest = targets.iter().zip(&self.commanded).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+        let parts = (longest / self.limits.increment.high * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0);
+        // A limit of nothing allows no way at all: the one move is then refused as it should be.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 1e5")]
+        let parts = if parts <= 1e5 { parts as u32 } else { 1 };
+        let between = (1..parts).map(|part| {
+            let fraction = f64::from(part) / f64::from(parts);
+            self.commanded.iter().zip(targets).map(|(from, to)| from + (to - from) * fraction).collect()
+        });
+        between.chain(std::iter::once(targets.to_vec())).collect()
+    }
+
+    /// Stays for `seconds` of rig time.
+    ///
+    /// # Errors
+    /// The rig fails.
+    pub fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        if seconds > 0.0 {
+            let paused = self.rig.pause(seconds);
+            self.or_hold(paused)?;
+        }
+        Ok(())
+    }
+
+    /// Reads once.
+    ///
+    /// # Errors
+    /// The reading lies outside a limit or is no number, or the rig fails.
+    pub fn read(&mut self) -> Result<Reading, RigFault> {
+        let reading = self.rig.read();
+        let reading = self.or_hold(reading)?;
+        self.check_reading(&reading)?;
+        if self.settled {
+            for (measured, target) in reading.displacement.iter().zip(&self.commanded) {
+                let error = (measured - target).abs();
+                if !self.limits.tracking_error.contains(error) {
+                    return Err(self.breach(LimitedQuantity::TrackingError, self.limits.tracking_error, error));
+                }
+            }
+        }
+        Ok(reading)
+    }
+
+    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way. The limit on the increment is not for
+    /// it, since its target goes along evenly; the one on the tracking error is for settled readings.
+    pub fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Traversed {
+        let refused = |fault| Traversed { readings: Vec::new(), fault: Some(fault) };
+        let allowed =
+            self.check_targets(targets).and_then(|()| self.check(LimitedQuantity::Speed, self.limits.speed, velocity.abs()));
+        if let Err(fault) = allowed {
+            return refused(fault);
+        }
+        self.settled = false;
+        let traversed = self.rig.traverse(targets, velocity, samples);
+        match self.or_hold(traversed) {
+            Err(fault) => refused(fault),
+            Ok(mut readings) => {
+                self.commanded.copy_from_slice(targets);
+                for index in 0..readings.len() {
+                    if let Err(fault) = self.check_reading(&readings[index]) {
+                        readings.truncate(index);
+                        return Traversed { readings, fault: Some(fault) };
+                    }
+                }
+                Traversed { readings, fault: None }
+            }
+        }
+    }
+
+    /// Holds the rig if the energy error (a fraction of the input) lies outside its limit, where one is set.
+    ///
+    /// # Errors
+    /// It does.
+    pub fn check_energy_error(&mut self, fraction: f64) -> Result<(), RigFault> {
+        if !self.limits.energy_error.is_bounded() {
+            return Ok(());
+        }
+        self.check(LimitedQuantity::EnergyError, self.limits.energy_error, fraction.abs())
+    }
+
+    /// Stops all motion and keeps the load.
+    pub fn hold(&mut self) {
+        self.rig.hold();
+    }
+
+    fn check_targets(&mut self, targets: &[f64]) -> Result<(), RigFault> {
+        if targets.len() != self.commanded.len() {
+            self.hold();
+            let reason = format!("{} targets for a rig of {} degrees of freedom", targets.len(), self.commanded.len());
+            return Err(RigFault::Device(reason));
+        }
+        let limit = self.limits.displacement;
+        targets.iter().try_for_each(|target| self.check(LimitedQuantity::TargetDisplacement, limit, *target))
+    }
+
+    fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
+        let Limits { displacement, force, .. } = self.limits;
+        for value in &reading.displacement {
+            self.check(LimitedQuantity::MeasuredDisplacement, displacement, *value)?;
+        }
+        for value in &reading.force {
+            self.check(LimitedQuantity::Force, force, *value)?;
+        }
+        Ok(())
+    }
+
+    fn check(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> Result<(), RigFault> {
+        // Infinity is inside "no limit", but no place for a rig.
+        if limit.contains(value) && value.is_finite() { Ok(()) } else { Err(self.breach(quantity, limit, value)) }
+    }
+
+    fn breach(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> RigFault {
+        self.hold();
+        RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high }
+    }
+
+    fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {
+        if outcome.is_err() {
+            self.hold();
+        }
+        outcome
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::Identity;
+
+    /// Says what it is told to say, and remembers what it was asked.
+    #[derive(Default)]
+    struct Scripted {
+        displacement: f64,
+        /// Added to the displacement after a move.
+        error: f64,
+        force: f64,
+        proposed: Vec<(f64, Option<f64>)>,
+        held: bool,
+    }
+
+    impl Rig for Scripted {
+        fn identity(&self) -> Identity {
+            let nothing = String::new;
+            Identity { name: nothing(), model: nothing(), serial: nothing(), firmware: nothing(), simulated: true }
+        }
+        fn degrees_of_freedom(&self) -> usize {
+            1
+        }
+        fn time(&self) -> f64 {
+            0.0
+        }
+        fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+            self.proposed.push((targets[0], speed));
+            Ok(())
+        }
+        fn execute(&mut self) -> Result<(), RigFault> {
+            self.displacement = self.proposed.last().unwrap().0 + self.error;
+            Ok(())
+        }
+        fn pause(&mut self, _: f64) -> Result<(), RigFault> {
+            Ok(())
+        }
+        fn read(&mut self) -> Result<Reading, RigFault> {
+            Ok(Reading { time: 0.0, displacement: vec![self.displacement], force: vec![self.force] })
+        }
+        fn traverse(&mut self, _: &[f64], _: f64, samples: usize) -> Result<Vec<Reading>, RigFault> {
+            let force = |sample: usize| if sample < 2 { self.force } else { f64::NAN };
+            let reading = |sample| Reading { time: 0.0, displacement: vec![0.0], force: vec![force(sample)] };
+            Ok((0..samples).map(reading).collect())
+        }
+        fn hold(&mut self) {
+            self.held = true;
+        }
+        fn declared_noise(&self) -> DeclaredNoise {
+            DeclaredNoise::default()
+        }
+    }
+
+    const LIMITS: Limits = Limits {
+        displacement: Interval { low: -0.002, high: 0.025 },
+        force: Interval { low: -100.0, high: 100.0 },
+        speed: Interval { low: 0.0, high: 0.01 },
+        increment: Interval { low: 0.0, high: 0.001 },
+        tracking_error: Interval { low: 0.0, high: 1e-4 },
+        energy_error: Interval { low: 0.0, high: 0.05 },
+    };
+
+    fn quantity(fault: RigFault) -> LimitedQuantity {
+        match fault {
+            RigFault::LimitBreached { quantity, .. } => quantity,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// What one move breaches, having proposed nothing.
+    fn refused(target: f64, speed: Option<f64>) -> LimitedQuantity {
+        let mut rig = Scripted::default();
+        let fault = Guard::new(&mut rig, LIMITS).unwrap().move_to(&[target], speed).unwrap_err();
+        assert!(rig.proposed.is_empty(), "nothing beyond a limit is proposed");
+        assert!(rig.held);
+        quantity(fault)
+    }
+
+    #[test]
+    fn targets_increments_and_speeds_beyond_a_limit_are_never_proposed() {
+        assert_eq!(refused(-0.003, None), LimitedQuantity::TargetDisplacement);
+        assert_eq!(refused(f64::NAN, None), LimitedQuantity::TargetDisplacement);
+        assert_eq!(refused(0.0015, None), LimitedQuantity::Increment);
+        assert_eq!(refused(0.001, Some(0.02)), LimitedQuantity::Speed);
+        assert_eq!(refused(0.001, Some(f64::NAN)), LimitedQuantity::Speed);
+    }
+
+    #[test]
+    fn without_limits_a_target_that_is_no_number_still_never_passes() {
+        for target in [f64::NAN, f64::INFINITY] {
+            let mut rig = Scripted::default();
+            assert!(Guard::new(&mut rig, Limits::NONE).unwrap().move_to(&[target], None).is_err());
+            assert!(rig.held && rig.proposed.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_reading_that_is_no_number_or_beyond_a_limit_holds_the_rig() {
+        for (force, error, expected) in [
+            (f64::NAN, 0.0, LimitedQuantity::Force),
+            (101.0, 0.0, LimitedQuantity::Force),
+            (0.0, f64::NAN, LimitedQuantity::MeasuredDisplacement),
+            (0.0, 2e-4, LimitedQuantity::TrackingError),
+        ] {
+            let mut rig = Scripted { error, ..Scripted::default() };
+            let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+            guard.move_to(&[0.001], None).unwrap();
+            rig.force = force;
+            let mut guard = Guard { rig: &mut rig, limits: LIMITS, commanded: vec![0.001], settled: true };
+            assert_eq!(quantity(guard.read().unwrap_err()), expected);
+            assert!(rig.held);
+        }
+        let mut rig = Scripted { force: f64::NAN, ..Scripted::default() };
+        assert!(Guard::new(&mut rig, Limits::NONE).is_err());
+    }
+
+    #[test]
+    fn the_bound_itself_is_inside_and_rounding_of_an_increment_is_not_held_against_it() {
+        let mut rig = Scripted::default();
+        let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+        for step in 1..=25 {
+            guard.move_to(&[f64::from(step) * 0.001], Some(0.01)).unwrap();
+        }
+        assert_eq!(guard.commanded(), [0.025]);
+        assert_eq!(guard.way_to(&[0.0]).len(), 25);
+        for target in guard.way_to(&[0.0]) {
+            guard.move_to(&target, None).unwrap();
+        }
+        assert_eq!(rig.proposed.last(), Some(&(0.0, Some(0.01))), "the limit is the speed where none is asked");
+    }
+
+    #[test]
+    fn a_traverse_keeps_what_was_read_before_a_bad_reading() {
+        let mut rig = Scripted::default();
+        let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+        let traversed = guard.traverse(&[0.01], 0.01, 5);
+        assert_eq!(traversed.readings.len(), 2);
+        assert_eq!(quantity(traversed.fault.unwrap()), LimitedQuantity::Force);
+        assert_eq!(quantity(guard.traverse(&[0.01], -0.02, 5).fault.unwrap()), LimitedQuantity::Speed);
+        assert!(guard.check_energy_error(-0.05).is_ok());
+        assert_eq!(quantity(guard.check_energy_error(f64::NAN).unwrap_err()), LimitedQuantity::EnergyError);
+        assert!(rig.held);
+    }
+}

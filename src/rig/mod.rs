@@ -1,6 +1,15 @@
 //! The door to hardware. A [`Rig`] moves actuators to absolute targets and reads displacement and force, one entry a
 //! degree of freedom. A virtual rig and a real one are the same to `run`, which drives them only through the guard.
 
+mod actuator;
+mod guard;
+mod load_cell;
+mod settling;
+mod virtual_rig;
+
+pub use guard::{Guard, Traversed};
+pub use virtual_rig::{OWN_SPEED, VirtualRig};
+
 /// Who the rig says it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {

@@ -1,8 +1,28 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
-use crate::plan::Plan;
-use crate::record::Record;
+mod damping_sweep;
+mod impact;
+#[cfg(test)]
+mod impact_tests;
+mod inputs;
+mod inspect;
+mod move_to;
+mod results;
+mod session;
+mod stiffness_ramp;
+mod stop;
+#[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
+mod tests;
+mod triggers;
+
+use crate::plan::{Plan, Procedure, ProcedureKind};
+use crate::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
+use inputs::Inputs;
+use session::Session;
+use stop::Stop;
 
 /// Who watches a run: a progress bar, a live screen, a journal, a person.
 pub trait Observer {
@@ -39,8 +59,53 @@ impl Observer for Unwatched {
     }
 }
 
+/// What a procedure leaves, also when it was stopped: everything recorded up to there and what follows from it.
+struct Performed {
+    history: History,
+    /// In the schema's order, every one of them.
+    results: Vec<NamedResult>,
+    stop: Option<Stop>,
+}
+
 /// Runs every procedure of the plan in order on the rig. Never fails: what went wrong is the record's outcome.
 #[must_use]
-pub fn run(_plan: &Plan, rig: &mut dyn Rig, _observer: &mut dyn Observer) -> Record {
-    Record { rig: rig.identity(), procedures: Vec::new(), events: Vec::new(), outcome: crate::record::Outcome::Completed }
+pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Record {
+    let identity = rig.identity();
+    let mut record = Record { rig: identity, procedures: Vec::new(), events: Vec::new(), outcome: Outcome::Completed };
+    let mut session = match Session::begin(plan, rig, observer) {
+        Ok(session) => session,
+        Err((event, stop)) => return Record { events: vec![event], outcome: stop.outcome(), ..record },
+    };
+    for procedure in &plan.procedures {
+        session.enter(procedure);
+        let mut inputs = Inputs::new(&record);
+        let Performed { history, results, stop } = perform(procedure, plan, &mut inputs, &mut session);
+        let inputs = inputs.into_recorded();
+        record.procedures.push(ProcedureRecord {
+            name: procedure.name.clone(),
+            kind: procedure.kind.keyword(),
+            complete: stop.is_none(),
+            inputs,
+            results,
+            history,
+        });
+        if let Some(stop) = stop {
+            session.end(&stop);
+            record.outcome = stop.outcome();
+            break;
+        }
+        session.leave();
+    }
+    record.events = session.into_events();
+    record
+}
+
+fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    match &procedure.kind {
+        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
+        ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
+        ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
+        ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
+        ProcedureKind::Inspect { note } => inspect::perform(note, session),
+    }
 }

@@ -1,0 +1,73 @@
+//! When the virtual rig counts as settled. In: the plan's criterion and how far the piston lags. Out: seconds to wait.
+
+use crate::plan::Settle;
+
+/// What moves after the reference has arrived.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unsettled {
+    /// Size of reference − position, m, dying away with `lag`.
+    pub(super) lagging: f64,
+    /// s
+    pub(super) lag: f64,
+    /// Size of target − reference, m: it stays.
+    pub(super) miss: f64,
+    /// Stiffness (N/m) and viscous damping (N·s/m) that turn motion into a force rate.
+    pub(super) stiffness: f64,
+    pub(super) damping: f64,
+    /// N/s
+    pub(super) drift: f64,
+}
+
+/// Seconds until displacement and force rate have both stayed inside their bounds for the dwell; None if that does not
+/// come within the timeout. A zero band asks for nothing and waits for nothing; a zero force rate leaves the band alone.
+///
+/// The lag e dies away as e·exp(−t/lag): |target − x| ≤ miss + |e| and |dF/dt| ≤ K·|e|/lag + c·|e|/lag² + |drift|, both
+/// falling, so that the time at which a bound on |e| is met is the whole answer: t = lag·ln(|e|/bound). Noise is not
+/// taken for a force rate: a real rig filters it.
+pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f64> {
+    if settle.band == 0.0 {
+        return Some(0.0);
+    }
+    let mut bound = settle.band - unsettled.miss;
+    if settle.force_rate > 0.0 {
+        let left = settle.force_rate - unsettled.drift.abs();
+        if left < 0.0 {
+            return None;
+        }
+        if unsettled.lag > 0.0 {
+            let rate_per_lagging = (unsettled.stiffness + unsettled.damping / unsettled.lag) / unsettled.lag;
+            bound = bound.min(left / rate_per_lagging);
+        }
+    }
+    if !(bound >= 0.0) {
+        return None;
+    }
+    let wait = if unsettled.lagging <= bound { 0.0 } else { unsettled.lag * (unsettled.lagging / bound).ln() };
+    let total = wait + settle.dwell;
+    (total <= settle.timeout).then_some(total)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTLE: Settle = Settle { band: 1e-5, force_rate: 0.0, dwell: 0.3, timeout: 10.0 };
+    const LAGGING: Unsettled = Unsettled { lagging: 1e-3, lag: 0.1, miss: 0.0, stiffness: 1e5, damping: 0.0, drift: 0.0 };
+
+    #[test]
+    fn waits_for_the_band_then_for_the_force_rate_and_dwells() {
+        let band = settling_time(&SETTLE, &LAGGING).unwrap();
+        assert!((band - (0.1 * 100_f64.ln() + 0.3)).abs() < 1e-12);
+        // 5 N/s at 1e5 N/m and 0.1 s allows 5 µm of lag: later than the 10 µm band.
+        let rate = settling_time(&Settle { force_rate: 5.0, ..SETTLE }, &LAGGING).unwrap();
+        assert!((rate - (0.1 * 200_f64.ln() + 0.3)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_never_comes_inside_is_not_settled() {
+        assert_eq!(settling_time(&SETTLE, &Unsettled { miss: 2e-5, ..LAGGING }), None);
+        assert_eq!(settling_time(&Settle { timeout: 0.5, ..SETTLE }, &LAGGING), None);
+        assert_eq!(settling_time(&Settle { force_rate: 5.0, ..SETTLE }, &Unsettled { drift: 6.0, ..LAGGING }), None);
+        assert_eq!(settling_time(&Settle { band: 0.0, ..SETTLE }, &LAGGING), Some(0.0));
+    }
+}

@@ -1,0 +1,319 @@
+//! The virtual rig: an actuator, a load cell and a specimen between them. In: targets. Out: readings. Its time is
+//! simulated, so that motion, settling and pauses take rig time and no wall time; it reads no clock and no file.
+
+use super::actuator::Actuator;
+use super::load_cell::{LoadCell, to_quantum};
+use super::settling::{Unsettled, settling_time};
+use super::{DeclaredNoise, Identity, Reading, Rig, RigFault};
+use crate::mechanics::damping::CellDamping;
+use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
+use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Settle, Specimen, VirtualLink};
+
+/// Speed of a move for which none is asked, m/s: that of a slow quasi-static test.
+pub const OWN_SPEED: f64 = 1e-3;
+
+/// One degree of freedom: one actuator, one load cell.
+pub struct VirtualRig {
+    name: String,
+    link: VirtualLink,
+    settle: Settle,
+    /// +1 or −1: how displacement and force at the rig count in the plan. The specimen is at the rig.
+    sign: f64,
+    actuator: Actuator,
+    cell: LoadCell,
+    specimen: SpecimenModel,
+    damping: CellDamping,
+    /// N·s/m, for the force rate while settling.
+    viscous: f64,
+    /// s
+    time: f64,
+    /// Where the specimen was last bent to (m), and its force there (N).
+    bent: f64,
+    restoring_force: f64,
+    /// Target at the rig (m) and speed (m/s).
+    proposed: Option<(f64, f64)>,
+}
+
+impl VirtualRig {
+    /// A rig that bends `specimen`, or nothing.
+    #[must_use]
+    pub fn new(link: VirtualLink, settle: Settle, specimen: Option<&Specimen>, sign: f64) -> Self {
+        let nothing = Behaviour::Elastic { stiffness: 0.0 };
+        let behaviour = specimen.and_then(|specimen| specimen.behaviour).unwrap_or(nothing);
+        let (viscous, coulomb) = specimen.map_or((0.0, 0.0), |specimen| (specimen.damping, specimen.coulomb));
+        let mut model = SpecimenModel::new(&behaviour);
+        let restoring_force = model.move_to(0.0);
+        Self {
+            name: "virtual".to_owned(),
+            link,
+            settle,
+            sign,
+            actuator: Actuator::new(link.lag, link.tracking),
+            cell: LoadCell::new(link.noise, link.force_resolution, link.drift, link.seed),
+            specimen: model,
+            damping: CellDamping::new(viscous, coulomb),
+            viscous,
+            time: 0.0,
+            bent: 0.0,
+            restoring_force,
+            proposed: None,
+        }
+    }
+
+    /// The plan's rig with the plan's specimen on it: the one that the first procedure names.
+    #[must_use]
+    pub fn of_plan(plan: &Plan) -> Self {
+        let Link::Virtual(link) = plan.rig.link;
+        let named = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
+            ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
+            ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
+            ProcedureKind::Impact(impact) => Some(impact.specimen),
+            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
+        });
+        let specimen = plan.specimens.get(named.unwrap_or(0));
+        Self { name: plan.rig.name.clone(), ..Self::new(link, plan.rig.settle, specimen, plan.rig.sign) }
+    }
+
+    /// Target at the rig, m.
+    fn at_rig(&self, targets: &[f64]) -> Result<f64, RigFault> {
+        match targets {
+            [target] if target.is_finite() => Ok(self.sign * target),
+            [target] => Err(RigFault::Device(format!("the target {target} m is no place"))),
+            _ => Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", targets.len()))),
+        }
+    }
+
+    /// The specimen and the friction on it follow the piston.
+    fn follow(&mut self) {
+        let position = self.actuator.position();
+        if position != self.bent {
+            self.damping.force(self.actuator.velocity());
+            self.restoring_force = self.specimen.move_to(position);
+            self.bent = position;
+        }
+    }
+
+    /// `seconds` pass with the reference at rest.
+    fn rest(&mut self, seconds: f64) {
+        self.actuator.rest(seconds);
+        self.time += seconds;
+        self.follow();
+    }
+
+    fn reading(&mut self) -> Reading {
+        let force = self.restoring_force + self.damping.force(self.actuator.velocity());
+        Reading {
+            time: self.time,
+            displacement: vec![self.sign * to_quantum(self.bent, self.link.resolution)],
+            force: vec![self.sign * self.cell.read(force, self.time)],
+        }
+    }
+}
+
+impl Rig for VirtualRig {
+    fn identity(&self) -> Identity {
+        Identity {
+            name: self.name.clone(),
+            model: "virtual rig".to_owned(),
+            serial: String::new(),
+            firmware: env!("CARGO_PKG_VERSION").to_owned(),
+            simulated: true,
+        }
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        1
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        let target = self.at_rig(targets)?;
+        let speed = speed.unwrap_or(OWN_SPEED);
+        if !(speed > 0.0 && speed.is_finite()) {
+            return Err(RigFault::Device(format!("a move at {speed} m/s never arrives")));
+        }
+        self.proposed = Some((target, speed));
+        Ok(())
+    }
+
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let (target, speed) =
+            self.proposed.take().ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
+        let aim = self.actuator.aim(target);
+        let seconds = (aim - self.actuator.reference()).abs() / speed;
+        self.actuator.advance(aim, seconds);
+        self.time += seconds;
+        self.follow();
+        self.actuator.stop();
+        let unsettled = Unsettled {
+            lagging: self.actuator.lagging(),
+            lag: self.actuator.lag(),
+            miss: (target - aim).abs(),
+            stiffness: self.specimen.initial_stiffness(),
+            damping: self.viscous,
+            drift: self.link.drift,
+        };
+        if let Some(wait) = settling_time(&self.settle, &unsettled) {
+            self.rest(wait);
+            Ok(())
+        } else {
+            self.rest(self.settle.timeout);
+            self.hold();
+            Err(RigFault::NotSettled { timeout: self.settle.timeout })
+        }
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        self.rest(seconds);
+        Ok(())
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        Ok(self.reading())
+    }
+
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Result<Vec<Reading>, RigFault> {
+        let aim = self.actuator.aim(self.at_rig(targets)?);
+        let from = self.actuator.reference();
+        let seconds = (aim - from) / (self.sign * velocity);
+        if samples == 0 || !(seconds > 0.0 && seconds.is_finite()) {
+            return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
+        }
+        let began = self.time;
+        let mut readings = Vec::with_capacity(samples);
+        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+        for sample in 1..=samples {
+            let fraction = sample as f64 / samples as f64;
+            let to = if sample == samples { aim } else { from + (aim - from) * fraction };
+            self.actuator.advance(to, seconds / samples as f64);
+            self.time = began + seconds * fraction;
+            self.follow();
+            readings.push(self.reading());
+        }
+        self.actuator.stop();
+        Ok(readings)
+    }
+
+    fn hold(&mut self) {
+        self.actuator.hold();
+        self.proposed = None;
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        DeclaredNoise { force: self.link.noise, resolution: self.link.resolution }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
+
+    fn specimen(damping: f64, coulomb: f64) -> Specimen {
+        let behaviour = Some(Behaviour::Elastic { stiffness: 1000.0 });
+        Specimen { name: "spring".to_owned(), mass: 1.0, behaviour, damping, coulomb }
+    }
+
+    fn rig(link: VirtualLink) -> VirtualRig {
+        VirtualRig::new(link, AT_ONCE, Some(&specimen(0.0, 0.0)), 1.0)
+    }
+
+    /// Moves at 10 mm/s and reads: time, displacement, force.
+    fn go(rig: &mut VirtualRig, target: f64) -> (f64, f64, f64) {
+        rig.propose(&[target], Some(0.01)).unwrap();
+        rig.execute().unwrap();
+        let reading = rig.read().unwrap();
+        (reading.time, reading.displacement[0], reading.force[0])
+    }
+
+    #[test]
+    fn an_ideal_rig_is_where_it_was_told_after_the_time_the_way_takes() {
+        let mut rig = rig(VirtualLink::default());
+        assert_eq!(go(&mut rig, 0.002), (0.2, 0.002, 2.0));
+        rig.pause(1.0).unwrap();
+        assert_eq!(rig.time(), 1.2);
+        rig.propose(&[0.0], None).unwrap();
+        rig.execute().unwrap();
+        assert_eq!(rig.time(), 1.2 + 0.002 / OWN_SPEED);
+    }
+
+    #[test]
+    fn tracking_resolution_and_drift_change_a_reading_as_computed_by_hand() {
+        let (_, x, r) = go(&mut rig(VirtualLink { tracking: 0.1, ..VirtualLink::default() }), 0.002);
+        assert!((x - 0.0018).abs() < 1e-15 && (r - 1.8).abs() < 1e-12);
+        // The cell feels the place; the resolution is of the displacement reading.
+        let (_, x, r) = go(&mut rig(VirtualLink { resolution: 5e-4, ..VirtualLink::default() }), 0.0013);
+        assert!((x - 0.0015).abs() < 1e-15 && (r - 1.3).abs() < 1e-12);
+        let (_, _, r) = go(&mut rig(VirtualLink { force_resolution: 0.5, ..VirtualLink::default() }), 0.0013);
+        assert_eq!(r, 1.5);
+        // 0.2 s at 3 N/s.
+        let (_, _, r) = go(&mut rig(VirtualLink { drift: 3.0, ..VirtualLink::default() }), 0.002);
+        assert!((r - 2.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn lag_is_v_tau_behind_at_the_end_of_a_move_and_a_pause_lets_it_in() {
+        let mut rig = rig(VirtualLink { lag: 0.02, ..VirtualLink::default() });
+        let behind = 0.01 * 0.02 * (1.0 - (-10.0_f64).exp());
+        let (_, x, r) = go(&mut rig, 0.002);
+        assert!((x - (0.002 - behind)).abs() < 1e-15 && (r - 1000.0 * x).abs() < 1e-12);
+        rig.pause(0.04).unwrap();
+        let x = rig.read().unwrap().displacement[0];
+        assert!((x - (0.002 - behind * (-2.0_f64).exp())).abs() < 1e-15);
+    }
+
+    #[test]
+    fn settling_takes_rig_time_and_a_rig_that_cannot_settle_holds() {
+        let settle = Settle { band: 1e-5, force_rate: 0.0, dwell: 0.3, timeout: 10.0 };
+        let link = VirtualLink { lag: 0.02, ..VirtualLink::default() };
+        let mut settling = VirtualRig::new(link, settle, Some(&specimen(0.0, 0.0)), 1.0);
+        let (time, x, _) = go(&mut settling, 0.002);
+        let behind = 0.01 * 0.02 * (1.0 - (-10.0_f64).exp());
+        assert!((time - (0.2 + 0.02 * (behind / 1e-5).ln() + 0.3)).abs() < 1e-12);
+        assert!((0.002 - x) < 1e-5);
+        // 10 % of 2 mm is 0.2 mm: outside 0.01 mm for ever.
+        let link = VirtualLink { tracking: 0.1, ..VirtualLink::default() };
+        let mut never = VirtualRig::new(link, settle, Some(&specimen(0.0, 0.0)), 1.0);
+        never.propose(&[0.002], Some(0.01)).unwrap();
+        assert_eq!(never.execute(), Err(RigFault::NotSettled { timeout: 10.0 }));
+        assert!((never.time() - 10.18).abs() < 1e-12);
+    }
+
+    #[test]
+    fn damping_shows_while_moving_and_friction_stays_through_a_pause() {
+        let mut rig = VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
+        assert_eq!(rig.read().unwrap().force, [0.0]);
+        let readings = rig.traverse(&[0.002], 0.01, 4).unwrap();
+        let forces: Vec<f64> = readings.iter().map(|reading| reading.force[0]).collect();
+        for (force, by_hand) in forces.iter().zip([0.5, 1.0, 1.5, 2.0]) {
+            assert!((force - (by_hand + 50.0 * 0.01 + 0.25)).abs() < 1e-12, "{forces:?}");
+        }
+        assert!((readings[1].time - 0.1).abs() < 1e-15);
+        rig.pause(5.0).unwrap();
+        assert!((rig.read().unwrap().force[0] - 2.25).abs() < 1e-12);
+        assert!((go(&mut rig, 0.001).2 - 0.75).abs() < 1e-12);
+        assert!(rig.traverse(&[0.002], -0.01, 4).is_err(), "away from the target");
+    }
+
+    #[test]
+    fn a_negative_sign_turns_displacement_and_force_between_plan_and_rig() {
+        let link = VirtualLink { drift: 3.0, ..VirtualLink::default() };
+        let mut turned = VirtualRig::new(link, AT_ONCE, Some(&specimen(0.0, 0.0)), -1.0);
+        let (_, x, r) = go(&mut turned, 0.002);
+        // Only what the rig adds by itself shows its sign.
+        assert!(x == 0.002 && (r - (2.0 - 0.6)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_do() {
+        let mut rig = rig(VirtualLink::default());
+        assert!(rig.propose(&[0.0, 0.0], None).is_err());
+        assert!(rig.propose(&[f64::NAN], None).is_err());
+        assert!(rig.propose(&[0.001], Some(0.0)).is_err());
+        assert!(rig.execute().is_err(), "nothing was proposed");
+    }
+}

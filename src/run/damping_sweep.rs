@@ -1,0 +1,140 @@
+//! `damping sweep` (Melo et al. 2006, sec. 6 (b)): traverses of one stroke and back at rising constant velocities.
+//! In: velocities, stroke, the K of an earlier ramp. Out: c and the Coulomb force by F_d = R − K·X = c·v + F_c·sign v.
+//!
+//! X and R are as measured, X from the rig's zero. An offset of the cell, or an error of K, adds the same to both
+//! directions of a stroke, and so moves neither c nor F_c; it shows in the residuals, and thus in their errors.
+
+use super::Performed;
+use super::inputs::Inputs;
+use super::results::{largest, measured, result};
+use super::session::{Session, first};
+use super::stop::Stop;
+use crate::formula::Estimate;
+use crate::mechanics::identification::{damping_ratio, fit_damping};
+use crate::plan::{DampingSweep, Link, Plan};
+use crate::quantity::Dimension;
+use crate::record::{EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep};
+
+/// Part of the stroke left out at either end: the actuator starts and stops there.
+const END: f64 = 0.1;
+
+/// Time constants of the actuator left out at the start: the piston then moves within 1 % of the velocity asked for,
+/// also after a reversal (2·exp(−5)). Three would leave a tenth, which c would show.
+const LAGS: f64 = 5.0;
+
+/// Readings on the steady part where the plan gives no rate.
+const STEADY_SAMPLES: f64 = 50.0;
+
+/// Readings of one traverse, at most.
+const MOST_SAMPLES: f64 = 1e6;
+
+pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let Link::Virtual(link) = whole.rig.link;
+    let mut sweep = Sweep { steps: Vec::new(), stiffness: None, lag: link.lag };
+    let stop = sweep.run(plan, inputs, session).err();
+    let fit = sweep.fit();
+    if fit.is_none() && stop.is_none() {
+        let text = "no damping: the steady parts of the strokes hold too few readings for a line".to_owned();
+        session.event(EventKind::Remark, text);
+    }
+    let results = sweep.results(fit.as_ref(), whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
+    Performed { history: History::Sweep(SweepHistory { steps: sweep.steps, fit }), results, stop }
+}
+
+struct Sweep {
+    steps: Vec<SweepStep>,
+    stiffness: Option<Estimate>,
+    /// s
+    lag: f64,
+}
+
+impl Sweep {
+    fn run(&mut self, plan: &DampingSweep, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Result<(), Stop> {
+        let velocities = inputs.list("velocities", &plan.velocities)?;
+        let stroke = inputs.number("stroke", &plan.stroke, Dimension::LENGTH)?;
+        let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
+        let rate = plan.rate.as_ref().map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY)).transpose()?;
+        if stroke == 0.0 {
+            return Err(Stop::BadInput { field: "stroke", value: stroke, wanted: "other than 0" });
+        }
+        self.stiffness = Some(stiffness);
+        let home = session.commanded();
+        for velocity in velocities {
+            if velocity == 0.0 {
+                return Err(Stop::BadInput { field: "velocities", value: velocity, wanted: "other than 0" });
+            }
+            let seconds = (stroke / velocity).abs();
+            let samples = self.samples(seconds, rate)?;
+            let speed = velocity.abs().copysign(stroke);
+            self.stroke(home + stroke, speed, seconds, samples, session)?;
+            self.stroke(home, -speed, seconds, samples, session)?;
+        }
+        Ok(())
+    }
+
+    /// Share of a traverse of `seconds` after which it is steady.
+    fn steady_from(&self, seconds: f64) -> f64 {
+        END.max(LAGS * self.lag / seconds)
+    }
+
+    fn samples(&self, seconds: f64, rate: Option<f64>) -> Result<usize, Stop> {
+        let steady = 1.0 - END - self.steady_from(seconds);
+        let wanted = match rate {
+            Some(rate) => (rate * seconds).round().max(1.0),
+            // One more, for the first steady reading may just miss the beginning of the steady part.
+            None if steady > 0.0 => (STEADY_SAMPLES / steady).ceil() + 1.0,
+            None => STEADY_SAMPLES,
+        };
+        if wanted > MOST_SAMPLES {
+            return Err(Stop::BadInput { field: "rate", value: wanted, wanted: "at most 1000000 readings a stroke" });
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_SAMPLES")]
+        Ok(wanted as usize)
+    }
+
+    fn stroke(&mut self, to: f64, velocity: f64, seconds: f64, samples: usize, session: &mut Session<'_>) -> Result<(), Stop> {
+        let stiffness = self.stiffness.map_or(0.0, |estimate| estimate.value);
+        let steady_from = self.steady_from(seconds);
+        let traversed = session.guard.traverse(&[to], velocity, samples);
+        for (sample, reading) in (1_u32..).zip(&traversed.readings) {
+            let (displacement, restoring_force) = first(reading);
+            #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+            let passed = f64::from(sample) / samples as f64;
+            let step = self.steps.len() as u64 + 1;
+            self.steps.push(SweepStep {
+                step,
+                wall_time: reading.time,
+                velocity,
+                displacement,
+                restoring_force,
+                damping_force: restoring_force - stiffness * displacement,
+                steady: steady_from <= passed && passed <= 1.0 - END,
+            });
+            session.step_done(step, reading.time, displacement, restoring_force)?;
+        }
+        traversed.fault.map_or(Ok(()), |fault| Err(fault.into()))
+    }
+
+    fn fit(&self) -> Option<LineFit> {
+        let steady = self.steps.iter().filter(|step| step.steady);
+        let (velocities, forces): (Vec<f64>, Vec<f64>) = steady.map(|step| (step.velocity, step.damping_force)).unzip();
+        fit_damping(&velocities, &forces)
+    }
+
+    fn results(&self, fit: Option<&LineFit>, mass: Option<f64>) -> Vec<NamedResult> {
+        let ratio = fit.zip(self.stiffness).zip(mass).map(|((fit, stiffness), mass)| {
+            let ratio = damping_ratio(fit.slope, stiffness.value, mass);
+            // ζ = c/(2√(KM)): u(ζ)² = (u(c)/(2√(KM)))² + (ζ·u(K)/(2K))².
+            let by_damping = damping_ratio(fit.slope_error, stiffness.value, mass);
+            let by_stiffness = ratio * stiffness.uncertainty.unwrap_or(0.0) / (2.0 * stiffness.value);
+            (ratio, Some(by_damping.hypot(by_stiffness)))
+        });
+        vec![
+            measured("damping", Dimension::DAMPING, fit.map(|fit| (fit.slope, Some(fit.slope_error)))),
+            measured("coulomb_force", Dimension::FORCE, fit.map(|fit| (fit.intercept, Some(fit.intercept_error)))),
+            result("r_squared", Dimension::NUMBER, fit.map(|fit| fit.r_squared)),
+            measured("damping_ratio", Dimension::NUMBER, ratio),
+            result("max_velocity", Dimension::VELOCITY, largest(self.steps.iter().map(|step| step.velocity))),
+        ]
+    }
+}

@@ -1,0 +1,225 @@
+//! `impact` (Melo et al. 2006, sec. 5 steps 3–8, eqs. 2–7): the striker is computed, the structure is on the rig. Each
+//! step: predict, command, settle, pause, read, feed back. In: masses, stiffness, law, time step. Out: every step and
+//! what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
+
+use super::Performed;
+use super::inputs::Inputs;
+use super::results::result;
+use super::session::Session;
+use super::stop::Stop;
+use super::triggers::Triggers;
+use crate::mechanics::contact::ContactLaw;
+use crate::mechanics::critical_time_step;
+use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
+use crate::mechanics::summary::{ImpactSummary, SummaryBuilder};
+use crate::plan::{Contact, Impact, Plan, Striker, Until};
+use crate::quantity::Dimension;
+use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
+
+/// Steps of one impact, at most: a record of them takes some 2 GB.
+const MOST_STEPS: f64 = 1e7;
+
+pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let (setting, stop) = match Setting::evaluate(plan, &whole.strikers[plan.striker], inputs, session) {
+        Ok(setting) => (Some(setting), None),
+        Err(stop) => (None, Some(stop)),
+    };
+    let Some(setting) = setting else {
+        let history = ImpactHistory { steps: Vec::new(), time_step: 0.0, critical_time_step: 0.0 };
+        return Performed { results: results(None, &history), history: History::Impact(history), stop };
+    };
+    let mut strike = Strike { setting, steps: Vec::new(), summary: SummaryBuilder::new(&setting.input) };
+    let stop = strike.run(plan, session).err();
+    let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
+    if let (Some(summary), None) = (&summary, &stop) {
+        remark(summary, plan.until, session);
+    }
+    let history =
+        ImpactHistory { steps: strike.steps, time_step: setting.input.time_step, critical_time_step: setting.critical_time_step };
+    Performed { results: results(summary.as_ref(), &history), history: History::Impact(history), stop }
+}
+
+/// Everything known before the first step.
+#[derive(Clone, Copy)]
+struct Setting {
+    input: ImpactInput,
+    /// s
+    critical_time_step: f64,
+    steps: u64,
+    /// s
+    pause: f64,
+}
+
+impl Setting {
+    fn evaluate(plan: &Impact, striker: &Striker, inputs: &mut Inputs<'_>, session: &Session<'_>) -> Result<Self, Stop> {
+        let mass = inputs.positive("mass", &plan.mass, Dimension::MASS)?;
+        let stiffness = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS)?;
+        let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
+        let law = law(&plan.contact, inputs)?;
+        let critical_time_step = critical_time_step(mass, stiffness);
+        let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical_time_step))?.value;
+        let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let max_tangent_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
+        // 0.5 s of 0.01 s are 50 steps, whatever rounding says of the ratio.
+        let steps = (duration / time_step * (1.0 - 1e-12)).ceil();
+        if steps > MOST_STEPS {
+            return Err(Stop::BadInput {
+                field: "time_step",
+                value: time_step,
+                wanted: "long enough for at most 10000000 steps",
+            });
+        }
+        let noise = session.guard.declared_noise();
+        let input = ImpactInput {
+            mass,
+            damping,
+            stiffness,
+            striker_mass: striker.mass,
+            striker_velocity: striker.velocity,
+            gap: striker.gap,
+            time_step,
+            max_tangent_ratio,
+            law,
+            force_noise: noise.force,
+            resolution: noise.resolution,
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
+        let steps = steps as u64;
+        Ok(Self { input, critical_time_step, steps, pause })
+    }
+}
+
+fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
+    Ok(match contact {
+        Contact::Rigid => ContactLaw::Rigid,
+        Contact::Limit { force } => ContactLaw::Limit { force: inputs.positive("force", force, Dimension::FORCE)? },
+        Contact::Restitution { coefficient } => {
+            let coefficient = inputs.not_negative("coefficient", coefficient, Dimension::NUMBER)?;
+            if coefficient > 1.0 {
+                return Err(Stop::BadInput { field: "coefficient", value: coefficient, wanted: "at most 1" });
+            }
+            ContactLaw::Restitution { coefficient }
+        }
+        Contact::Hertz { stiffness, loss, force_limit } => ContactLaw::Hertz {
+            stiffness: inputs.positive("contact_stiffness", stiffness, Dimension::HERTZ_STIFFNESS)?,
+            loss: inputs.not_negative("loss", loss, SECONDS_PER_METRE)?,
+            force_limit: match force_limit {
+                Some(force) => Some(inputs.positive("force_limit", force, Dimension::FORCE)?),
+                None => None,
+            },
+        },
+    })
+}
+
+/// Of the Hunt–Crossley loss factor.
+const SECONDS_PER_METRE: Dimension = Dimension {
+    length: crate::quantity::Exponent::whole(-1),
+    mass: crate::quantity::Exponent::ZERO,
+    time: crate::quantity::Exponent::whole(1),
+};
+
+struct Strike {
+    setting: Setting,
+    steps: Vec<ImpactStep>,
+    summary: SummaryBuilder,
+}
+
+impl Strike {
+    fn run(&mut self, plan: &Impact, session: &mut Session<'_>) -> Result<(), Stop> {
+        let Setting { input, steps, pause, .. } = self.setting;
+        let mut triggers = Triggers::new(&plan.inspect);
+        // X starts where the actuator was sent to, and R₀ is read there once, before the first step.
+        let start = session.commanded();
+        let (measured, restoring_force) = session.read()?;
+        let mut solver = ImpactSolver::new(&input, start, restoring_force);
+        self.take(&ImpactState { measured_displacement: measured, ..*solver.state() }, session);
+        for _ in 0..steps {
+            let target = solver.predict();
+            session.guard.move_to(&[target], None)?;
+            session.guard.pause(pause)?;
+            let (measured, restoring_force) = session.read()?;
+            let state = *solver.complete(measured, restoring_force);
+            self.take(&state, session);
+            session.guard.check_energy_error(error_fraction(&state, &input))?;
+            session.step_done(state.step, state.time, measured, restoring_force)?;
+            if plan.until == Until::StrikerStop && solver.finished() {
+                break;
+            }
+            if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
+                session.inspect(&reason)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, state: &ImpactState, session: &Session<'_>) {
+        self.summary.push(state);
+        self.steps.push(ImpactStep {
+            step: state.step,
+            time: state.time,
+            wall_time: session.guard.time(),
+            state: state.state,
+            command: state.displacement,
+            displacement: state.measured_displacement,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            restoring_force: state.restoring_force,
+            contact_force: state.contact_force,
+            striker_displacement: state.striker_displacement,
+            striker_velocity: state.striker_velocity,
+            tangent_stiffness: state.tangent_stiffness,
+            indentation: state.indentation,
+            energies: state.energies,
+        });
+    }
+}
+
+/// Energy error over the input; of no input, any error is infinite.
+fn error_fraction(state: &ImpactState, input: &ImpactInput) -> f64 {
+    if state.energies.error == 0.0 { 0.0 } else { state.energies.error / input.striker_energy() }
+}
+
+/// What a reader of the results must know of how the run ended.
+fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
+    if until == Until::StrikerStop && summary.stop_time.is_none() {
+        session.event(EventKind::Remark, "the striker did not stop within the duration".to_owned());
+    }
+    if summary.peak_is_final {
+        let text = "the structure was still moving on at the end: its largest displacement is not a peak";
+        session.event(EventKind::Remark, text.to_owned());
+    }
+    if summary.last_blow_cut {
+        let text = "the striker stopped with a contact force in its last step: the last blow is cut";
+        session.event(EventKind::Remark, text.to_owned());
+    }
+}
+
+/// In the order of the reference; every number is missing if not even the start was read.
+fn results(summary: Option<&ImpactSummary>, history: &ImpactHistory) -> Vec<NamedResult> {
+    let of = |name, dimension, value: fn(&ImpactSummary) -> f64| result(name, dimension, summary.map(value));
+    let known = |value: f64| (value > 0.0).then_some(value);
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+    let steps = history.steps.last().map(|last| last.step as f64);
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+    let contacts: fn(&ImpactSummary) -> f64 = |summary| summary.contacts as f64;
+    vec![
+        of("max_displacement", Dimension::LENGTH, |summary| summary.max_displacement),
+        of("time_of_max_displacement", Dimension::TIME, |summary| summary.time_of_max_displacement),
+        result("stop_time", Dimension::TIME, summary.and_then(|summary| summary.stop_time)),
+        of("residual_displacement", Dimension::LENGTH, |summary| summary.residual_displacement),
+        of("max_velocity", Dimension::VELOCITY, |summary| summary.max_velocity),
+        of("max_contact_force", Dimension::FORCE, |summary| summary.max_contact_force),
+        of("impulse", Dimension::IMPULSE, |summary| summary.impulse),
+        of("contacts", Dimension::NUMBER, contacts),
+        result("restitution", Dimension::NUMBER, summary.and_then(|summary| summary.restitution)),
+        of("indentation", Dimension::LENGTH, |summary| summary.indentation),
+        of("indentation_energy", Dimension::ENERGY, |summary| summary.indentation_energy),
+        of("absorbed_energy", Dimension::ENERGY, |summary| summary.absorbed_energy),
+        of("striker_energy", Dimension::ENERGY, |summary| summary.striker_energy),
+        of("energy_error", Dimension::NUMBER, |summary| summary.energy_error),
+        result("time_step", Dimension::TIME, known(history.time_step)),
+        result("critical_time_step", Dimension::TIME, known(history.critical_time_step)),
+        result("steps", Dimension::NUMBER, steps),
+    ]
+}

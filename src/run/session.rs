@@ -1,0 +1,134 @@
+//! One run as it goes: the guarded rig, who watches, and the events so far. In: what procedures do. Out: events.
+//! It knows no procedure's physics.
+
+use super::stop::Stop;
+use super::{Inspection, Observer};
+use crate::plan::{Plan, Procedure, ProcedureKind};
+use crate::record::{Event, EventKind};
+use crate::rig::{Guard, Reading, Rig, RigFault};
+
+pub(super) struct Session<'run> {
+    pub(super) guard: Guard<'run>,
+    observer: &'run mut dyn Observer,
+    events: Vec<Event>,
+    procedure: Option<String>,
+    /// Number of the last step done in this procedure.
+    step: Option<u64>,
+}
+
+impl<'run> Session<'run> {
+    /// Takes the rig behind its guard. The error is the event to record and what ended the run.
+    pub(super) fn begin(plan: &Plan, rig: &'run mut dyn Rig, observer: &'run mut dyn Observer) -> Result<Self, (Event, Stop)> {
+        let time = rig.time();
+        let axes = rig.degrees_of_freedom();
+        let guard = if axes == 1 {
+            Guard::new(rig, plan.limits)
+        } else {
+            rig.hold();
+            Err(RigFault::Device(format!("these procedures move one degree of freedom, and the rig has {axes}")))
+        };
+        match guard {
+            Ok(guard) => Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None }),
+            Err(fault) => {
+                let stop = Stop::Rig(fault);
+                Err((Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() }, stop))
+            }
+        }
+    }
+
+    pub(super) fn into_events(self) -> Vec<Event> {
+        self.events
+    }
+
+    pub(super) fn enter(&mut self, procedure: &Procedure) {
+        self.procedure = Some(procedure.name.clone());
+        self.step = None;
+        self.observer.procedure_started(&procedure.name, procedure.kind.keyword(), steps(&procedure.kind));
+    }
+
+    pub(super) fn leave(&mut self) {
+        if let Some(name) = self.procedure.take() {
+            self.observer.procedure_finished(&name);
+        }
+    }
+
+    /// Records why the run ends here, with the rig held.
+    pub(super) fn end(&mut self, stop: &Stop) {
+        self.guard.hold();
+        self.event(stop.event_kind(), stop.to_string());
+        self.leave();
+    }
+
+    pub(super) fn event(&mut self, kind: EventKind, text: String) {
+        let event = Event { time: self.guard.time(), procedure: self.procedure.clone(), step: self.step, kind, text };
+        self.events.push(event);
+    }
+
+    /// Tells who watches that a step is done, and asks whether to go on.
+    pub(super) fn step_done(&mut self, step: u64, time: f64, displacement: f64, force: f64) -> Result<(), Stop> {
+        self.step = Some(step);
+        self.observer.step_done(step, time, displacement, force);
+        if self.observer.stop_requested() {
+            self.guard.hold();
+            return Err(Stop::Person { reason: "stopped on request".to_owned() });
+        }
+        Ok(())
+    }
+
+    /// Lets a person look at the specimen; what was said is an event.
+    pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+        match self.observer.inspect(note) {
+            Inspection::GoOn { note: said } => {
+                let text = said.map_or_else(|| note.to_owned(), |said| format!("{note}: {said}"));
+                self.event(EventKind::Inspection, text);
+                Ok(())
+            }
+            Inspection::Stop { reason } => {
+                self.guard.hold();
+                self.event(EventKind::Inspection, format!("{note}: {reason}"));
+                Err(Stop::Person { reason })
+            }
+        }
+    }
+
+    /// Where the last target was, m.
+    pub(super) fn commanded(&self) -> f64 {
+        self.guard.commanded()[0]
+    }
+
+    /// One reading: displacement (m) and force (N).
+    pub(super) fn read(&mut self) -> Result<(f64, f64), Stop> {
+        Ok(first(&self.guard.read()?))
+    }
+
+    /// Back to `place` (m), as one move or, where increments are limited, as equal ones.
+    pub(super) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
+        for target in self.guard.way_to(&[place]) {
+            self.guard.move_to(&target, speed)?;
+        }
+        Ok(())
+    }
+}
+
+/// Displacement (m) and force (N) of the one degree of freedom.
+pub(super) fn first(reading: &Reading) -> (f64, f64) {
+    (reading.displacement[0], reading.force[0])
+}
+
+/// Upper bound of a procedure's steps, where the plan alone tells.
+fn steps(kind: &ProcedureKind) -> Option<u64> {
+    match kind {
+        ProcedureKind::StiffnessRamp(ramp) => {
+            let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
+            Some(once * u64::from(ramp.repeats))
+        }
+        ProcedureKind::DampingSweep(_) => None,
+        ProcedureKind::Impact(impact) => {
+            let ratio = impact.duration.constant()? / impact.time_step.constant()?;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
+            Some(ratio.ceil() as u64)
+        }
+        ProcedureKind::Move(_) => Some(1),
+        ProcedureKind::Inspect { .. } => Some(0),
+    }
+}

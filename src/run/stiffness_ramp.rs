@@ -1,0 +1,147 @@
+//! `stiffness ramp` (Melo et al. 2006, sec. 5 step 1 and sec. 6 (a)): prescribed displacements, a pause at each, then
+//! the mean of some readings. In: the displacements. Out: K by least squares over the outward steps, the secant of the
+//! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
+
+use super::Performed;
+use super::inputs::Inputs;
+use super::results::{largest, measured, result};
+use super::session::Session;
+use super::stop::Stop;
+use crate::mechanics::identification::{fit_line, loop_energy};
+use crate::plan::StiffnessRamp;
+use crate::quantity::Dimension;
+use crate::record::{History, LineFit, NamedResult, RampHistory, RampStep};
+
+pub(super) fn perform(plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let mut ramp = Ramp { steps: Vec::new(), start: None, loops: Vec::new() };
+    let stop = ramp.run(plan, inputs, session).err();
+    let fit = ramp.fit();
+    let results = ramp.results(fit.as_ref());
+    Performed { history: History::Ramp(RampHistory { steps: ramp.steps, fit }), results, stop }
+}
+
+/// A displacement (m) and the force there (N).
+type Point = (f64, f64);
+
+struct Ramp {
+    steps: Vec<RampStep>,
+    /// The reading before the first increment.
+    start: Option<Point>,
+    /// ∮ R dX of each repeat that came back to where it began, J.
+    loops: Vec<f64>,
+}
+
+impl Ramp {
+    fn run(&mut self, plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Result<(), Stop> {
+        let displacements = inputs.list("displacements", &plan.displacements)?;
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let speed = inputs.speed(plan.speed.as_ref())?;
+        let home = session.commanded();
+        for _ in 0..plan.repeats {
+            let start = session.read()?;
+            self.start.get_or_insert(start);
+            let from = self.steps.len();
+            let mut before = None;
+            for command in &displacements {
+                before = Some(self.step(*command, false, before, plan, pause, speed, session)?);
+            }
+            if plan.return_path {
+                let way_back = displacements.iter().rev().skip(1).copied().chain(std::iter::once(home));
+                for command in way_back {
+                    before = Some(self.step(command, true, before, plan, pause, speed, session)?);
+                }
+                let path = std::iter::once(start).chain(self.steps[from..].iter().map(point));
+                let (x, r): (Vec<f64>, Vec<f64>) = path.unzip();
+                self.loops.push(loop_energy(&x, &r));
+            } else {
+                session.go_to(home, speed)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves, settles, reads once for the relaxation, pauses, reads the samples.
+    #[expect(clippy::too_many_arguments, reason = "one step of a ramp is what it is told")]
+    fn step(
+        &mut self,
+        command: f64,
+        returning: bool,
+        before: Option<Point>,
+        plan: &StiffnessRamp,
+        pause: f64,
+        speed: Option<f64>,
+        session: &mut Session<'_>,
+    ) -> Result<Point, Stop> {
+        session.guard.move_to(&[command], speed)?;
+        let (_, settled_force) = session.read()?;
+        session.guard.pause(pause)?;
+        let readings = (0..plan.samples.max(1)).map(|_| session.read()).collect::<Result<Vec<_>, _>>()?;
+        let displacement = mean(readings.iter().map(|(x, _)| *x));
+        let restoring_force = mean(readings.iter().map(|(_, r)| *r));
+        let step = self.steps.len() as u64 + 1;
+        let wall_time = session.guard.time();
+        self.steps.push(RampStep {
+            step,
+            wall_time,
+            command,
+            displacement,
+            restoring_force,
+            force_scatter: scatter(readings.iter().map(|(_, r)| *r), restoring_force),
+            relaxation: settled_force - restoring_force,
+            tangent_stiffness: before.and_then(|before| secant(before, (displacement, restoring_force))),
+            returning,
+        });
+        session.step_done(step, wall_time, displacement, restoring_force)?;
+        Ok((displacement, restoring_force))
+    }
+
+    /// R = intercept + K·X over the outward steps of all repeats.
+    fn fit(&self) -> Option<LineFit> {
+        let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().filter(|step| !step.returning).map(point).unzip();
+        fit_line(&x, &r)
+    }
+
+    fn results(&self, fit: Option<&LineFit>) -> Vec<NamedResult> {
+        // Two points leave nothing to judge the line by.
+        let judged = self.steps.iter().filter(|step| !step.returning).count() >= 3;
+        let with_error = |value, error| (value, judged.then_some(error));
+        let first_secant = self.start.zip(self.steps.first()).and_then(|(start, step)| secant(start, point(step)));
+        let relaxation = (!self.steps.is_empty()).then(|| mean(self.steps.iter().map(|step| step.relaxation)));
+        let loop_energy = (!self.loops.is_empty()).then(|| mean(self.loops.iter().copied()));
+        vec![
+            measured("stiffness", Dimension::STIFFNESS, fit.map(|fit| with_error(fit.slope, fit.slope_error))),
+            result("secant_stiffness", Dimension::STIFFNESS, first_secant),
+            measured("intercept_force", Dimension::FORCE, fit.map(|fit| with_error(fit.intercept, fit.intercept_error))),
+            result("r_squared", Dimension::NUMBER, fit.map(|fit| fit.r_squared)),
+            result("max_force", Dimension::FORCE, largest(self.steps.iter().map(|step| step.restoring_force))),
+            result("max_displacement", Dimension::LENGTH, largest(self.steps.iter().map(|step| step.displacement))),
+            result("loop_energy", Dimension::ENERGY, loop_energy),
+            result("relaxation", Dimension::FORCE, relaxation),
+        ]
+    }
+}
+
+const fn point(step: &RampStep) -> Point {
+    (step.displacement, step.restoring_force)
+}
+
+/// Stiffness from one point to the next, N/m; None without motion.
+pub(super) fn secant(from: Point, to: Point) -> Option<f64> {
+    let motion = to.0 - from.0;
+    (motion != 0.0).then(|| (to.1 - from.1) / motion)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len();
+    values.sum::<f64>() / count as f64
+}
+
+/// Standard deviation of the samples; 0 for one.
+#[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
+fn scatter(values: impl ExactSizeIterator<Item = f64>, mean: f64) -> f64 {
+    match values.len() {
+        0 | 1 => 0.0,
+        count => (values.map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1) as f64).sqrt(),
+    }
+}

@@ -1,0 +1,66 @@
+//! Why a run does not go on, and what that makes of it.
+
+use crate::formula::FormulaError;
+use crate::record::{EventKind, Outcome};
+use crate::rig::RigFault;
+
+/// What ends a run before its end. The rig holds by then.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Stop {
+    Rig(RigFault),
+    /// A person said so, or asked the program to end.
+    Person {
+        reason: String,
+    },
+    /// An input of a procedure has no value, for it reads a result that does not exist.
+    NoInput {
+        field: &'static str,
+        error: FormulaError,
+    },
+    /// An input of a procedure is known only now, and cannot be used.
+    BadInput {
+        field: &'static str,
+        value: f64,
+        wanted: &'static str,
+    },
+}
+
+impl Stop {
+    /// Limits and people abort a run; a rig that fails, or a procedure that cannot begin, is a fault.
+    pub(super) fn outcome(&self) -> Outcome {
+        let reason = self.to_string();
+        match self {
+            Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. }) | Self::Person { .. } => {
+                Outcome::Aborted { reason }
+            }
+            Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Faulted { reason },
+        }
+    }
+
+    pub(super) const fn event_kind(&self) -> EventKind {
+        match self {
+            Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
+            Self::Rig(RigFault::NotSettled { .. }) | Self::Person { .. } => EventKind::Hold,
+            Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => EventKind::Fault,
+        }
+    }
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Rig(fault) => write!(f, "{fault}"),
+            Self::Person { reason } => f.write_str(reason),
+            Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
+            Self::BadInput { field, value, wanted } => {
+                write!(f, "`{field}` came out as {value} in SI units, but must be {wanted}")
+            }
+        }
+    }
+}
+
+impl From<RigFault> for Stop {
+    fn from(fault: RigFault) -> Self {
+        Self::Rig(fault)
+    }
+}

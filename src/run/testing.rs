@@ -1,0 +1,79 @@
+//! Plans built by hand for tests of what comes after `check`.
+
+use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
+use crate::plan::{
+    Behaviour, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen, StiffnessRamp, Striker,
+    VirtualLink,
+};
+use crate::record::Record;
+use crate::rig::VirtualRig;
+
+/// Nothing but an ideal virtual rig.
+pub(crate) fn empty_plan() -> Plan {
+    Plan {
+        title: "by hand".to_owned(),
+        particulars: Vec::new(),
+        parameters: Vec::new(),
+        specimens: Vec::new(),
+        strikers: Vec::new(),
+        rig: RigPlan {
+            name: "ideal".to_owned(),
+            link: Link::Virtual(VirtualLink::default()),
+            settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 },
+            sign: 1.0,
+            calibration: None,
+        },
+        limits: Limits::NONE,
+        procedures: Vec::new(),
+        requirements: Vec::new(),
+        report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+        files: Vec::new(),
+        settings: Vec::new(),
+    }
+}
+
+/// An elastic specimen of 1 kg, a striker of 10 kg at 1 m/s, and these procedures, named `p0`, `p1`, …
+pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Plan {
+    let named = |(index, kind)| Procedure { name: format!("p{index}"), kind };
+    Plan {
+        specimens: vec![Specimen {
+            name: "beam".to_owned(),
+            mass: 1.0,
+            behaviour: Some(Behaviour::Elastic { stiffness }),
+            damping: 0.0,
+            coulomb: 0.0,
+        }],
+        strikers: vec![Striker { name: "pendulum".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+        procedures: procedures.into_iter().enumerate().map(named).collect(),
+        ..empty_plan()
+    }
+}
+
+/// Ten outward steps of `step` (m), one sample each, no pause.
+pub(crate) fn ramp(step: f64) -> StiffnessRamp {
+    StiffnessRamp {
+        specimen: 0,
+        displacements: (1..=10).map(|index| Formula::Constant(f64::from(index) * step)).collect(),
+        pause: Formula::Constant(0.0),
+        samples: 1,
+        repeats: 1,
+        return_path: false,
+        speed: None,
+    }
+}
+
+pub(crate) fn result_of(procedure: usize, name: &'static str) -> Formula {
+    Formula::Result(ResultReference { procedure: ProcedureId(procedure), name, part: Part::Value })
+}
+
+pub(crate) fn run_unwatched(plan: &Plan) -> Record {
+    super::run(plan, &mut VirtualRig::of_plan(plan), &mut super::Unwatched)
+}
+
+/// Value and uncertainty of a result of the procedure `p0`, `p1`, …
+pub(crate) fn number(record: &Record, procedure: usize, name: &str) -> (Option<f64>, Option<f64>) {
+    match record.procedures[procedure].result(name).map(|result| &result.value) {
+        Some(ResultValue::Number { value, uncertainty }) => (*value, *uncertainty),
+        other => panic!("{name} is {other:?}"),
+    }
+}

@@ -1,0 +1,257 @@
+//! Whole runs on plans built by hand: what is identified, what a breach leaves, what a seed repeats.
+
+use super::testing::{elastic_plan, number, ramp, result_of, run_unwatched};
+use super::{Inspection, Observer, Unwatched, run};
+use crate::formula::Formula;
+use crate::plan::{DampingSweep, Interval, Link, Move, Plan, ProcedureKind, StiffnessRamp, VirtualLink};
+use crate::record::{EventKind, History, Outcome, RampStep, SweepStep};
+use crate::rig::{LimitedQuantity, RigFault, VirtualRig};
+
+fn constant(value: f64) -> Formula {
+    Formula::Constant(value)
+}
+
+fn sweep(velocities: &[f64]) -> DampingSweep {
+    DampingSweep {
+        specimen: 0,
+        velocities: velocities.iter().copied().map(Formula::Constant).collect(),
+        stroke: constant(1e-3),
+        stiffness: result_of(0, "stiffness"),
+        rate: None,
+    }
+}
+
+fn ramp_then_sweep() -> Plan {
+    let velocities = sweep(&[5e-4, 1e-3, 2e-3, 5e-3, 1e-2]);
+    let mut plan = elastic_plan(3e5, vec![ProcedureKind::StiffnessRamp(ramp(1e-4)), ProcedureKind::DampingSweep(velocities)]);
+    plan.specimens[0].mass = 0.5;
+    plan.specimens[0].damping = 400.0;
+    plan.specimens[0].coulomb = 3.0;
+    plan
+}
+
+fn link(plan: &mut Plan, link: VirtualLink) {
+    plan.rig.link = Link::Virtual(link);
+}
+
+fn ramp_steps(history: &History) -> &[RampStep] {
+    match history {
+        History::Ramp(ramp) => &ramp.steps,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn sweep_steps(history: &History) -> &[SweepStep] {
+    match history {
+        History::Sweep(sweep) => &sweep.steps,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_ideal_ramp_and_sweep_give_back_the_specimen() {
+    let record = run_unwatched(&ramp_then_sweep());
+    assert_eq!(record.outcome, Outcome::Completed);
+    let near = |procedure, name, expected: f64| {
+        let value = number(&record, procedure, name).0.unwrap();
+        assert!((value - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{name}: {value}");
+    };
+    near(0, "stiffness", 3e5);
+    near(0, "intercept_force", 3.0);
+    // The first increment is where friction sets in: (30 + 3) N over 0.1 mm.
+    near(0, "secant_stiffness", 3.3e5);
+    near(0, "max_force", 303.0);
+    near(0, "max_displacement", 1e-3);
+    near(0, "relaxation", 0.0);
+    assert_eq!(number(&record, 0, "loop_energy"), (None, None));
+    near(1, "damping", 400.0);
+    near(1, "coulomb_force", 3.0);
+    near(1, "damping_ratio", 400.0 / (2.0 * (3e5_f64 * 0.5).sqrt()));
+    near(1, "max_velocity", 0.01);
+    let steps = sweep_steps(&record.procedures[1].history);
+    let steady = steps.iter().filter(|step| step.steady).count();
+    assert!(steady >= 10 * 50, "{steady}");
+    assert_eq!(steps.len() as u64, steps.last().unwrap().step);
+    assert!((steps.last().unwrap().displacement).abs() < 1e-15, "back where it began");
+}
+
+#[test]
+fn results_stand_in_the_order_of_the_reference() {
+    let record = run_unwatched(&ramp_then_sweep());
+    let names = |procedure: usize| -> Vec<_> { record.procedures[procedure].results.iter().map(|result| result.name).collect() };
+    let ramp = "stiffness, secant_stiffness, intercept_force, r_squared, max_force, max_displacement, loop_energy, relaxation";
+    assert_eq!(names(0).join(", "), ramp);
+    assert_eq!(names(1).join(", "), "damping, coulomb_force, r_squared, damping_ratio, max_velocity");
+}
+
+#[test]
+fn a_way_back_closes_the_loop_and_friction_is_its_energy() {
+    let back = StiffnessRamp { return_path: true, repeats: 2, ..ramp(1e-4) };
+    let mut plan = elastic_plan(1000.0, vec![ProcedureKind::StiffnessRamp(back)]);
+    plan.specimens[0].coulomb = 0.5;
+    let record = run_unwatched(&plan);
+    let steps = ramp_steps(&record.procedures[0].history);
+    assert_eq!(steps.len(), 2 * 20);
+    assert_eq!(steps.iter().filter(|step| step.returning).count(), 20);
+    assert_eq!(steps[19].command, 0.0);
+    // Trapezoids through the readings, by hand. Out and back of 1 mm with ±0.5 N is 1 mJ, less the corners: half an
+    // increment at the start (from 0 N, or from −0.5 N the second time) and a whole one at the turn.
+    let first: f64 = 0.5 * 1e-3 * 2.0 - 0.5 * 0.5 * 1e-4 - 0.5 * 1e-4;
+    let second = first - 0.5 * 0.5 * 1e-4;
+    let energy = number(&record, 0, "loop_energy").0.unwrap();
+    assert!((energy - 0.5 * (first + second)).abs() < 1e-12, "{energy}");
+    assert!((number(&record, 0, "stiffness").0.unwrap() - 1000.0).abs() < 1e-6);
+}
+
+#[test]
+fn relaxation_is_the_first_reading_less_the_mean_after_the_pause() {
+    let paused = StiffnessRamp { pause: constant(2.0), ..ramp(1e-4) };
+    let mut plan = elastic_plan(1000.0, vec![ProcedureKind::StiffnessRamp(paused)]);
+    link(&mut plan, VirtualLink { drift: -0.25, ..VirtualLink::default() });
+    let record = run_unwatched(&plan);
+    assert!((number(&record, 0, "relaxation").0.unwrap() - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn identification_finds_the_specimen_within_three_standard_errors_over_many_seeds() {
+    let mut plan = ramp_then_sweep();
+    let (mut misses, mut inside_one) = (0, 0);
+    for seed in 0..200 {
+        link(&mut plan, VirtualLink { noise: 2.0, seed, ..VirtualLink::default() });
+        let record = run_unwatched(&plan);
+        for (procedure, name, truth) in [(0, "stiffness", 3e5), (1, "damping", 400.0), (1, "coulomb_force", 3.0)] {
+            let (Some(value), Some(error)) = number(&record, procedure, name) else { panic!("{name} has no error") };
+            let deviations = (value - truth).abs() / error;
+            misses += usize::from(deviations > 3.0);
+            inside_one += usize::from(deviations <= 1.0);
+        }
+    }
+    // 600 draws: about 2 % of t₈ (the ramp) and 0.3 % of the sweep's lie beyond three; about 67 % lie within one.
+    assert!(misses <= 12, "{misses}");
+    assert!((360..=450).contains(&inside_one), "{inside_one}");
+}
+
+#[test]
+fn a_lagging_actuator_does_not_bias_the_damping() {
+    let mut plan = ramp_then_sweep();
+    link(&mut plan, VirtualLink { lag: 2e-3, ..VirtualLink::default() });
+    plan.rig.settle.band = 1e-9;
+    let record = run_unwatched(&plan);
+    let damping = number(&record, 1, "damping").0.unwrap();
+    assert!((damping / 400.0 - 1.0).abs() < 0.005, "{damping}");
+}
+
+#[test]
+fn a_breach_holds_the_rig_and_keeps_what_was_recorded() {
+    let mut plan = ramp_then_sweep();
+    plan.limits.displacement = Interval { low: -1e-3, high: 5.5e-4 };
+    let mut rig = VirtualRig::of_plan(&plan);
+    let record = run(&plan, &mut rig, &mut Unwatched);
+    assert!(
+        matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains("target displacement")),
+        "{:?}",
+        record.outcome
+    );
+    assert_eq!(record.procedures.len(), 1, "later procedures do not run");
+    let partial = &record.procedures[0];
+    assert!(!partial.complete);
+    assert_eq!(ramp_steps(&partial.history).len(), 5);
+    assert!((number(&record, 0, "stiffness").0.unwrap() - 3e5).abs() < 1e-3);
+    let last = record.events.last().unwrap();
+    assert_eq!((last.kind, last.step), (EventKind::LimitBreach, Some(5)));
+    // The force limit is found out by reading.
+    plan.limits = crate::plan::Limits { force: Interval { low: -1e3, high: 200.0 }, ..crate::plan::Limits::NONE };
+    let record = run_unwatched(&plan);
+    let by_hand = RigFault::LimitBreached { quantity: LimitedQuantity::Force, value: 213.0, low: -1e3, high: 200.0 };
+    let Outcome::Aborted { reason } = &record.outcome else { panic!("{:?}", record.outcome) };
+    assert_eq!(reason.split_whitespace().next(), by_hand.to_string().split_whitespace().next());
+    assert_eq!(ramp_steps(&record.procedures[0].history).len(), 6);
+}
+
+#[test]
+fn a_breach_inside_a_stroke_keeps_the_readings_before_it() {
+    let mut plan = ramp_then_sweep();
+    // The ramp ends at 303 N; damping lifts the stroke at 5 mm/s to 305 N.
+    plan.limits.force = Interval { low: -1e3, high: 304.0 };
+    let record = run_unwatched(&plan);
+    assert!(matches!(record.outcome, Outcome::Aborted { .. }));
+    let sweep = &record.procedures[1];
+    assert!(!sweep.complete && !sweep_steps(&sweep.history).is_empty());
+    assert!((number(&record, 1, "damping").0.unwrap() - 400.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_rig_that_does_not_settle_aborts_the_run() {
+    let mut plan = ramp_then_sweep();
+    plan.rig.settle = crate::plan::Settle { band: 1e-6, force_rate: 0.0, dwell: 0.1, timeout: 5.0 };
+    link(&mut plan, VirtualLink { tracking: 0.2, ..VirtualLink::default() });
+    assert!(matches!(run_unwatched(&plan).outcome, Outcome::Aborted { reason } if reason.contains("settle")));
+}
+
+#[test]
+fn an_input_that_does_not_exist_is_a_fault_of_the_run() {
+    let two = StiffnessRamp { displacements: vec![constant(1e-4)], ..ramp(1e-4) };
+    let plan = elastic_plan(3e5, vec![ProcedureKind::StiffnessRamp(two), ProcedureKind::DampingSweep(sweep(&[1e-3]))]);
+    let record = run_unwatched(&plan);
+    assert!(matches!(&record.outcome, Outcome::Faulted { reason } if reason.contains("`stiffness`")), "{:?}", record.outcome);
+    assert_eq!(record.procedures.len(), 2);
+    assert_eq!(number(&record, 1, "damping"), (None, None));
+    assert_eq!(record.events.last().unwrap().kind, EventKind::Fault);
+}
+
+#[test]
+fn a_seed_repeats_every_reading_and_another_does_not() {
+    let mut plan = ramp_then_sweep();
+    let mut steps = |seed| {
+        link(&mut plan, VirtualLink { noise: 2.0, seed, lag: 1e-3, ..VirtualLink::default() });
+        let record = run_unwatched(&plan);
+        (ramp_steps(&record.procedures[0].history).to_vec(), sweep_steps(&record.procedures[1].history).to_vec())
+    };
+    let first = steps(7);
+    assert_eq!(first, steps(7));
+    assert_ne!(first, steps(8));
+}
+
+/// Stops after some steps, or at the first inspection.
+struct Person {
+    steps_left: u32,
+    stops_at_inspection: bool,
+}
+
+impl Observer for Person {
+    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
+    fn step_done(&mut self, _: u64, _: f64, _: f64, _: f64) {
+        self.steps_left -= 1;
+    }
+    fn procedure_finished(&mut self, _: &str) {}
+    fn stop_requested(&self) -> bool {
+        self.steps_left == 0
+    }
+    fn inspect(&mut self, _: &str) -> Inspection {
+        if self.stops_at_inspection {
+            Inspection::Stop { reason: "a crack".to_owned() }
+        } else {
+            Inspection::GoOn { note: Some("nothing to see".to_owned()) }
+        }
+    }
+}
+
+#[test]
+fn a_person_can_stop_after_any_step_and_at_an_inspection() {
+    let to = Move { to: constant(2.5e-4), speed: Some(constant(1e-3)) };
+    let inspect = ProcedureKind::Inspect { note: "look at the bearing".to_owned() };
+    let mut plan = elastic_plan(3e5, vec![ProcedureKind::Move(to), inspect, ProcedureKind::StiffnessRamp(ramp(1e-4))]);
+    plan.limits.increment = Interval { low: 0.0, high: 1.6e-4 };
+    let attend = |steps_left, stops_at_inspection| {
+        let mut person = Person { steps_left, stops_at_inspection };
+        run(&plan, &mut VirtualRig::of_plan(&plan), &mut person)
+    };
+    let stopped = attend(2 + 4, false);
+    assert_eq!(stopped.outcome, Outcome::Aborted { reason: "stopped on request".to_owned() });
+    assert_eq!(ramp_steps(&stopped.procedures[2].history).len(), 4);
+    assert!(matches!(&stopped.procedures[0].history, History::Move(steps) if steps.len() == 2));
+    assert_eq!(stopped.events[0].text, "look at the bearing: nothing to see");
+    let at_inspection = attend(100, true);
+    assert_eq!(at_inspection.outcome, Outcome::Aborted { reason: "a crack".to_owned() });
+    assert_eq!(at_inspection.procedures.len(), 2);
+}
