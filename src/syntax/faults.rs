@@ -26,6 +26,12 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
     })
 }
 
+pub fn field_outside(span: Span, key: &str) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, format!("found the field `{key}` outside a block, expected an item"))
+        .at(span, "belongs to no block")
+        .help(format!("move it into its block, or name a value with `let {key} = …`"))
+}
+
 pub fn misplaced_block(span: Span) -> Diagnostic {
     Diagnostic::new(Code::Syntax, "found a block or item inside a block, expected `key = value` or `}`")
         .at(span, "expected a field")

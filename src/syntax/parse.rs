@@ -50,7 +50,7 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let mut faults = reader.faults;
     if faults.is_empty() {
         // The grammar refused what its pieces allow: say where it stopped.
-        faults.extend(refused(&tokens, text, 0, Rule::file));
+        faults.extend(Grammar::parse(Rule::file, text).err().map(|error| refused(&tokens, text, 0, &error)));
     }
     faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
     (ast, faults)
@@ -65,9 +65,8 @@ fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
     lowering.faults.into_inner().is_empty().then_some(items)?
 }
 
-/// Why the grammar refuses `text`, which starts at byte `base`; `None` where it does not.
-fn refused(tokens: &Tokens, text: &str, base: usize, rule: Rule) -> Option<Diagnostic> {
-    let error = Grammar::parse(rule, text).err()?;
+/// Why the grammar refuses `text`, which starts at byte `base`.
+fn refused(tokens: &Tokens, text: &str, base: usize, error: &pest::error::Error<Rule>) -> Diagnostic {
     let offset = match error.location {
         InputLocation::Pos(offset) | InputLocation::Span((offset, _)) => offset,
     };
@@ -79,7 +78,7 @@ fn refused(tokens: &Tokens, text: &str, base: usize, rule: Rule) -> Option<Diagn
     let later = &tokens.list[tokens.list.partition_point(|token| token.end <= at)..];
     let next = later.iter().find(|token| token.kind != Kind::Comment);
     let inside = next.filter(|token| token.start < base + text.len() || token.kind == Kind::Newline);
-    Some(match inside.filter(|token| token.kind != Kind::Newline) {
+    match inside.filter(|token| token.kind != Kind::Newline) {
         Some(token) => {
             let mut found: String = tokens.text_of(*token).chars().take(30).collect();
             if found.len() < token.end - token.start {
@@ -93,7 +92,7 @@ fn refused(tokens: &Tokens, text: &str, base: usize, rule: Rule) -> Option<Diagn
             let place = if inside.is_some() { "the end of the line" } else { "the end of the file" };
             faults::unexpected(tokens.span(end, end), place, &expected)
         }
-    })
+    }
 }
 
 /// Reads the pieces of a faulty file.
@@ -137,12 +136,15 @@ impl Pieces<'_> {
             return None;
         }
         let text = &self.tokens.text[start..end];
-        if let Some(fault) = refused(self.tokens, text, start, rule) {
-            self.faults.push(fault);
-            return None;
-        }
+        let mut pairs = match Grammar::parse(rule, text) {
+            Ok(pairs) => pairs,
+            Err(error) => {
+                self.faults.push(refused(self.tokens, text, start, &error));
+                return None;
+            }
+        };
         let lowering = Lowering::new(self.tokens.file, start);
-        let pair = Grammar::parse(rule, text).ok()?.next()?.into_inner().next()?;
+        let pair = pairs.next()?.into_inner().next()?;
         let lowered = lower(&lowering, pair);
         let faults = lowering.faults.into_inner();
         let sound = faults.is_empty();
@@ -157,6 +159,10 @@ impl Pieces<'_> {
 
     /// An item that is no block; of a faulty one, its name with a faulty value.
     fn item(&mut self, statement: Statement) -> Option<Item> {
+        if !layout::ITEM_WORDS.iter().any(|word| self.tokens.is(statement.start, word)) {
+            self.no_item(statement);
+            return None;
+        }
         if let Some(item) = self.alone(statement, Rule::item_alone, |lowering, pair| lowering.item(pair)) {
             return Some(item);
         }
@@ -176,6 +182,17 @@ impl Pieces<'_> {
             _ => return None,
         };
         Some(Item { span, kind })
+    }
+
+    /// What stands among the items and is none: a field, or a block without its `{`.
+    fn no_item(&mut self, statement: Statement) {
+        let key = self.word(statement.start).filter(|_| self.tokens.is(statement.start + 1, "="));
+        if let Some(key) = key {
+            self.faults.push(faults::field_outside(key.span, &key.node));
+        } else if self.alone(statement, Rule::head_alone, |lowering, pair| lowering.head(pair)).is_some() {
+            let (_, end) = self.bounds(statement);
+            self.faults.push(faults::unexpected(self.tokens.span(end, end), "the end of the line", "`{`"));
+        }
     }
 
     fn block(&mut self, head: Statement, open: usize, fields: &[Statement], close: Option<usize>) -> Option<Item> {

@@ -81,6 +81,8 @@ pub fn expected(rules: &[Rule]) -> String {
     if names.contains(&"a value") {
         names.retain(|name| !matches!(*name, "a text in quotes" | "an argument"));
     }
+    // What may follow on comes before what ends the line.
+    names.sort_by_key(|name| *name == "the end of the line");
     match names.split_last() {
         None => "something else".to_owned(),
         Some((last, [])) => (*last).to_owned(),

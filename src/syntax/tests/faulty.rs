@@ -33,7 +33,9 @@ fn syntax_faults_say_what_was_found_and_expected() {
     one("a {\n x = 1\n  limits {\n  y = 2\n }\n}\n", Syntax, "limits");
     one("a { x = 1 } let b = 2\n", Syntax, "let");
     one("a { x = 1 kg y = 2 }\n", Syntax, "y");
-    one("x = 3\n", Syntax, "=");
+    one("x = 3\n", Syntax, "x");
+    one("striker pendulum\n", Syntax, "");
+    one("3\n", Syntax, "3");
     let (_, found, _) = read("b {\n  mass =\n}\n");
     assert_eq!(found[0].message, "found the end of the line, expected a value");
     let (_, found, _) = read("b {\n  mass 3\n}\n");
