@@ -10,9 +10,9 @@ use super::Diagnostic;
 use crate::source::{FileId, Position, SourceFile, Sources};
 
 /// Characters of a line that are shown.
-const WIDEST_LINE: usize = 160;
+const WIDEST_LINE: usize = 120;
 /// Characters shown before the first place of a line that is cut.
-const LEAD: usize = 60;
+const LEAD: usize = 50;
 
 /// All files a diagnostic points into, one after the other; the first place's file is the first.
 #[derive(Debug)]

@@ -12,7 +12,7 @@ pub const SCHEMA: &str = "psd.diagnostics/1";
 
 /// The document around the diagnostics of one or more plans.
 #[must_use]
-pub fn document(diagnostics: Vec<Value>) -> Value {
+pub fn document(diagnostics: &[Value]) -> Value {
     let count = |severity: &str| diagnostics.iter().filter(|diagnostic| diagnostic["severity"] == severity).count();
     let (errors, warnings) = (count("error"), count("warning"));
     json!({ "schema": SCHEMA, "errors": errors, "warnings": warnings, "diagnostics": diagnostics })
@@ -84,6 +84,6 @@ mod tests {
         let fault = Diagnostic::new(Code::UnknownParameter, "no parameter `v`");
         let value = diagnostic(&fault, &Sources::default(), "a.psd", "");
         assert_eq!((&value["file"], &value["line"]), (&json!("a.psd"), &Value::Null));
-        assert_eq!(document(vec![value])["errors"], json!(1));
+        assert_eq!(document(&[value])["errors"], json!(1));
     }
 }

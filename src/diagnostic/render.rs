@@ -1,9 +1,9 @@
 //! Diagnostics for a person, the one place where they become text. In: diagnostics and their sources.
-//! Out: the drawing, source line, places and help. Knows the drawing tool; reads no terminal and no environment.
+//! Out: the drawing, source line, places and help. Knows the drawing tool; reads no environment.
 
 use std::fmt;
 
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, ThemeCharacters, ThemeStyles};
+use miette::{GraphicalTheme, LabeledSpan, MietteHandlerOpts, ReportHandler as _, ThemeCharacters, ThemeStyles};
 
 use super::excerpt::{Excerpt, escape};
 use super::{Diagnostic, Severity};
@@ -17,8 +17,8 @@ pub const DRAWN: usize = 20;
 pub struct Appearance {
     pub color: bool,
     pub unicode: bool,
-    /// Columns.
-    pub width: usize,
+    /// Columns; None: as many as the terminal has, which the drawing tool asks for itself.
+    pub width: Option<usize>,
     /// Put before the name of a file, so that it can be opened from where the person stands: `plans/`.
     pub folder: String,
 }
@@ -27,7 +27,7 @@ impl Appearance {
     /// No colour, 100 columns: a pipe.
     #[must_use]
     pub const fn plain() -> Self {
-        Self { color: false, unicode: true, width: 100, folder: String::new() }
+        Self { color: false, unicode: true, width: Some(100), folder: String::new() }
     }
 }
 
@@ -65,17 +65,17 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources, appearance: &Appearanc
         excerpt,
         labels,
     };
-    let handler = GraphicalReportHandler::new_themed(theme(&drawn, appearance))
-        .with_width(appearance.width.max(30))
-        .with_context_lines(1)
-        .with_links(false)
-        .with_urls(false)
+    let mut options = MietteHandlerOpts::new()
+        .graphical_theme(theme(&drawn, appearance))
+        .force_graphical(true)
+        .color(appearance.color)
+        .terminal_links(false)
+        .context_lines(1)
         .tab_width(4);
-    let mut text = String::new();
-    // Writing to a String cannot fail; should the drawing itself fail, the message must still be seen.
-    if handler.render_report(&mut text, &drawn).is_err() {
-        text = format!("{}: {}\n", drawn.head, drawn.message);
+    if let Some(width) = appearance.width {
+        options = options.width(width.max(30));
     }
+    let text = Drawing { handler: options.build(), diagnostic: &drawn }.to_string();
     let trimmed: Vec<&str> = text.lines().map(str::trim_end).filter(|line| !line.is_empty()).collect();
     format!("{}\n", trimmed.join("\n"))
 }
@@ -118,6 +118,19 @@ fn theme(drawn: &Drawn, appearance: &Appearance) -> GraphicalTheme {
     }
     let characters = if appearance.unicode { ThemeCharacters::unicode() } else { ThemeCharacters::ascii() };
     GraphicalTheme { characters, styles }
+}
+
+/// The drawing tool draws into a formatter only.
+struct Drawing<'a> {
+    handler: miette::MietteHandler,
+    diagnostic: &'a Drawn,
+}
+
+impl fmt::Display for Drawing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Should the drawing itself fail, the message must still be seen.
+        self.handler.debug(self.diagnostic, f).or_else(|_| write!(f, "{}: {}", self.diagnostic.head, self.diagnostic.message))
+    }
 }
 
 /// A diagnostic in the drawing tool's words.
@@ -201,7 +214,7 @@ mod tests {
         sources.add("beam.psd", "use \"lib/frame.psd\"\nlet k = 2\n");
         sources.add("lib/frame.psd", "# the frame\nlet k = 1\n");
         let diagnostic = Diagnostic::new(Code::Duplicate, "`k` is declared twice")
-            .at(at(&sources, "lib/frame.psd", "k = 1").clone(), "again here")
+            .at(at(&sources, "lib/frame.psd", "k = 1"), "again here")
             .at(at(&sources, "beam.psd", "k = 2"), "first here");
         insta::assert_snapshot!(render(&diagnostic, &sources, &Appearance::plain()), @r#"
         error[E208]

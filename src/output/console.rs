@@ -33,10 +33,8 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
                 || "no value".to_owned(),
                 |value| number::with_uncertainty(value, deciding.uncertainty, deciding.dimension),
             );
-            let margin = deciding.margin.map_or_else(
-                || deciding.reason.clone().unwrap_or_default(),
-                |margin| format!("margin {}", number::text(margin, deciding.dimension)),
-            );
+            let margin = number::margin(deciding)
+                .map_or_else(|| deciding.reason.clone().unwrap_or_default(), |margin| format!("margin {margin}"));
             [requirement.verdict.name().to_owned(), name, value, number::bound(deciding), printable(&margin)]
         })
         .collect();

@@ -8,7 +8,29 @@ use crate::verdict::{Bound, ConditionOutcome};
 
 /// A value in its readable unit: `7.922 mm`, `−2.000 kN`, `20` for a count.
 pub(super) fn text(value: f64, dimension: Dimension) -> String {
-    let (unit, factor) = unit(value, dimension);
+    text_beside(value, value, dimension)
+}
+
+/// A value as somebody stated it, without digits that nobody stated: `8.5 mm`, `10 s`.
+pub(super) fn stated(value: f64, dimension: Dimension) -> String {
+    stated_beside(value, value, dimension)
+}
+
+/// A stated value in the unit of `beside`, so that the two can be compared at sight.
+pub(super) fn stated_beside(value: f64, beside: f64, dimension: Dimension) -> String {
+    let (unit, factor) = unit(beside, dimension);
+    let digits = significant(value / factor, 6);
+    let trimmed = match digits.split_once('.') {
+        Some((_, decimals)) if decimals.contains('e') => digits,
+        Some(_) => digits.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        None => digits,
+    };
+    join(&minus(&trimmed), &unit)
+}
+
+/// A computed value in the unit of `beside`.
+pub(super) fn text_beside(value: f64, beside: f64, dimension: Dimension) -> String {
+    let (unit, factor) = unit(beside, dimension);
     join(&number(value, factor, dimension), &unit)
 }
 
@@ -27,7 +49,12 @@ pub(super) fn with_uncertainty(value: f64, uncertainty: Option<f64>, dimension: 
 /// the decimal (`327.7 N/m`); the others go by the shared rule (`0.1579 m`).
 pub(super) fn unit(value: f64, dimension: Dimension) -> (String, f64) {
     let by_thousands = matches!(dimension, Dimension::FORCE | Dimension::STIFFNESS | Dimension::ENERGY);
-    readable_unit(if by_thousands { 0.1 * value } else { value }, dimension)
+    match dimension {
+        // A time-out of 10 s is not 0.1667 min.
+        Dimension::TIME if value.abs() < 60.0 && value.abs() >= 1.0 => ("s".to_owned(), 1.0),
+        Dimension::TIME if value.abs() < 3600.0 && value.abs() >= 60.0 => ("min".to_owned(), 60.0),
+        _ => readable_unit(if by_thousands { 0.1 * value } else { value }, dimension),
+    }
 }
 
 /// Decimals that show two digits of the uncertainty; None where plain decimals would not be readable.
@@ -42,16 +69,28 @@ fn decimals_of(value: f64, uncertainty: f64) -> Option<usize> {
 
 fn number(value: f64, factor: f64, dimension: Dimension) -> String {
     let is_count = dimension == Dimension::NUMBER && value.fract() == 0.0 && value.abs() < 1e9;
-    minus(&if is_count { format!("{value:.0}") } else { significant(value / factor, 4) })
+    if is_count {
+        return minus(&format!("{value:.0}"));
+    }
+    // Rounded first: 0.009999999 is 0.01000, not 0.010000.
+    let scaled = value / factor;
+    let rounded = format!("{scaled:.3e}").parse().unwrap_or(scaled);
+    minus(&significant(rounded, 4))
 }
 
 fn join(number: &str, unit: &str) -> String {
     if unit.is_empty() { number.to_owned() } else { format!("{number}\u{a0}{}", typeset(unit)) }
 }
 
-/// The hyphen of a negative number as a minus sign.
+/// A number with a true minus sign and its power of ten raised: `-1.6e-15` → `−1.6 × 10⁻¹⁵`.
 pub(super) fn minus(number: &str) -> String {
-    number.replace('-', "−")
+    match number.split_once('e') {
+        Some((lead, power)) => {
+            let raised: String = power.chars().filter_map(superscript).collect();
+            format!("{} × 10{raised}", lead.replace('-', "−"))
+        }
+        None => number.replace('-', "−"),
+    }
 }
 
 /// A unit of the language as print sets it: `N*s/m` → `N·s/m`, `mm^2` → `mm²`, `um` → `µm`.
@@ -73,14 +112,22 @@ pub(super) fn typeset(unit: &str) -> String {
     if let Some(rest) = set.strip_prefix('u') { format!("µ{rest}") } else { set }
 }
 
-/// The bound of a condition as mathematics: `≤ 8.500 mm`, `10.00 J ± 1.500 J`.
+/// The bound of a condition as mathematics: `≤ 8.500 mm`, `10 J ± 1.5 J`.
 pub(super) fn bound(condition: &ConditionOutcome) -> String {
-    let number = |value| text(value, condition.dimension);
+    let number = |value| stated(value, condition.dimension);
     match condition.bound {
         None => "—".to_owned(),
         Some(Bound::Compare { comparison, limit }) => format!("{} {}", comparison_sign(comparison), number(limit)),
         Some(Bound::Within { target, tolerance }) => format!("{} ± {}", number(target), number(tolerance)),
     }
+}
+
+/// The margin of a condition in the unit of its bound; None where there is no margin.
+pub(super) fn margin(condition: &ConditionOutcome) -> Option<String> {
+    let beside = match condition.bound? {
+        Bound::Compare { limit: at, .. } | Bound::Within { target: at, .. } => at,
+    };
+    condition.margin.map(|margin| text_beside(margin, if beside == 0.0 { margin } else { beside }, condition.dimension))
 }
 
 /// The comparison as print sets it.
@@ -122,6 +169,15 @@ mod tests {
         assert_eq!(typeset("N*s/m"), "N·s/m");
         assert_eq!(typeset("mm^2"), "mm²");
         assert_eq!(typeset("um"), "µm");
+        assert_eq!(minus("-1.6e-15"), "−1.6 × 10⁻¹⁵");
+    }
+
+    #[test]
+    fn a_stated_value_has_no_digits_that_nobody_stated() {
+        assert_eq!(stated(10.0, Dimension::TIME), "10\u{a0}s");
+        assert_eq!(stated(0.0085, Dimension::LENGTH), "8.5\u{a0}mm");
+        assert_eq!(stated_beside(-0.01, 0.2, Dimension::LENGTH), "−0.01\u{a0}m");
+        assert_eq!(stated(300_000.0, Dimension::STIFFNESS), "300\u{a0}kN/m");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::ser::SerializeMap as _;
@@ -248,7 +249,9 @@ impl Summary {
     /// # Errors
     /// Never in practice.
     pub fn json_schema() -> Result<String, serde_json::Error> {
-        serde_json::to_string_pretty(&schemars::schema_for!(Self)).map(|json| json + "\n")
+        // As written, not as read: every field is always there, null where it has no value.
+        let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+        serde_json::to_string_pretty(&generator.into_root_schema_for::<Self>()).map(|json| json + "\n")
     }
 }
 

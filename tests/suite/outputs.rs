@@ -63,10 +63,192 @@ fn the_same_run_gives_the_same_bytes_and_the_files_of_the_language() {
         ]
     );
     assert_eq!(text(&first, "manifest.sha256").lines().count(), paths.len() - 1);
-    let destination = std::env::var_os("PSD_TEST_OUTPUTS");
-    for file in destination.iter().flat_map(|_| &first) {
-        let path = std::path::Path::new(destination.as_ref().unwrap()).join(&file.path);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, &file.bytes).unwrap();
+}
+
+#[test]
+fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
+    let finished = finished();
+    let files = files(&finished);
+    let mut lines = text(&files, "tables/hit.csv").lines();
+    assert_eq!(lines.next(), Some(IMPACT_COLUMNS));
+    let steps = impact_steps(&finished);
+    assert_eq!(lines.clone().count(), steps.len());
+    for (line, step) in lines.zip(steps) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!((cells[0], cells[3]), (step.step.to_string().as_str(), step.state.name()));
+        let wanted = row(step);
+        let read: Vec<u64> = cells[1..]
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != 2)
+            .map(|(_, cell)| cell.parse::<f64>().unwrap().to_bits())
+            .collect();
+        assert_eq!(read, wanted.map(f64::to_bits));
+    }
+    let header = |path| text(&files, path).lines().next().unwrap().to_owned();
+    assert_eq!(
+        header("tables/k0.csv"),
+        "step,wall_time_s,command_m,displacement_m,restoring_force_n,force_scatter_n,relaxation_n,tangent_stiffness_n_per_m,returning"
+    );
+    assert_eq!(
+        header("tables/c.csv"),
+        "step,wall_time_s,velocity_m_per_s,displacement_m,restoring_force_n,damping_force_n,steady"
+    );
+}
+
+/// The numbers of a row in the order of the columns, step and state apart.
+fn row(step: &ImpactStep) -> [f64; 19] {
+    let e = step.energies;
+    [
+        step.time,
+        step.wall_time,
+        step.command,
+        step.displacement,
+        step.velocity,
+        step.acceleration,
+        step.restoring_force,
+        step.contact_force,
+        step.striker_displacement,
+        step.striker_velocity,
+        step.tangent_stiffness,
+        step.indentation,
+        e.striker,
+        e.structure,
+        e.restoring,
+        e.damping,
+        e.contact_loss,
+        e.indentation,
+        e.error,
+    ]
+}
+
+#[test]
+fn parquet_reads_back_as_the_record() {
+    let finished = finished();
+    let files = files(&finished);
+    let frame = ParquetReader::new(Cursor::new(bytes(&files, "tables/hit.parquet"))).finish().unwrap();
+    let names: Vec<&str> = frame.get_column_names().into_iter().map(|name| name.as_str()).collect();
+    assert_eq!(names.join(","), IMPACT_COLUMNS);
+    let column = frame.column("displacement_m").unwrap().f64().unwrap();
+    let read: Vec<u64> = column.into_no_null_iter().map(f64::to_bits).collect();
+    let wanted: Vec<u64> = impact_steps(&finished).iter().map(|step| step.displacement.to_bits()).collect();
+    assert_eq!(read, wanted);
+}
+
+#[test]
+fn the_committed_schema_is_the_generated_one_and_holds_for_a_summary() {
+    let generated = Summary::json_schema().unwrap();
+    // Where the types have changed on purpose, SNAPSHOTS=overwrite writes the file anew.
+    snapbox::assert_data_eq!(generated.clone(), snapbox::file!["../../grammar/summary.schema.json": Text].raw());
+    let schema: serde_json::Value = serde_json::from_str(&generated).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let finished = finished();
+    let mut summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+    let faults: Vec<String> = validator.iter_errors(&summary).map(|error| error.to_string()).collect();
+    assert_eq!(faults, [] as [String; 0]);
+    summary["procedures"]["hit"]["results"]["contacts"]["value"] = "three".into();
+    assert!(!validator.is_valid(&summary), "a wrong summary must not pass");
+}
+
+#[test]
+fn the_summary_says_what_the_language_promises() {
+    let finished = finished();
+    let summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+    assert_eq!(summary["schema"], "psd.summary/1");
+    assert_eq!(summary["verdict"], "pass");
+    assert_eq!(summary["rig"]["simulated"], true);
+    let hit = &summary["procedures"]["hit"];
+    assert_eq!(hit["kind"], "impact");
+    let largest = hit["results"]["max_displacement"]["value"].as_f64().unwrap();
+    assert!((largest - 0.157_353).abs() < 1e-6, "Example 1 at 1 ms: {largest}");
+    assert_eq!(hit["results"]["max_displacement"]["unit"], "m");
+    assert_eq!(hit["results"]["restitution"]["value"], serde_json::Value::Null);
+    assert_eq!(summary["procedures"]["k0"]["results"]["stiffness"]["u"], 0.41);
+    let requirement = &summary["requirements"][0];
+    assert_eq!(requirement["name"], "stays in travel");
+    assert_eq!(requirement["limit"], 0.17);
+    assert_eq!(requirement["margin"].as_f64(), Some(0.17 - largest));
+    let order: Vec<&String> = summary["procedures"].as_object().unwrap().keys().collect();
+    assert_eq!(order, ["k0", "c", "hit"]);
+}
+
+#[test]
+fn the_certificate_loads_and_runs_nothing_and_says_what_it_is() {
+    let finished = hostile();
+    let files = files(&finished);
+    let html = text(&files, "certificate.html");
+    for forbidden in ["<script", "<img src=x", "<b>at</b>", "src=\"http", "href=", "@import", "url(", "ISO 17025 certified"] {
+        assert!(!html.contains(forbidden), "{forbidden} stands in the certificate");
+    }
+    assert!(html.contains("default-src 'none'"));
+    assert!(html.contains("&lt;script&gt;"));
+    for wanted in [
+        "Simulated rig: rehearsal, not a test of a specimen.",
+        "NOT CERTIFIABLE",
+        "not given",
+        "clause 7.8",
+        "relate only to the items tested",
+        "e = Ms/(Ms + 2M) = 0.8333",
+        "End of report, run 0123456789abcdef",
+    ] {
+        assert!(html.contains(wanted), "{wanted} is missing");
+    }
+    let pictures = html.matches("data:image/png;base64,").count();
+    assert_eq!(pictures, finished.plan.report.figures.len());
+    assert_eq!(html.matches("<figcaption>").count(), pictures);
+}
+
+/// A run whose every text wants to be something else.
+fn hostile() -> Finished {
+    let mut finished = finished();
+    let label = "</td><script>alert(1)</script><img src=x onerror=alert(1)>\u{1b}[31m";
+    finished.plan.title = label.into();
+    finished.plan.requirements[0].label = label.into();
+    finished.assessment.requirements[0].label = label.into();
+    finished.assessment.requirements[0].conditions[0].text = label.into();
+    finished.plan.particulars.push(("customer", label.into()));
+    finished.plan.files[0].name = "../../escape.psd".into();
+    finished.record.rig.name = label.into();
+    finished
+}
+
+#[test]
+fn hostile_texts_stay_in_the_run_folder_and_off_the_terminal() {
+    let finished = hostile();
+    let files = files(&finished);
+    assert!(files.iter().all(|file| !file.path.contains("..") && !file.path.starts_with('/')));
+    assert_eq!(text(&files, "plan/escape.psd"), finished.plan.files[0].text);
+    assert!(!console::verdict_text(&finished.run(), false).contains('\u{1b}'));
+}
+
+#[test]
+fn the_console_aligns_requirements_and_colours_only_when_asked() {
+    let finished = finished();
+    let plain = console::verdict_text(&finished.run(), false).replace('\u{a0}', " ");
+    insta::assert_snapshot!(plain, @r"
+    PASS  Simply supported beam, midspan impact  (simulated rig: rehearsal)
+      pass  stays in travel  0.15735 ± 0.00020 m  ≤ 0.17 m  margin 0.01265 m
+      pass  energy closes    1.599 × 10⁻¹⁵        ≤ 0.01    margin 0.01000
+      note: Parameter impact_speed was set to 1 m/s for this run.
+      run 0123456789abcdef
+    ");
+    let coloured = console::verdict_text(&finished.run(), true);
+    assert!(coloured.starts_with("\u{1b}[1;32mPASS\u{1b}[0m"));
+}
+
+#[test]
+fn figures_are_pictures_at_192_dpi_with_something_on_them() {
+    let files = files(&finished());
+    let figures: Vec<&OutputFile> = files.iter().filter(|file| file.path.starts_with("figures/")).collect();
+    assert_eq!(figures.len(), 8);
+    for figure in figures {
+        let mut reader = png::Decoder::new(Cursor::new(&figure.bytes)).read_info().unwrap();
+        let size = reader.info().pixel_dims.unwrap();
+        assert_eq!((size.xppu, size.yppu, size.unit), (7559, 7559, png::Unit::Meter));
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let inked = pixels.chunks_exact(3).filter(|pixel| pixel.iter().any(|channel| *channel < 200)).count();
+        let share = inked as f64 / (pixels.len() / 3) as f64;
+        assert!((0.005..0.2).contains(&share), "{}: {share} of the picture is inked", figure.path);
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn all(run: &Run<'_>) -> Markup {
             @if !run.plan.parameters.is_empty() { h3 { "Parameters" } (parameters(run)) }
             p.note {
                 "Masses, geometry and striker speed are as the plan states them; they were not measured in this run. A pseudo-dynamic "
-                "test loads the specimen slowly: effects of strain rate and of the specimen's own inertia are not in the measured force."
+                "test loads the specimen slowly: effects of strain rate and of the inertia of the specimen are not in the measured force."
             }
         }
     }
@@ -60,19 +60,19 @@ fn particulars(run: &Run<'_>) -> Markup {
 }
 
 fn specimen_table(specimen: &Specimen) -> Markup {
-    let mut rows = vec![("equivalent mass", number::text(specimen.mass, Dimension::MASS))];
+    let mut rows = vec![("equivalent mass", number::stated(specimen.mass, Dimension::MASS))];
     match specimen.behaviour {
         None => {}
         Some(Behaviour::Elastic { stiffness }) => {
-            rows.push(("virtual behaviour", format!("elastic, stiffness {}", number::text(stiffness, Dimension::STIFFNESS))));
+            rows.push(("virtual behaviour", format!("elastic, stiffness {}", number::stated(stiffness, Dimension::STIFFNESS))));
         }
         Some(Behaviour::Bilinear { stiffness, yield_force, hardening }) => rows.push((
             "virtual behaviour",
             format!(
                 "bilinear, stiffness {}, yield force {}, hardening {}",
-                number::text(stiffness, Dimension::STIFFNESS),
-                number::text(yield_force, Dimension::FORCE),
-                number::text(hardening, Dimension::NUMBER)
+                number::stated(stiffness, Dimension::STIFFNESS),
+                number::stated(yield_force, Dimension::FORCE),
+                number::stated(hardening, Dimension::NUMBER)
             ),
         )),
         Some(Behaviour::Beam { stiffness, length, youngs_modulus, second_moment, ends }) => rows.push((
@@ -80,18 +80,18 @@ fn specimen_table(specimen: &Specimen) -> Markup {
             format!(
                 "beam, {}, length {}, modulus {}, second moment {}: stiffness {}",
                 held(ends),
-                number::text(length, Dimension::LENGTH),
-                number::text(youngs_modulus, Dimension::PRESSURE),
-                number::text(second_moment, Dimension::SECOND_MOMENT),
-                number::text(stiffness, Dimension::STIFFNESS)
+                number::stated(length, Dimension::LENGTH),
+                number::stated(youngs_modulus, Dimension::PRESSURE),
+                number::stated(second_moment, Dimension::SECOND_MOMENT),
+                number::stated(stiffness, Dimension::STIFFNESS)
             ),
         )),
     }
     if specimen.damping != 0.0 {
-        rows.push(("damping on the load cell", number::text(specimen.damping, Dimension::DAMPING)));
+        rows.push(("damping on the load cell", number::stated(specimen.damping, Dimension::DAMPING)));
     }
     if specimen.coulomb != 0.0 {
-        rows.push(("friction on the load cell", number::text(specimen.coulomb, Dimension::FORCE)));
+        rows.push(("friction on the load cell", number::stated(specimen.coulomb, Dimension::FORCE)));
     }
     described(rows)
 }
@@ -102,17 +102,20 @@ fn held(ends: Ends) -> String {
         Ends::SimplySupported => "simply supported".to_owned(),
         Ends::BuiltIn => "built in".to_owned(),
         Ends::PartlyBuiltIn { rotational_stiffness } => {
-            format!("partly built in ({} per radian)", number::text(rotational_stiffness, Dimension::ENERGY).replace('J', "N·m"))
+            format!(
+                "partly built in ({} per radian)",
+                number::stated(rotational_stiffness, Dimension::ENERGY).replace('J', "N·m")
+            )
         }
     }
 }
 
 fn striker_table(striker: &Striker) -> Markup {
     described(vec![
-        ("mass", number::text(striker.mass, Dimension::MASS)),
-        ("velocity at the start", number::text(striker.velocity, Dimension::VELOCITY)),
-        ("energy", number::text(0.5 * striker.mass * striker.velocity * striker.velocity, Dimension::ENERGY)),
-        ("gap at the start", number::text(striker.gap, Dimension::LENGTH)),
+        ("mass", number::stated(striker.mass, Dimension::MASS)),
+        ("velocity at the start", number::stated(striker.velocity, Dimension::VELOCITY)),
+        ("energy", number::stated(0.5 * striker.mass * striker.velocity * striker.velocity, Dimension::ENERGY)),
+        ("gap at the start", number::stated(striker.gap, Dimension::LENGTH)),
     ])
 }
 
@@ -138,7 +141,7 @@ fn rig(run: &Run<'_>) -> Markup {
         let stated: Vec<String> = terms
             .into_iter()
             .filter(|(_, value, _)| *value != 0.0)
-            .map(|(name, value, dimension)| format!("{name} {}", number::text(value, dimension)))
+            .map(|(name, value, dimension)| format!("{name} {}", number::stated(value, dimension)))
             .collect();
         let text = if stated.is_empty() { "none: an ideal rig".to_owned() } else { stated.join("; ") };
         rows.push(("Simulated errors".to_owned(), html! { (text) }));
@@ -153,10 +156,10 @@ fn settling(settle: Settle) -> String {
     }
     format!(
         "within {} of the target and under {} for {}, at most {}",
-        number::text(settle.band, Dimension::LENGTH),
-        number::text(settle.force_rate, Dimension::FORCE_RATE),
-        number::text(settle.dwell, Dimension::TIME),
-        number::text(settle.timeout, Dimension::TIME)
+        number::stated(settle.band, Dimension::LENGTH),
+        number::stated(settle.force_rate, Dimension::FORCE_RATE),
+        number::stated(settle.dwell, Dimension::TIME),
+        number::stated(settle.timeout, Dimension::TIME)
     )
 }
 
@@ -177,7 +180,8 @@ fn limits(limits: &Limits) -> Markup {
 }
 
 fn range(interval: Interval, dimension: Dimension) -> String {
-    let text = |value: f64| number::text(value, dimension);
+    let largest = [interval.low, interval.high].into_iter().filter(|end| end.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
+    let text = |value: f64| number::stated_beside(value, largest, dimension);
     match (interval.low.is_finite(), interval.high.is_finite()) {
         (true, true) => format!("{} to {}", text(interval.low), text(interval.high)),
         (true, false) => format!("≥ {}", text(interval.low)),
@@ -194,7 +198,7 @@ fn parameters(run: &Run<'_>) -> Markup {
             let origin = if parameter.set { "set for this run" } else { "as the plan states" };
             (
                 parameter.name.clone(),
-                html! { (number::text(parameter.value, parameter.dimension)) " " span.soft { "(" (origin) ")" } },
+                html! { (number::stated(parameter.value, parameter.dimension)) " " span.soft { "(" (origin) ")" } },
             )
         })
         .collect();

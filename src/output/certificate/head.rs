@@ -99,7 +99,7 @@ fn conditions(requirement: &RequirementOutcome) -> Markup {
                     }
                 }
                 td.number { (number::bound(condition)) }
-                td.number { @if let Some(margin) = condition.margin { (number::text(margin, condition.dimension)) } @else { "—" } }
+                td.number { @if let Some(margin) = number::margin(condition) { (margin) } @else { "—" } }
                 td class=(condition.verdict.name()) { (condition.verdict.name()) }
             }
         }

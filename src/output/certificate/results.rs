@@ -37,7 +37,11 @@ fn inputs(procedure: &ProcedureRecord) -> Markup {
         .inputs
         .iter()
         .map(|(name, estimate, dimension)| {
-            format!("{} {}", words(name), number::with_uncertainty(estimate.value, estimate.uncertainty, *dimension))
+            let value = match estimate.uncertainty {
+                Some(_) => number::with_uncertainty(estimate.value, estimate.uncertainty, *dimension),
+                None => number::stated(estimate.value, *dimension),
+            };
+            format!("{} {value}", words(name))
         })
         .collect();
     html! { @if !texts.is_empty() { p.note { "Run with: " (texts.join("; ")) "." } } }
@@ -63,7 +67,11 @@ fn table(results: &[NamedResult]) -> Markup {
 fn value(result: &NamedResult) -> Markup {
     match &result.value {
         ResultValue::Number { value: Some(value), uncertainty } => {
-            html! { (number::with_uncertainty(*value, *uncertainty, result.dimension)) }
+            // A goodness of fit is told by how many nines it has.
+            let is_fit = result.name == "r_squared";
+            let text =
+                if is_fit { format!("{value:.6}") } else { number::with_uncertainty(*value, *uncertainty, result.dimension) };
+            html! { (text) }
         }
         ResultValue::Number { value: None, .. } => html! { span.missing { "none in this run" } },
         ResultValue::List(values) => {
@@ -149,8 +157,8 @@ fn energy_balance(history: &ImpactHistory) -> Markup {
 
 fn percent(share: f64) -> String {
     let text =
-        if share != 0.0 && share.abs() < 1e-4 { format!("{:.1e} %", 100.0 * share) } else { format!("{:.2} %", 100.0 * share) };
-    number::minus(&text)
+        if share != 0.0 && share.abs() < 1e-4 { format!("{:.1e}", 100.0 * share) } else { format!("{:.2}", 100.0 * share) };
+    number::minus(&text) + " %"
 }
 
 /// Every figure, numbered, its picture inside the page.

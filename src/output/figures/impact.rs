@@ -88,7 +88,7 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
             }
             let mut add = |sign: &str, y: f64| {
                 lines.push(Reference {
-                    label: format!("{}: {sign} {}", requirement.label, number::text(y, condition.dimension)),
+                    label: format!("{}: {sign} {}", requirement.label, number::stated(y, condition.dimension)),
                     y,
                 });
             };

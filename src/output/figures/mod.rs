@@ -65,7 +65,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
         ),
         (History::Impact(history), FigureKind::Energy) => (
             impact::energy(history),
-            format!("{name}: where the striker's energy went; the total of the parts stays level where the balance closes."),
+            format!("{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."),
         ),
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),
