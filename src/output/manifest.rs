@@ -11,7 +11,7 @@ use super::OutputFile;
 pub(super) fn of(files: &[OutputFile]) -> OutputFile {
     let mut lines: Vec<(&str, String)> = files.iter().map(|file| (file.path.as_str(), sha256(&file.bytes))).collect();
     lines.sort();
-    let text: String = lines.into_iter().map(|(path, hash)| format!("{hash}  {path}\n")).collect();
+    let text = lines.into_iter().fold(String::new(), |text, (path, hash)| text + &hash + "  " + path + "\n");
     OutputFile { path: "manifest.sha256".to_owned(), bytes: text.into_bytes() }
 }
 

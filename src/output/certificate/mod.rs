@@ -3,6 +3,7 @@
 
 mod appendix;
 mod conditions;
+mod contact_log;
 mod head;
 mod results;
 

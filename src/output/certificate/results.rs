@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 use super::super::figures::Drawn;
 use super::super::{Run, number};
-use super::{pairs, words};
+use super::{contact_log, pairs, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::Dimension;
@@ -25,6 +25,7 @@ pub(super) fn procedures(run: &Run<'_>) -> Markup {
                 @if !procedure.results.is_empty() { (table(&procedure.results)) }
                 @if let History::Impact(history) = &procedure.history {
                     (force_note(run, index, procedure, history))
+                    (contact_log::table(history))
                     (energy_balance(history))
                 }
             }
@@ -49,7 +50,7 @@ fn inputs(procedure: &ProcedureRecord) -> Markup {
 
 fn table(results: &[NamedResult]) -> Markup {
     html! {
-        table {
+        table.results {
             thead { tr { th { "Result" } th.number { "Value ± u" } th { "In the plan" } } }
             tbody {
                 @for result in results {
@@ -94,16 +95,39 @@ fn force_note(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history:
     let critical = number::text(history.critical_time_step, Dimension::TIME);
     html! {
         p {
+            "Contact law: " (contact_law(&impact.contact)) ". "
             @if let (Some(peak), Some(impulse)) = (result("max_contact_force"), result("impulse")) {
                 "Peak contact force " (number::text(peak, Dimension::FORCE)) " with an impulse of "
                 (number::text(impulse, Dimension::IMPULSE)) " at a time step of " (step) ". "
             } @else { "Time step " (step) ". " }
-            "Critical time step (Melo et al. 2006, eq. 7) " (critical) ". "
+            "Critical time step (Melo et al. 2006, eq. 7) " (critical) ". " (pace(history))
             @if matches!(impact.contact, Contact::Rigid) {
                 "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the "
                 "blow, the peak is not. " (implied_restitution(run, procedure, impact))
             }
         }
+    }
+}
+
+/// Virtual time beside the time the rig took for it.
+fn pace(history: &ImpactHistory) -> Markup {
+    let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else { return html! {} };
+    let (virtual_time, rig_time) = (last.time - first.time, last.wall_time - first.wall_time);
+    html! {
+        @if virtual_time > 0.0 && rig_time > 0.0 {
+            (number::text(virtual_time, Dimension::TIME)) " of virtual time took " (number::text(rig_time, Dimension::TIME))
+            " on the rig, " (format!("{:.0}", rig_time / virtual_time)) " times as long. "
+        }
+    }
+}
+
+/// The law of contact as the plan chose it, in words.
+fn contact_law(contact: &Contact) -> &'static str {
+    match contact {
+        Contact::Rigid => "rigid",
+        Contact::Limit { .. } => "rigid up to a limit force",
+        Contact::Restitution { .. } => "restitution",
+        Contact::Hertz { .. } => "Hertz",
     }
 }
 
@@ -133,14 +157,14 @@ fn energy_balance(history: &ImpactHistory) -> Markup {
         ("integration error", e.error),
     ];
     html! {
-        table {
+        table.results {
             thead { tr { th { "Energy balance at the end of the run" } th.number { "Energy" } th.number { "Of the input" } } }
             tbody {
                 tr { td { "input, ½MsV₀²" } td.number { (number::text(input, Dimension::ENERGY)) } td.number { "100 %" } }
                 @for (name, energy) in parts {
                     tr {
                         td { (name) }
-                        td.number { (number::text(energy, Dimension::ENERGY)) }
+                        td.number { (number::text_beside(energy, input, Dimension::ENERGY)) }
                         td.number { @if input > 0.0 { (percent(energy / input)) } @else { "—" } }
                     }
                 }

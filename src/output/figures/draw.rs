@@ -25,7 +25,7 @@ const THINNEST: f64 = 0.5;
 pub(super) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
     let xs = chart.series.iter().flat_map(|series| series.points.iter().map(|point| point.0));
     let ys = chart.series.iter().flat_map(|series| series.points.iter().map(|point| point.1));
-    let references = chart.references.iter().map(|reference| reference.y);
+    let references = near(chart);
     let x = Axis::over(&chart.x, xs, 8);
     let y = Axis::over(&chart.y, ys.chain(references), 6);
     canvas::png(WIDTH, HEIGHT, |canvas| {
@@ -50,6 +50,14 @@ pub(super) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
         }
         Ok(())
     })
+}
+
+/// Reference lines that the axis is stretched to. One far from the data would press the curves flat: its words alone
+/// are printed, at the edge it lies beyond.
+fn near(chart: &Chart) -> impl Iterator<Item = f64> {
+    const FARTHEST: f64 = 2.5;
+    let largest = chart.series.iter().flat_map(|series| &series.points).map(|point| point.1.abs()).fold(0.0, f64::max);
+    chart.references.iter().map(|reference| reference.y).filter(move |y| largest == 0.0 || y.abs() <= FARTHEST * largest)
 }
 
 struct Sheet<'a, 'b> {
@@ -124,11 +132,18 @@ impl Sheet<'_, '_> {
     /// Each line with its words where they cover the least data.
     fn references(&self, chart: &Chart) -> Result<(), String> {
         for reference in &chart.references {
-            let (_, y) = self.point((0.0, reference.y));
-            let line = Line { width: 1.3, dash: &[6.0, 4.0] };
-            self.canvas.polyline(&[(LEFT, y), (RIGHT, y)], line, LIMIT_INK)?;
+            let place = self.y.place(reference.y);
+            let label = match place {
+                above if above > 1.0 => format!("↑ {}", reference.label),
+                below if below < 0.0 => format!("↓ {}", reference.label),
+                _ => reference.label.clone(),
+            };
+            let (_, y) = self.point((0.0, reference.y.clamp(self.y.low * self.y.factor, self.y.high * self.y.factor)));
+            if (0.0..=1.0).contains(&place) {
+                self.canvas.polyline(&[(LEFT, y), (RIGHT, y)], Line { width: 1.3, dash: &[6.0, 4.0] }, LIMIT_INK)?;
+            }
             let style = Lettering { colour: LIMIT_INK, ..lettering(12.0, HPos::Left, VPos::Bottom) };
-            let width = self.canvas.width(&reference.label, &style)?;
+            let width = self.canvas.width(&label, &style)?;
             let bottom = if y - 20.0 < self.top { y + 18.0 } else { y - 3.0 };
             let covered = |left: &f64| {
                 let inside = |(x, y): Point| (*left..left + width).contains(&x) && (bottom - 16.0..bottom).contains(&y);
@@ -137,7 +152,7 @@ impl Sheet<'_, '_> {
             let last = (RIGHT - width - 8.0).max(LEFT + 8.0);
             let places = [last, 0.5 * (last + LEFT + 8.0), LEFT + 8.0];
             let left = places.into_iter().min_by_key(covered).unwrap_or(last);
-            self.canvas.text(&reference.label, (left, bottom), &style)?;
+            self.canvas.text(&label, (left, bottom), &style)?;
         }
         Ok(())
     }

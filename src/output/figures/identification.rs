@@ -38,7 +38,7 @@ const RETURN: Style = Style { marker: Some(Marker::Ring(4.5)), ..Style::line(pal
 /// Readings drawn of a sweep, at most: a cloud says no more with more.
 const CLOUD_POINTS: usize = 3000;
 
-/// Steady readings, the mean at each velocity, and F_d = c·v + F_c·sign v.
+/// Steady readings, the mean at each velocity, and `F_d = c·v + F_c·sign v`.
 pub(super) fn damping_fit(history: &SweepHistory) -> Chart {
     let steady: Vec<&SweepStep> = history.steps.iter().filter(|step| step.steady).collect();
     let every = steady.len().div_ceil(CLOUD_POINTS).max(1);

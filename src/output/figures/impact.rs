@@ -58,10 +58,13 @@ pub(super) fn force_displacement(history: &ImpactHistory) -> Chart {
     }
 }
 
+/// Name, reading and style of one energy.
+type Part = (&'static str, fn(&ImpactStep) -> f64, Style);
+
 /// The parts of the balance and their total; damping and contact loss only where there is any.
 pub(super) fn energy(history: &ImpactHistory) -> Chart {
     let mut chart = against_time(history, Quantity::of("Energy", Dimension::ENERGY));
-    let parts: [(&str, fn(&ImpactStep) -> f64, Style); 5] = [
+    let parts: [Part; 5] = [
         ("striker", |step| step.energies.striker, Style::line(palette::VERMILION, 2.0, DASHED)),
         ("structure", |step| step.energies.structure, Style::line(palette::SKY, 1.6, SOLID)),
         ("restoring", |step| step.energies.restoring, Style::line(palette::BLUE, 2.0, LONG)),
@@ -87,10 +90,10 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
                 continue;
             }
             let mut add = |sign: &str, y: f64| {
-                lines.push(Reference {
-                    label: format!("{}: {sign} {}", requirement.label, number::stated(y, condition.dimension)),
-                    y,
-                });
+                if y.is_finite() {
+                    let label = format!("{}: {sign} {}", short(&requirement.label), number::stated(y, condition.dimension));
+                    lines.push(Reference { label, y });
+                }
             };
             match held.bound {
                 Some(Bound::Compare { comparison, limit }) => add(number::comparison_sign(comparison), limit),
@@ -103,6 +106,16 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
         }
     }
     lines
+}
+
+/// A label that fits into a picture, on one line.
+fn short(label: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut text: String = label.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if label.chars().count() > LONGEST {
+        text.push('…');
+    }
+    text
 }
 
 /// A chart over virtual time with the contact shaded, still without series.
