@@ -212,4 +212,75 @@ mod tests {
         assert_eq!(span(Interval { low: f64::NEG_INFINITY, high: 12e3 }, Dimension::FORCE), "up to 12.00 kN");
         assert_eq!(span(Interval { low: 0.0, high: 0.01 }, Dimension::NUMBER), "0 .. 0.01000");
     }
+
+    /// Example 1 of Melo et al. 2006, with the actuator allowed to go to `farthest`.
+    fn example(farthest: f64) -> Plan {
+        use crate::formula::Formula::Constant;
+        use crate::plan::{
+            Behaviour, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen, Striker, Until,
+        };
+        let specimen = Specimen {
+            name: "beam".to_owned(),
+            mass: 1.0,
+            behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
+            damping: 0.0,
+            coulomb: 0.0,
+        };
+        let impact = Impact {
+            specimen: 0,
+            striker: 0,
+            mass: Constant(1.0),
+            stiffness: Constant(327.65),
+            damping: Constant(0.0),
+            contact: Contact::Rigid,
+            time_step: Constant(0.01),
+            duration: Constant(1.0),
+            until: Until::StrikerStop,
+            pause: Constant(0.0),
+            max_tangent_ratio: Constant(2.0),
+            inspect: Vec::new(),
+        };
+        Plan {
+            title: "Example 1".to_owned(),
+            particulars: Vec::new(),
+            parameters: Vec::new(),
+            specimens: vec![specimen],
+            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+            rig: RigPlan {
+                name: "noisy".to_owned(),
+                link: Link::Virtual(VirtualLink { noise: 5.0, lag: 0.1, ..VirtualLink::default() }),
+                settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 10.0 },
+                sign: 1.0,
+                calibration: None,
+            },
+            limits: Limits { displacement: Interval { low: -0.1, high: farthest }, ..Limits::NONE },
+            procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],
+            requirements: Vec::new(),
+            report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+            files: Vec::new(),
+            settings: Vec::new(),
+        }
+    }
+
+    const PLAIN: Settings = Settings { color: false, stdout_color: false, unicode: true, stderr_terminal: false, can_ask: false };
+
+    #[test]
+    fn the_papers_first_example_is_predicted_without_the_rigs_noise() {
+        let plan = example(0.2);
+        let dry = DryRun::of(&plan);
+        let text = dry.text(PLAIN);
+        // Critical step (2π/10)√(M/K), the paper's largest displacement, and what is left to the limit.
+        for expected in ["34.71 ms", "10.00 ms, 0.288 of it", "0.1579 m", "42.14 mm", "`noisy`"] {
+            assert!(text.contains(expected), "{expected} in\n{text}");
+        }
+        assert_eq!(dry.exit(), Exit::Met);
+    }
+
+    #[test]
+    fn a_limit_that_would_stop_the_run_is_said() {
+        let plan = example(0.1);
+        let dry = DryRun::of(&plan);
+        assert!(dry.text(PLAIN).contains("The run would be stopped: "), "{}", dry.text(PLAIN));
+        assert_eq!(dry.exit(), Exit::Stopped);
+    }
 }
