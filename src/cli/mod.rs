@@ -1,1 +1,53 @@
-//! The program: arguments, commands, exit codes.
+//! The program around the pipeline: arguments → settings → one file a command → exit code. The only folder that
+//! reads files, the terminal and the environment, and that writes anything.
+
+mod args;
+mod bless;
+mod check;
+mod columns;
+mod dry_rig;
+mod exit;
+mod explain;
+mod explain_plan;
+mod fmt;
+mod limits;
+mod loader;
+mod output;
+mod plan_file;
+mod progress;
+mod provenance;
+mod run;
+mod run_folder;
+mod settings;
+
+use std::ffi::OsString;
+
+use clap::Parser as _;
+
+pub use exit::Exit;
+use exit::Failure;
+
+/// Runs one command line, the program's name first, and says how it ended.
+#[must_use]
+pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
+    let arguments = match args::Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are results on stdout; a wrong command line is told on stderr. A closed pipe is not our fault.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Wrong } else { Exit::Met };
+        }
+    };
+    let settings = settings::Settings::from_environment(arguments.color);
+    let outcome = match &arguments.command {
+        args::Command::Run(arguments) => run::run(arguments, settings),
+        args::Command::Check(arguments) => check::check(arguments, settings),
+        args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),
+        args::Command::Explain { code } => explain::explain(code.as_deref(), settings),
+        args::Command::Limits => limits::limits(),
+    };
+    outcome.unwrap_or_else(|failure: Failure| {
+        output::tell(&failure.report(settings));
+        failure.exit()
+    })
+}

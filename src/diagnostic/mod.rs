@@ -2,6 +2,7 @@
 //! [`json`] into text for an editor. A code is listed once, in [`code`], with its page for `psd explain`.
 
 pub mod code;
+pub mod excerpt;
 pub mod json;
 pub mod render;
 

@@ -1,1 +1,309 @@
-//! cli
+//! The program as it is started from a shell: exit codes, what goes to which stream, what is left on disk.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
+
+/// A small plan that passes.
+const SOUND: &str = r#"plan "A small impact" {
+  edition = 1
+}
+
+param speed = 1 m/s between 0.5 m/s .. 2 m/s
+
+specimen beam {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 327.65 N/m)
+}
+
+striker hammer {
+  mass     = 10 kg
+  velocity = speed
+}
+
+limits {
+  displacement = -0.1 m .. 0.2 m
+}
+
+impact hit {
+  striker   = hammer
+  time_step = 10 ms
+  duration  = 1 s
+}
+
+require "stays in travel" hit.max_displacement < 0.16 m
+"#;
+
+/// A folder with plans, and the program run in it.
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new(plans: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in plans {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        }
+        Self { folder }
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
+        command.args(arguments).current_dir(self.folder.path()).stdin(Stdio::null()).env_remove("NO_COLOR");
+        command
+    }
+
+    fn psd(&self, arguments: &[&str]) -> Ended {
+        Ended::from(self.command(arguments).output().unwrap())
+    }
+
+    fn path(&self, path: &str) -> PathBuf {
+        self.folder.path().join(path)
+    }
+
+    fn read(&self, path: &str) -> String {
+        std::fs::read_to_string(self.path(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+    }
+}
+
+struct Ended {
+    code: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+impl From<Output> for Ended {
+    fn from(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+}
+
+impl Ended {
+    #[track_caller]
+    fn with(self, code: i32) -> Self {
+        assert_eq!(self.code, Some(code), "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);
+        self
+    }
+
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}:\n{}", self.stdout))
+    }
+}
+
+fn changed(from: &str, to: &str) -> String {
+    assert!(SOUND.contains(from));
+    SOUND.replace(from, to)
+}
+
+fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                found.push((path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap()));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
+    let bench = Bench::new(&[("plans/small.psd", SOUND)]);
+    let first = bench.psd(&["run", "plans/small.psd"]).with(0);
+    assert_eq!(first.stdout, "runs/small-1\n");
+    assert!(first.stderr.contains("PASS") && first.stderr.contains("stays in travel"), "{}", first.stderr);
+    assert!(!first.stderr.contains('\u{1b}'), "no colour and no bar in a pipe");
+    assert_eq!(bench.psd(&["run", "plans/small.psd"]).with(0).stdout, "runs/small-2\n");
+    let (one, two) = (every_file(&bench.path("runs/small-1")), every_file(&bench.path("runs/small-2")));
+    assert!(one.iter().any(|(path, _)| path.ends_with("summary.json")));
+    assert!(one == two, "the same plan gives the same bytes");
+}
+
+#[test]
+fn the_summary_is_the_result_where_json_is_asked() {
+    let bench = Bench::new(&[("small.psd", SOUND)]);
+    let ended = bench.psd(&["run", "small.psd", "--format", "json", "--out", "here", "--date", "2026-05-31"]).with(0);
+    assert_eq!((&ended.json()["schema"], &ended.json()["verdict"]), (&"psd.summary/1".into(), &"pass".into()));
+    assert_eq!(ended.json()["date"], "2026-05-31");
+    assert_eq!(bench.read("here/summary.json"), ended.stdout);
+}
+
+#[test]
+fn a_missed_requirement_ends_with_one() {
+    let bench = Bench::new(&[("small.psd", &changed("< 0.16 m", "< 0.1 m"))]);
+    assert!(bench.psd(&["run", "small.psd"]).with(1).stderr.contains("FAIL"));
+}
+
+#[test]
+fn a_wrong_plan_ends_with_two_and_leaves_nothing() {
+    let bench = Bench::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
+    let ended = bench.psd(&["run", "small.psd"]).with(2);
+    assert!(
+        ended.stdout.is_empty() && ended.stderr.contains("E202") && ended.stderr.contains("small.psd:14:"),
+        "{}",
+        ended.stderr
+    );
+    assert!(ended.stderr.contains("did you mean `velocity`?"));
+    assert!(!bench.path("runs").exists());
+}
+
+#[test]
+fn a_wrong_command_line_ends_with_two() {
+    let bench = Bench::new(&[("small.psd", SOUND)]);
+    for wrong in [
+        &["run"][..],
+        &["walk"],
+        &["run", "small.psd", "--date", "yesterday"],
+        &["run", "small.psd", "--set", "speed"],
+        &["run", "small.psd", "--set", "speed=9 m/s"],
+        &["run", "small.psd", "--set", "spee=1 m/s"],
+        &["run", "small.psd", "--rig", "none"],
+        &["explain", "E999"],
+    ] {
+        let ended = bench.psd(wrong).with(2);
+        assert!(ended.stdout.is_empty() && !ended.stderr.is_empty(), "{wrong:?}");
+    }
+    assert!(bench.psd(&["--help"]).with(0).stdout.contains("Usage"));
+}
+
+#[test]
+fn a_setting_changes_the_run_and_its_id() {
+    let bench = Bench::new(&[("small.psd", SOUND)]);
+    let id =
+        |arguments: &[&str]| bench.psd(&[&["run", "small.psd", "--format", "json"], arguments].concat()).json()["run_id"].clone();
+    assert_ne!(id(&[]), id(&["--set", "speed=0.9 m/s"]));
+}
+
+#[test]
+fn files_that_cannot_be_used_end_with_three() {
+    let bench = Bench::new(&[("small.psd", SOUND), ("full/precious.txt", "mine")]);
+    assert!(bench.psd(&["run", "none.psd"]).with(3).stderr.contains("none.psd"));
+    let refused = bench.psd(&["run", "small.psd", "--out", "full"]).with(3);
+    assert!(refused.stderr.contains("new or empty"), "{}", refused.stderr);
+    assert_eq!(every_file(&bench.path("full")).len(), 1);
+}
+
+#[test]
+fn a_limit_ends_the_run_with_four_and_keeps_what_was_recorded() {
+    let bench = Bench::new(&[("small.psd", &changed(".. 0.2 m", ".. 0.1 m"))]);
+    let ended = bench.psd(&["run", "small.psd", "--out", "here"]).with(4);
+    assert!(ended.stderr.contains("ABORTED"), "{}", ended.stderr);
+    let summary: Value = serde_json::from_str(&bench.read("here/summary.json")).unwrap();
+    assert_eq!(summary["verdict"], "aborted");
+    assert!(bench.read("here/tables/hit.csv").lines().count() > 5);
+}
+
+#[test]
+fn check_draws_on_stderr_and_gives_json_on_stdout() {
+    let wrong = changed("1 kg", "3 mm");
+    let bench = Bench::new(&[("good.psd", SOUND), ("plans/wrong.psd", &wrong)]);
+    let human = bench.psd(&["check", "good.psd", "plans/wrong.psd"]).with(2);
+    assert!(human.stdout.is_empty() && human.stderr.contains("plans/wrong.psd:8:"), "{}", human.stderr);
+    let json = bench.psd(&["check", "good.psd", "plans/wrong.psd", "--format", "json"]).with(2);
+    let document = json.json();
+    let first = &document["diagnostics"][0];
+    assert!(json.stderr.is_empty(), "{}", json.stderr);
+    assert_eq!((&document["schema"], &first["file"]), (&"psd.diagnostics/1".into(), &"plans/wrong.psd".into()));
+    assert_eq!((&first["line"], &first["code"], &first["severity"]), (&8.into(), &"E301".into(), &"error".into()));
+    let span = |end: &str| usize::try_from(first["span"][end].as_u64().unwrap()).unwrap();
+    assert_eq!(&wrong[span("start")..span("end")], "3 mm");
+}
+
+#[test]
+fn explain_predicts_the_run_on_stdout() {
+    let bench = Bench::new(&[("small.psd", SOUND)]);
+    let text = bench.psd(&["check", "--explain", "small.psd"]).with(0).stdout;
+    for expected in ["critical time step", "34.71 ms", "10.00 ms", "0.1579 m", "Limits", "-0.1000 .. 0.2000 m", "stays in travel"]
+    {
+        assert!(text.contains(expected), "{expected} in\n{text}");
+    }
+    assert!(!bench.path("runs").exists());
+    let bench = Bench::new(&[("small.psd", &changed(".. 0.2 m", ".. 0.1 m"))]);
+    assert!(bench.psd(&["check", "--explain", "small.psd"]).with(4).stdout.contains("would be stopped"));
+}
+
+#[test]
+fn fmt_shows_the_difference_or_writes_it() {
+    let untidy = changed("  mass      = 1 kg", "      mass=1 kg   # equivalent");
+    let bench = Bench::new(&[("plans/untidy.psd", &untidy), ("plans/lib/sound.psd", SOUND), ("wrong.psd", "let a = (1\n")]);
+    let shown = bench.psd(&["fmt", "--check", "plans"]).with(1);
+    assert!(
+        shown.stdout.contains("-      mass=1 kg   # equivalent") && shown.stdout.contains("+++ plans/untidy.psd"),
+        "{}",
+        shown.stdout
+    );
+    assert_eq!(bench.read("plans/untidy.psd"), untidy);
+    bench.psd(&["fmt", "plans"]).with(0);
+    assert!(
+        bench.read("plans/untidy.psd").contains("  mass      = 1 kg  # equivalent")
+            || bench.read("plans/untidy.psd").contains("= 1 kg")
+    );
+    assert!(bench.psd(&["fmt", "--check", "plans"]).with(0).stdout.is_empty());
+    assert_eq!(bench.read("plans/lib/sound.psd"), SOUND);
+    assert!(bench.psd(&["fmt", "wrong.psd"]).with(2).stderr.contains("E102"));
+    assert_eq!(bench.read("wrong.psd"), "let a = (1\n");
+}
+
+#[test]
+fn explain_gives_a_page_the_list_and_a_guess() {
+    let bench = Bench::new(&[]);
+    assert!(bench.psd(&["explain", "e202"]).with(0).stdout.starts_with("E202: "));
+    let all = bench.psd(&["explain"]).with(0).stdout;
+    assert_eq!(all.lines().count(), psd::diagnostic::Code::ALL.len());
+    assert!(all.lines().all(|line| line.len() > 8), "every page has a title:\n{all}");
+    assert!(bench.psd(&["explain", "E22"]).with(2).stderr.contains("did you mean `E2"));
+    assert!(bench.psd(&["limits"]).with(0).stdout.contains("1048576"));
+}
+
+#[test]
+fn colour_is_used_when_told_and_only_then() {
+    let bench = Bench::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
+    let colored =
+        |arguments: &[&str]| bench.psd(&[arguments, &["check", "small.psd"]].concat()).with(2).stderr.contains('\u{1b}');
+    assert!(colored(&["--color", "always"]));
+    assert!(!colored(&[]) && !colored(&["--color", "never"]));
+    let output = bench.command(&["--color", "auto", "check", "small.psd"]).env("NO_COLOR", "1").output().unwrap();
+    assert!(!Ended::from(output).stderr.contains('\u{1b}'));
+}
+
+#[test]
+fn bless_writes_beside_the_plans_folder() {
+    let bench = Bench::new(&[("plans/small.psd", SOUND), ("reports/small/stale.txt", "old"), ("reports/other/kept.txt", "kept")]);
+    bench.psd(&["run", "plans/small.psd", "--bless", "--out", "here"]).with(0);
+    assert_eq!(bench.read("reports/small/summary.json"), bench.read("here/summary.json"));
+    assert!(bench.path("reports/small/certificate.html").exists() && bench.path("reports/small/tables/hit.csv").exists());
+    assert!(!bench.path("reports/small/stale.txt").exists() && bench.path("reports/other/kept.txt").exists());
+}
+
+#[test]
+fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
+    // So many steps that the signal comes while they run, however fast the machine.
+    let long =
+        changed("time_step = 10 ms", "time_step = 1 us").replace("duration  = 1 s", "duration  = 1 s\n  until     = duration");
+    let bench = Bench::new(&[("long.psd", &long)]);
+    let child =
+        bench.command(&["run", "long.psd", "--out", "here"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let started = std::time::Instant::now();
+    while !bench.path("here").exists() && started.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    // Into the run, so that there is a record.
+    std::thread::sleep(Duration::from_millis(30));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let ended = Ended::from(child.wait_with_output().unwrap()).with(4);
+    assert!(ended.stderr.contains("ABORTED"), "{}", ended.stderr);
+    let summary: Value = serde_json::from_str(&bench.read("here/summary.json")).unwrap();
+    assert_eq!((&summary["verdict"], &summary["procedures"]["hit"]["complete"]), (&"aborted".into(), &false.into()));
+}

@@ -1,1 +1,119 @@
-//! explain
+//! The pages of `psd explain`: each code has one, and its wrong and right plans do as the page says.
+//!
+//! A page's plans are its fenced blocks. The first word after `psd` says which: `wrong`, `right`, or `file="lib/a.psd"`, a
+//! file that both plans may use (`*` stands for any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line.
+
+use psd::check::{Checked, LoadFault, Loader, Options, check};
+use psd::diagnostic::{Code, Severity};
+
+/// One fenced block of a page.
+struct Fence {
+    info: String,
+    text: String,
+}
+
+impl Fence {
+    /// The value of `key="…"` in the info string.
+    fn option(&self, key: &str) -> Option<&str> {
+        let (_, rest) = self.info.split_once(&format!("{key}=\""))?;
+        rest.split_once('"').map(|(value, _)| value)
+    }
+
+    fn is(&self, word: &str) -> bool {
+        self.info.split_whitespace().next() == Some(word)
+    }
+}
+
+/// The fenced `psd` blocks of a page, in order.
+fn fences(page: &str) -> Vec<Fence> {
+    let mut found = Vec::new();
+    let mut rest = page;
+    while let Some((_, after)) = rest.split_once("```psd") {
+        let (info, body) = after.split_once('\n').expect("a fence is a line");
+        let (text, next) = body.split_once("```").expect("the fence is closed");
+        found.push(Fence { info: info.trim().to_owned(), text: text.to_owned() });
+        rest = next;
+    }
+    found
+}
+
+/// The files of one page.
+struct PageFiles<'a>(&'a [Fence]);
+
+impl Loader for PageFiles<'_> {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        let holds = |pattern: &str| match pattern.split_once('*') {
+            Some((head, tail)) => path
+                .strip_prefix(head)
+                .and_then(|rest| rest.strip_suffix(tail))
+                .is_some_and(|middle| !middle.is_empty() && middle.bytes().all(|byte| byte.is_ascii_digit())),
+            None => path == pattern,
+        };
+        let found = self.0.iter().find(|fence| fence.option("file").is_some_and(holds));
+        found.map(|fence| fence.text.clone()).ok_or(LoadFault::NotFound)
+    }
+}
+
+fn checked(code: Code, kind: &str) -> Checked {
+    let fences = fences(code.page());
+    let plan = fences.iter().find(|fence| fence.is(kind)).unwrap_or_else(|| panic!("the page of {code} has a {kind} plan"));
+    let settings = plan.option("set").and_then(|setting| setting.split_once('='));
+    let options = Options {
+        rig: plan.option("rig").map(str::to_owned),
+        settings: settings.into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
+        date: None,
+    };
+    check("plan.psd", &plan.text, &PageFiles(&fences), &options)
+}
+
+/// `E202 unknown field …` of each diagnostic, for the message of a failing test.
+fn said(checked: &Checked) -> Vec<String> {
+    checked.diagnostics.iter().map(|diagnostic| format!("{}: {}", diagnostic.code, diagnostic.message)).collect()
+}
+
+/// Every code that does not do as `holds` says, with what was found instead.
+fn faults_of(kind: &str, holds: impl Fn(Code, &Checked) -> bool) -> Vec<String> {
+    let mut faults = Vec::new();
+    for &code in Code::ALL {
+        let checked = checked(code, kind);
+        if !holds(code, &checked) {
+            faults.push(format!("{code}, {kind} plan: {:?}", said(&checked)));
+        }
+    }
+    faults
+}
+
+#[test]
+fn every_page_starts_with_its_code_and_has_one_wrong_and_one_right_plan() {
+    for &code in Code::ALL {
+        let page = code.page();
+        let title = page.lines().next().unwrap_or_default().strip_prefix(&format!("# {code}: "));
+        assert!(title.is_some_and(|title| title.len() > 3), "the page of {code} has no title");
+        let fences = fences(page);
+        for kind in ["wrong", "right"] {
+            assert_eq!(fences.iter().filter(|fence| fence.is(kind)).count(), 1, "{kind} plans on the page of {code}");
+        }
+        let other = fences.iter().find(|fence| !fence.is("wrong") && !fence.is("right") && fence.option("file").is_none());
+        assert!(other.is_none(), "the page of {code} has a plan that is neither wrong, right nor a file");
+    }
+}
+
+#[test]
+fn the_wrong_plan_of_a_page_gives_its_code_and_no_other() {
+    let faults = faults_of("wrong", |code, checked| {
+        let relevant: Vec<Code> = match code.severity() {
+            Severity::Error => checked.diagnostics.iter().filter(|it| it.is_error()).map(|it| it.code).collect(),
+            Severity::Warning | Severity::Advice => checked.diagnostics.iter().map(|it| it.code).collect(),
+        };
+        relevant == [code] && checked.plan.is_none() == (code.severity() == Severity::Error)
+    });
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn the_right_plan_of_a_page_gives_no_error_and_not_the_code() {
+    let faults = faults_of("right", |code, checked| {
+        checked.plan.is_some() && checked.diagnostics.iter().all(|diagnostic| !diagnostic.is_error() && diagnostic.code != code)
+    });
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}

@@ -1,1 +1,229 @@
-//! lang
+//! The language by example: every plan of `tests/lang/STAGE/` goes as far as its folder says, and the snapshot holds the plan
+//! and what psd says of it. A case is one file; `# options: --set "speed=2 m/s"` or `--rig NAME` in its first line is its command line.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use psd::check::{Checked, LoadFault, Loader, Options, check};
+use psd::diagnostic::render::{Appearance, render_all};
+use psd::diagnostic::{Code, Severity};
+use psd::quantity::display::readable;
+use psd::record::{Outcome, Record};
+use psd::rig::VirtualRig;
+use psd::run::{Unwatched, run};
+use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, Variant};
+use psd::verdict::{Assessment, Verdict, assess};
+
+/// Where a plan's way ends, and the exit code that goes with it.
+const STAGES: &[(&str, u8)] =
+    &[("ok", 0), ("syntax_error", 2), ("check_error", 2), ("run_error", 3), ("aborted", 4), ("fail", 1)];
+
+/// Codes without a case of their own, and why.
+const WITHOUT_CASE: &[(Code, &str)] = &[(Code::TooManyFiles, "needs 64 files; the page of `psd explain` has the plan")];
+
+struct Case {
+    stage: String,
+    name: String,
+    text: String,
+    folder: PathBuf,
+}
+
+/// Reads used files from the case's own folder.
+struct Folder<'a>(&'a Path);
+
+impl Loader for Folder<'_> {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        fs::read_to_string(self.0.join(path)).map_err(|_| LoadFault::NotFound)
+    }
+}
+
+impl Case {
+    fn read(path: &Path) -> Self {
+        let folder = path.parent().expect("a case lies in a folder").to_path_buf();
+        Self {
+            stage: folder.file_name().expect("the folder has a name").to_string_lossy().into_owned(),
+            name: path.file_stem().expect("the case has a name").to_string_lossy().into_owned(),
+            text: fs::read_to_string(path).expect("the case is text"),
+            folder,
+        }
+    }
+
+    fn options(&self) -> Options {
+        let mut options = Options::default();
+        let given = self.text.lines().next().and_then(|line| line.strip_prefix("# options: --")).unwrap_or_default();
+        match given.split_once(' ').map(|(option, value)| (option, value.trim().trim_matches('"'))) {
+            Some(("set", value)) => {
+                let (name, value) = value.split_once('=').expect("`--set` has a name and a value");
+                options.settings.push((name.to_owned(), value.to_owned()));
+            }
+            Some(("rig", value)) => options.rig = Some(value.to_owned()),
+            Some((other, _)) => panic!("{}: unknown option `{other}`", self.name),
+            None => {}
+        }
+        options
+    }
+
+    fn check(&self) -> Checked {
+        check(&format!("{}.psd", self.name), &self.text, &Folder(&self.folder), &self.options())
+    }
+
+    /// The code in the case's name: `e202_unknown_field`.
+    fn code(&self) -> Option<Code> {
+        let id = self.name.split('_').next()?.to_uppercase();
+        Code::ALL.iter().copied().find(|code| code.id() == id)
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lang");
+    let mut found = Vec::new();
+    for (stage, _) in STAGES {
+        for entry in fs::read_dir(root.join(stage)).expect("every stage has its folder") {
+            let path = entry.expect("the entry can be read").path();
+            if path.extension().is_some_and(|extension| extension == "psd") {
+                found.push(Case::read(&path));
+            }
+        }
+    }
+    found.sort_by(|a, b| (&a.stage, &a.name).cmp(&(&b.stage, &b.name)));
+    found
+}
+
+/// How a run ended, and its verdict.
+fn play(checked: &Checked) -> Option<(Record, Assessment)> {
+    let plan = checked.plan.as_ref()?;
+    let mut rig = VirtualRig::of_plan(plan);
+    let record = run(plan, &mut rig, &mut Unwatched);
+    let assessment = assess(plan, &record);
+    Some((record, assessment))
+}
+
+fn exit_code(played: Option<&(Record, Assessment)>) -> u8 {
+    match played.map(|(_, assessment)| assessment.verdict) {
+        None => 2,
+        Some(Verdict::Pass) => 0,
+        Some(Verdict::Fail | Verdict::Inconclusive) => 1,
+        Some(Verdict::Error) => 3,
+        Some(Verdict::Aborted) => 4,
+    }
+}
+
+/// What happened, for the snapshot: the end of the run, then each condition with what was found.
+fn told(record: &Record, assessment: &Assessment) -> String {
+    let mut text = match &record.outcome {
+        Outcome::Completed => "the run completed\n".to_owned(),
+        Outcome::Aborted { reason } => format!("the run was aborted: {reason}\n"),
+        Outcome::Faulted { reason } => format!("the run failed: {reason}\n"),
+    };
+    for requirement in &assessment.requirements {
+        let _ = writeln!(text, "{}: {}", requirement.verdict.name(), requirement.label);
+        for condition in &requirement.conditions {
+            let value = condition.value.map_or_else(|| "none".to_owned(), |value| readable(value, condition.dimension));
+            let _ = write!(text, "  {}: {} = {value}", condition.verdict.name(), condition.text);
+            let _ = writeln!(text, "{}", condition.reason.as_ref().map(|reason| format!(" ({reason})")).unwrap_or_default());
+        }
+    }
+    text
+}
+
+#[test]
+fn cases_end_where_their_folder_says_and_say_why() {
+    insta::glob!("../lang", "*/*.psd", |path| {
+        let case = Case::read(path);
+        let checked = case.check();
+        let played = play(&checked);
+        let mut text = format!("{}\n----\n", case.text.replace("\r\n", "\n").trim_end());
+        text.push_str(&render_all(&checked.diagnostics, &checked.sources, &Appearance::plain()));
+        if let Some((record, assessment)) = &played {
+            text.push_str(&told(record, assessment));
+        }
+        let exit = exit_code(played.as_ref());
+        let _ = writeln!(text, "exit {exit}");
+        insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!(text) });
+        let (_, expected) = STAGES.iter().find(|(stage, _)| *stage == case.stage).expect("the folder is a stage");
+        assert_eq!(exit, *expected, "{}/{}", case.stage, case.name);
+    });
+}
+
+#[test]
+fn a_case_named_after_a_code_gives_that_code_and_nothing_that_follows_from_it() {
+    let mut faults = Vec::new();
+    for case in cases() {
+        let Some(code) = case.code() else { continue };
+        let checked = case.check();
+        let relevant = checked.diagnostics.iter().filter(|it| code.severity() != Severity::Error || it.is_error());
+        let given: Vec<Code> = relevant.map(|diagnostic| diagnostic.code).collect();
+        if given != [code] {
+            faults.push(format!("{}/{}: {given:?}", case.stage, case.name));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn syntax_faults_lie_in_their_folder_and_sound_plans_are_silent() {
+    for case in cases() {
+        let codes: Vec<Code> = case.check().diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+        let of_the_text = codes.iter().any(|code| code.id().starts_with("E1"));
+        assert_eq!(of_the_text, case.stage == "syntax_error", "{}/{}: {codes:?}", case.stage, case.name);
+        if case.stage == "ok" && case.code().is_none() {
+            assert!(codes.is_empty(), "ok/{}: {codes:?}", case.name);
+        }
+    }
+}
+
+#[test]
+fn every_code_has_a_case() {
+    let cases = cases();
+    for &code in Code::ALL {
+        let listed = WITHOUT_CASE.iter().any(|(without, _)| *without == code);
+        let found = cases.iter().any(|case| case.code() == Some(code));
+        assert!(found != listed, "{code}: {}", if found { "listed as without a case" } else { "no case in tests/lang" });
+    }
+}
+
+#[test]
+fn line_ends_of_other_systems_are_tested() {
+    let crlf = |case: &&Case| case.name == "crlf" && case.text.contains("\r\n");
+    assert_eq!(cases().iter().filter(crlf).count(), 3, "the line ends of tests/lang/*/crlf.psd were changed");
+}
+
+/// The names of the cases that leave out a required argument, also of choices inside choices.
+fn argument_cases(field: &Field) -> Vec<String> {
+    let (FieldType::Choice(variants) | FieldType::Choices(variants)) = field.ty else { return Vec::new() };
+    let available = variants.iter().filter(|variant| variant.available);
+    let of_variant = |variant: &'static Variant| {
+        let required = variant.arguments.iter().filter(|argument| argument.need == Need::Required);
+        let own = required.map(|argument| format!("e213_{}_{}", variant.name, argument.name));
+        own.chain(variant.arguments.iter().flat_map(argument_cases)).collect::<Vec<_>>()
+    };
+    available.flat_map(of_variant).collect()
+}
+
+#[test]
+fn every_required_field_and_argument_has_a_case() {
+    let names: Vec<String> = cases().into_iter().map(|case| case.name).collect();
+    let mut wanted = Vec::new();
+    for block in BLOCKS {
+        for field in block.fields.iter().filter(|field| field.available) {
+            if field.need == Need::Required {
+                wanted.push(format!("e209_{}_{}", block.words().replace(' ', "_"), field.name));
+            }
+            wanted.extend(argument_cases(field));
+        }
+    }
+    assert!(wanted.len() > 25, "the schema has required fields");
+    wanted.retain(|name| !names.contains(name));
+    assert!(wanted.is_empty(), "no case in tests/lang/check_error for: {}", wanted.join(", "));
+}
+
+#[test]
+fn every_block_has_a_case_that_is_right() {
+    let cases = cases();
+    for block in BLOCKS.iter().filter(|block| block.kind != Kind::Later) {
+        let head = format!("{} ", block.words());
+        let found = cases.iter().any(|case| case.stage == "ok" && case.text.lines().any(|line| line.starts_with(&head)));
+        assert!(found, "no case in tests/lang/ok has a `{}` block", block.words());
+    }
+}

@@ -7,3 +7,4 @@ mod lang;
 mod outputs;
 mod physics;
 mod plans;
+mod reference;

@@ -1,0 +1,152 @@
+//! The command line as it is typed. In: words. Out: [`Arguments`], shapes checked, meaning not.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Pseudo-dynamic structural tests, from a plan to a certificate.
+#[derive(Debug, Parser)]
+#[command(name = "psd", version, about, max_term_width = 100, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+
+    /// When to colour what is said; `NO_COLOR` is heeded
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
+    pub color: Color,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Checks a plan, runs it, writes the results and gives the verdict
+    Run(RunArguments),
+    /// Shows everything wrong with plans; nothing moves
+    Check(CheckArguments),
+    /// Writes plans in the canonical layout
+    Fmt(FmtArguments),
+    /// Explains a diagnostic code, such as E202; without one, lists them all
+    Explain {
+        /// The code
+        code: Option<String>,
+    },
+    /// Lists the bounds of the language: sizes, nesting, steps
+    Limits,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes: 0 all requirements met, 1 a requirement failed or is inconclusive,\n\
+    2 the plan or the command line is wrong, 3 rig or file fault, 4 stopped by a limit or by a person.")]
+pub struct RunArguments {
+    /// The plan, a `.psd` file
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    /// The run folder, new or empty [default: runs/PLAN-N, N the next free number]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Answers routine questions with yes
+    #[arg(long)]
+    pub yes: bool,
+    /// What is printed on standard output: the run folder, or the whole summary
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+    /// Also replaces the blessed results in reports/PLAN, beside the plan's folder
+    #[arg(long)]
+    pub bless: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// The plans, `.psd` files
+    #[arg(value_name = "PLAN", required = true)]
+    pub plans: Vec<PathBuf>,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Says what a run would do, from a dry run on an ideal copy of the specimen
+    #[arg(long)]
+    pub explain: bool,
+    /// How diagnostics are given: drawn on standard error, or as JSON on standard output
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+}
+
+#[derive(Debug, Args)]
+pub struct FmtArguments {
+    /// Files, or folders whose `.psd` files are meant
+    #[arg(value_name = "PATH", required = true)]
+    pub paths: Vec<PathBuf>,
+    /// Writes nothing; prints the difference and exits with 1 if there is one
+    #[arg(long)]
+    pub check: bool,
+}
+
+/// What the command line says of the plan.
+#[derive(Debug, Args)]
+pub struct PlanSettings {
+    /// The rig to use; a real rig moves only when named
+    #[arg(long, value_name = "NAME")]
+    pub rig: Option<String>,
+    /// Gives a `param` another value: `--set impact_speed="1.5 m/s"`
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// The date on the certificate; the clock is never read
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
+    pub date: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Human,
+    Json,
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("write it as NAME=VALUE")?;
+    let (name, value) = (name.trim(), value.trim());
+    if name.is_empty() || value.is_empty() {
+        return Err("write it as NAME=VALUE".to_owned());
+    }
+    Ok((name.to_owned(), value.to_owned()))
+}
+
+/// A day of the calendar, in the one form that a certificate shows.
+fn date(text: &str) -> Result<String, String> {
+    let day: jiff::civil::Date = text.parse().map_err(|_| "no such day; write it as 2026-05-31".to_owned())?;
+    // The calendar's reader also takes times and other forms.
+    if day.to_string() == text { Ok(text.to_owned()) } else { Err(format!("write it as {day}")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn a_date_is_a_day_of_the_calendar() {
+        assert_eq!(date("2024-02-29").as_deref(), Ok("2024-02-29"));
+        assert!(date("2023-02-29").is_err());
+        assert!(date("20240229").unwrap_err().contains("2024-02-29"));
+        assert!(date("today").is_err());
+    }
+
+    #[test]
+    fn a_setting_keeps_an_equals_sign_of_its_value() {
+        assert_eq!(setting("v = 1.5 m/s"), Ok(("v".into(), "1.5 m/s".into())));
+        assert_eq!(setting("a=b=c"), Ok(("a".into(), "b=c".into())));
+        assert!(setting("v").is_err() && setting("=1").is_err() && setting("v=").is_err());
+    }
+}

@@ -1,0 +1,47 @@
+//! `psd check`: all diagnostics of all plans; nothing moves.
+
+use super::args::{CheckArguments, Format};
+use super::exit::{Exit, Failure};
+use super::output::{give, tell};
+use super::settings::Settings;
+use super::{explain_plan, plan_file};
+use crate::diagnostic::json;
+
+/// Checks every plan, and says what each would do where asked.
+pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Failure> {
+    let mut exit = Exit::Met;
+    let mut found = Vec::new();
+    for path in &arguments.plans {
+        let checked = match plan_file::open(path, &arguments.plan_settings) {
+            Ok(checked) => checked,
+            // One file that cannot be read does not hide what is wrong with the others.
+            Err(failure) => {
+                tell(&failure.report(settings));
+                exit = exit.max(failure.exit());
+                continue;
+            }
+        };
+        match arguments.format {
+            Format::Human => plan_file::show(&checked, path, settings),
+            Format::Json => found.extend(plan_file::diagnostics(&checked, path)),
+        }
+        let Some(plan) = &checked.plan else {
+            exit = exit.max(Exit::Wrong);
+            continue;
+        };
+        if arguments.explain {
+            let dry = explain_plan::DryRun::of(plan);
+            exit = exit.max(dry.exit());
+            match arguments.format {
+                Format::Human => give(&dry.text(settings))?,
+                Format::Json => tell(&dry.text(settings)),
+            }
+        } else if arguments.format == Format::Human {
+            tell(&format!("{}: {}\n", path.display(), settings.paint_note("the plan is sound")));
+        }
+    }
+    if arguments.format == Format::Json {
+        give(&format!("{:#}\n", json::document(&found)))?;
+    }
+    Ok(exit)
+}

@@ -1,0 +1,181 @@
+//! A virtual rig that notes how far, how fast and how hard it was driven, procedure by procedure. In: a plan.
+//! Out: the record of a run on it, and what was noted.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use crate::plan::{Interval, Plan};
+use crate::record::Record;
+use crate::rig::{DeclaredNoise, Identity, OWN_SPEED, Reading, Rig, RigFault, VirtualRig};
+use crate::run::{self, Inspection, Observer};
+
+/// What one procedure asked of the rig, SI.
+#[derive(Clone, Debug)]
+pub struct Reach {
+    pub name: String,
+    pub keyword: String,
+    pub steps: u64,
+    /// Whether any target was sent.
+    pub moved: bool,
+    pub displacement: Interval,
+    pub force: Interval,
+    pub speed: f64,
+    pub increment: f64,
+    pub tracking_error: f64,
+    /// Rig time.
+    pub started: f64,
+    pub ended: f64,
+}
+
+/// The rig. It shares what it notes with the observer that hears which procedure runs.
+pub struct Watched {
+    inner: VirtualRig,
+    reaches: Rc<RefCell<Vec<Reach>>>,
+    target: f64,
+}
+
+impl Watched {
+    /// Runs `plan` on its own virtual rig.
+    pub fn run(plan: &Plan) -> (Record, Vec<Reach>) {
+        let reaches = Rc::new(RefCell::new(Vec::new()));
+        let mut rig = Self { inner: VirtualRig::of_plan(plan), reaches: Rc::clone(&reaches), target: 0.0 };
+        let record = run::run(plan, &mut rig, &mut Listener { reaches: Rc::clone(&reaches) });
+        let noted = reaches.borrow().clone();
+        (record, noted)
+    }
+
+    fn note(&self, change: impl FnOnce(&mut Reach)) {
+        if let Some(reach) = self.reaches.borrow_mut().last_mut() {
+            change(reach);
+            reach.ended = self.inner.time();
+        }
+    }
+
+    fn note_target(&mut self, targets: &[f64], speed: f64) {
+        let Some(target) = targets.first().copied() else { return };
+        let increment = (target - self.target).abs();
+        self.target = target;
+        self.note(|reach| {
+            reach.moved = true;
+            reach.displacement = widened(reach.displacement, target);
+            reach.increment = reach.increment.max(increment);
+            if increment > 0.0 {
+                reach.speed = reach.speed.max(speed.abs());
+            }
+        });
+    }
+
+    fn note_reading(&self, reading: &Reading, at_rest: bool) {
+        let (Some(force), Some(displacement)) = (reading.force.first(), reading.displacement.first()) else { return };
+        self.note(|reach| {
+            reach.force = widened(reach.force, *force);
+            reach.displacement = widened(reach.displacement, *displacement);
+            if at_rest && reach.moved {
+                reach.tracking_error = reach.tracking_error.max((displacement - self.target).abs());
+            }
+        });
+    }
+}
+
+/// Before anything is noted an interval is empty: its low end is above its high end.
+const EMPTY: Interval = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
+
+fn widened(interval: Interval, value: f64) -> Interval {
+    Interval { low: interval.low.min(value), high: interval.high.max(value) }
+}
+
+impl Rig for Watched {
+    fn identity(&self) -> Identity {
+        self.inner.identity()
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.inner.degrees_of_freedom()
+    }
+
+    fn time(&self) -> f64 {
+        self.inner.time()
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        self.inner.propose(targets, speed)?;
+        self.note_target(targets, speed.unwrap_or(OWN_SPEED));
+        Ok(())
+    }
+
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let done = self.inner.execute();
+        self.note(|_| ());
+        done
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        let done = self.inner.pause(seconds);
+        self.note(|_| ());
+        done
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        let reading = self.inner.read()?;
+        self.note_reading(&reading, true);
+        Ok(reading)
+    }
+
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Result<Vec<Reading>, RigFault> {
+        let readings = self.inner.traverse(targets, velocity, samples)?;
+        self.note_target(targets, velocity);
+        for reading in &readings {
+            self.note_reading(reading, false);
+        }
+        Ok(readings)
+    }
+
+    fn hold(&mut self) {
+        self.inner.hold();
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        self.inner.declared_noise()
+    }
+}
+
+/// Hears which procedure runs; goes on at every inspection, where nobody stands before a specimen.
+struct Listener {
+    reaches: Rc<RefCell<Vec<Reach>>>,
+}
+
+impl Observer for Listener {
+    fn procedure_started(&mut self, name: &str, keyword: &str, _: Option<u64>) {
+        let mut reaches = self.reaches.borrow_mut();
+        let time = reaches.last().map_or(0.0, |last| last.ended);
+        reaches.push(Reach {
+            name: name.to_owned(),
+            keyword: keyword.to_owned(),
+            steps: 0,
+            moved: false,
+            displacement: EMPTY,
+            force: EMPTY,
+            speed: 0.0,
+            increment: 0.0,
+            tracking_error: 0.0,
+            started: time,
+            ended: time,
+        });
+    }
+
+    fn step_done(&mut self, step: u64, _: f64, _: f64, _: f64) {
+        if let Some(reach) = self.reaches.borrow_mut().last_mut() {
+            reach.steps = reach.steps.max(step);
+        }
+    }
+
+    fn procedure_finished(&mut self, _: &str) {}
+
+    fn stop_requested(&self) -> bool {
+        false
+    }
+
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::GoOn { note: None }
+    }
+}

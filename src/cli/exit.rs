@@ -1,0 +1,122 @@
+//! How the program ends: the exit codes of the language's reference, and the failures that are not the plan's.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::settings::Settings;
+use crate::diagnostic::excerpt::escape;
+use crate::verdict::Verdict;
+
+/// An exit code, worst last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Exit {
+    /// 0: all requirements are met.
+    Met,
+    /// 1: a requirement failed or is inconclusive; a file is not formatted.
+    Missed,
+    /// 2: the plan or the command line is wrong.
+    Wrong,
+    /// 3: the rig or a file failed.
+    Fault,
+    /// 4: stopped by a limit or by a person.
+    Stopped,
+}
+
+impl Exit {
+    /// The number the shell sees.
+    #[must_use]
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::Met => 0,
+            Self::Missed => 1,
+            Self::Wrong => 2,
+            Self::Fault => 3,
+            Self::Stopped => 4,
+        }
+    }
+}
+
+impl From<Verdict> for Exit {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Pass => Self::Met,
+            Verdict::Inconclusive | Verdict::Fail => Self::Missed,
+            Verdict::Aborted => Self::Stopped,
+            Verdict::Error => Self::Fault,
+        }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit.code())
+    }
+}
+
+/// Why a command could not do its work. Faults in a plan are diagnostics, not these.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    #[error("{message}")]
+    CommandLine { message: String, help: Option<String> },
+    #[error("{}: {reason}", path.display())]
+    File { path: PathBuf, reason: String, help: Option<String> },
+    #[error("{}: not a plan: {reason}", path.display())]
+    NotAPlan { path: PathBuf, reason: String },
+    #[error("the results could not be made: {0}")]
+    Output(#[from] crate::output::OutputError),
+    #[error("standard output: {0}")]
+    Stdout(std::io::Error),
+    #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
+    Signals(std::io::Error),
+}
+
+impl Failure {
+    pub fn command_line(message: impl Into<String>) -> Self {
+        Self::CommandLine { message: message.into(), help: None }
+    }
+
+    pub fn file(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
+        Self::File { path: path.into(), reason: reason.into(), help: None }
+    }
+
+    /// The same failure with a way out.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        if let Self::CommandLine { help, .. } | Self::File { help, .. } = &mut self {
+            *help = Some(text.into());
+        }
+        self
+    }
+
+    pub const fn exit(&self) -> Exit {
+        match self {
+            Self::CommandLine { .. } | Self::NotAPlan { .. } => Exit::Wrong,
+            Self::File { .. } | Self::Output(_) | Self::Stdout(_) | Self::Signals(_) => Exit::Fault,
+        }
+    }
+
+    /// As told to the person.
+    pub fn report(&self, settings: Settings) -> String {
+        let help = match self {
+            Self::CommandLine { help, .. } | Self::File { help, .. } => help.as_deref(),
+            _ => None,
+        };
+        let mut text = format!("{} {}\n", settings.paint_error("error:"), escape(&self.to_string()));
+        if let Some(help) = help {
+            let _ = writeln!(text, "{} {}", settings.paint_note(" help:"), escape(help));
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verdicts_end_as_the_reference_says() {
+        let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Error, Verdict::Aborted];
+        assert_eq!(verdicts.map(|verdict| Exit::from(verdict).code()), [0, 1, 1, 3, 4]);
+    }
+}

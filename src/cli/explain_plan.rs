@@ -1,0 +1,286 @@
+//! `psd check --explain`: what a run would do. In: a checked plan. Out: text for an engineer, from a run of the same
+//! code on an ideal copy of the specimen: same procedures, same limits, no noise, no lag, no drift.
+
+use std::fmt::Write as _;
+
+use super::columns::columns;
+use super::dry_rig::{Reach, Watched};
+use super::exit::Exit;
+use super::settings::Settings;
+use crate::diagnostic::excerpt::escape;
+use crate::formula::ResultValue;
+use crate::plan::{Interval, Link, Plan, VirtualLink};
+use crate::quantity::Dimension;
+use crate::quantity::display::{readable, readable_unit, significant};
+use crate::record::{History, ImpactHistory, Outcome, Record};
+use crate::verdict::{self, Assessment};
+
+/// A run that moved nothing but numbers.
+pub struct DryRun<'a> {
+    plan: &'a Plan,
+    record: Record,
+    reaches: Vec<Reach>,
+    assessment: Assessment,
+}
+
+impl<'a> DryRun<'a> {
+    pub fn of(plan: &'a Plan) -> Self {
+        let mut ideal = plan.clone();
+        let Link::Virtual(link) = plan.rig.link;
+        ideal.rig.link = Link::Virtual(VirtualLink { seed: link.seed, ..VirtualLink::default() });
+        let (record, reaches) = Watched::run(&ideal);
+        let assessment = verdict::assess(&ideal, &record);
+        Self { plan, record, reaches, assessment }
+    }
+
+    /// A dry run that a limit stops ends as the run would.
+    pub fn exit(&self) -> Exit {
+        match self.record.outcome {
+            Outcome::Completed => Exit::Met,
+            Outcome::Aborted { .. } => Exit::Stopped,
+            Outcome::Faulted { .. } => Exit::Fault,
+        }
+    }
+
+    pub fn text(&self, settings: Settings) -> String {
+        let mut text = format!("{}\n", settings.paint_heading(&escape(&self.plan.title)));
+        let _ = writeln!(
+            text,
+            "dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift\n",
+            self.plan.rig.name
+        );
+        let mut section = |heading: &str, rows: Vec<Vec<String>>| {
+            if !rows.is_empty() {
+                let _ = writeln!(text, "{}\n{}", settings.paint_heading(heading), columns(&rows));
+            }
+        };
+        section("What moves", self.motions());
+        for procedure in &self.record.procedures {
+            if let History::Impact(history) = &procedure.history
+                && !history.steps.is_empty()
+            {
+                section(&format!("{}, impact", procedure.name), impact(history));
+            }
+        }
+        section("Limits", self.limits());
+        section("Requirements, as predicted", self.requirements());
+        match &self.record.outcome {
+            Outcome::Completed => {}
+            Outcome::Aborted { reason } => {
+                let _ = writeln!(text, "{}", settings.paint_heading(&format!("The run would be stopped: {}", escape(reason))));
+            }
+            Outcome::Faulted { reason } => {
+                let _ = writeln!(text, "{}", settings.paint_heading(&format!("The rig would fail: {}", escape(reason))));
+            }
+        }
+        text
+    }
+
+    /// One row a procedure: how far, how hard, how fast, how long.
+    fn motions(&self) -> Vec<Vec<String>> {
+        let mut rows = vec![row(["procedure", "", "displacement", "force", "fastest", "largest step", "steps", "rig time"])];
+        for reach in &self.reaches {
+            let mut cells = vec![reach.name.clone(), reach.keyword.clone()];
+            if reach.moved {
+                cells.extend([
+                    span(reach.displacement, Dimension::LENGTH),
+                    span(reach.force, Dimension::FORCE),
+                    readable(reach.speed, Dimension::VELOCITY),
+                    readable(reach.increment, Dimension::LENGTH),
+                ]);
+            } else {
+                cells.extend(row(["–", "–", "–", "–"]));
+            }
+            cells.extend([reach.steps.to_string(), readable(reach.ended - reach.started, Dimension::TIME)]);
+            rows.push(cells);
+        }
+        let total = self.reaches.last().map_or(0.0, |reach| reach.ended);
+        rows.push(row(["together", "", "", "", "", "", "", &readable(total, Dimension::TIME)]));
+        rows
+    }
+
+    /// One row a limit: the bound, how far the dry run went, what is left.
+    fn limits(&self) -> Vec<Vec<String>> {
+        let limits = &self.plan.limits;
+        let over = |pick: fn(&Reach) -> Interval| {
+            let moved = self.reaches.iter().filter(|reach| reach.moved).map(pick);
+            moved.reduce(|a, b| Interval { low: a.low.min(b.low), high: a.high.max(b.high) })
+        };
+        let size = |pick: fn(&Reach) -> f64| {
+            let largest = self.reaches.iter().filter(|reach| reach.moved).map(pick).reduce(f64::max);
+            largest.map(|high| Interval { low: 0.0, high })
+        };
+        let all = [
+            ("displacement", limits.displacement, Dimension::LENGTH, over(|reach| reach.displacement)),
+            ("force", limits.force, Dimension::FORCE, over(|reach| reach.force)),
+            ("speed", limits.speed, Dimension::VELOCITY, size(|reach| reach.speed)),
+            ("increment", limits.increment, Dimension::LENGTH, size(|reach| reach.increment)),
+            ("tracking error", limits.tracking_error, Dimension::LENGTH, size(|reach| reach.tracking_error)),
+            ("energy error", limits.energy_error, Dimension::NUMBER, self.energy_error()),
+        ];
+        let mut rows = vec![row(["limit", "allowed", "reached", "margin"])];
+        for (name, allowed, dimension, reached) in all {
+            if allowed.is_bounded() {
+                let left = reached.map(|reached| (allowed.high - reached.high).min(reached.low - allowed.low));
+                rows.push(vec![
+                    name.to_owned(),
+                    span(allowed, dimension),
+                    reached.map_or_else(|| "–".to_owned(), |reached| span(reached, dimension)),
+                    left.map_or_else(|| "–".to_owned(), |left| readable(left, dimension)),
+                ]);
+            }
+        }
+        if rows.len() == 1 { vec![row(["none: only a virtual rig may run this plan"])] } else { rows }
+    }
+
+    fn energy_error(&self) -> Option<Interval> {
+        let errors = self.record.procedures.iter().filter_map(|procedure| match procedure.result("energy_error")?.value {
+            ResultValue::Number { value, .. } => value.map(f64::abs),
+            ResultValue::List(_) => None,
+        });
+        errors.reduce(f64::max).map(|high| Interval { low: 0.0, high })
+    }
+
+    fn requirements(&self) -> Vec<Vec<String>> {
+        let outcomes = self.assessment.requirements.iter().flat_map(|requirement| {
+            requirement.conditions.iter().map(move |condition| {
+                let shown =
+                    |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| readable(value, condition.dimension));
+                vec![
+                    condition.verdict.name().to_owned(),
+                    escape(&requirement.label),
+                    escape(&condition.text),
+                    shown(condition.value),
+                    format!("margin {}", shown(condition.margin)),
+                ]
+            })
+        });
+        outcomes.collect()
+    }
+}
+
+/// The steps of an impact and its predicted peaks.
+fn impact(history: &ImpactHistory) -> Vec<Vec<String>> {
+    let peak = |of: fn(&crate::record::ImpactStep) -> f64, dimension| {
+        let largest = history.steps.iter().map(|step| (of(step).abs(), step.time)).max_by(|a, b| a.0.total_cmp(&b.0));
+        largest.map_or_else(String::new, |(value, time)| {
+            format!("{} at {}", readable(value, dimension), readable(time, Dimension::TIME))
+        })
+    };
+    let ratio = history.time_step / history.critical_time_step;
+    let judged = if ratio > 1.0 { "ABOVE critical" } else { "of it" };
+    let ends = history.steps.last().map_or(0.0, |step| step.time);
+    vec![
+        row(["critical time step", &readable(history.critical_time_step, Dimension::TIME)]),
+        row([
+            "chosen time step",
+            &format!("{}, {} {judged}", readable(history.time_step, Dimension::TIME), significant(ratio, 3)),
+        ]),
+        row(["virtual time", &format!("{} in {} steps", readable(ends, Dimension::TIME), history.steps.len().saturating_sub(1))]),
+        row(["peak displacement", &peak(|step| step.command, Dimension::LENGTH)]),
+        row(["peak restoring force", &peak(|step| step.restoring_force, Dimension::FORCE)]),
+        row(["peak contact force", &peak(|step| step.contact_force, Dimension::FORCE)]),
+        row(["peak velocity of the structure", &peak(|step| step.velocity, Dimension::VELOCITY)]),
+    ]
+}
+
+/// `0 .. 1.000 mm`: both ends in the unit that suits the larger one.
+fn span(interval: Interval, dimension: Dimension) -> String {
+    let finite = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
+    let (unit, factor) = readable_unit(finite(interval.low).max(finite(interval.high)), dimension);
+    let shown = |end: f64| significant(end / factor, 4);
+    let text = match (interval.low.is_finite(), interval.high.is_finite()) {
+        (true, true) => format!("{} .. {}", shown(interval.low), shown(interval.high)),
+        (false, true) => format!("up to {}", shown(interval.high)),
+        (true, false) => format!("from {}", shown(interval.low)),
+        (false, false) => return "any".to_owned(),
+    };
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
+}
+
+fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.map(str::to_owned).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_has_one_unit() {
+        assert_eq!(span(Interval { low: -2e-3, high: 25e-3 }, Dimension::LENGTH), "-2.000 .. 25.00 mm");
+        assert_eq!(span(Interval { low: f64::NEG_INFINITY, high: 12e3 }, Dimension::FORCE), "up to 12.00 kN");
+        assert_eq!(span(Interval { low: 0.0, high: 0.01 }, Dimension::NUMBER), "0 .. 0.01000");
+    }
+
+    /// Example 1 of Melo et al. 2006, with the actuator allowed to go to `farthest`.
+    fn example(farthest: f64) -> Plan {
+        use crate::formula::Formula::Constant;
+        use crate::plan::{
+            Behaviour, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen, Striker, Until,
+        };
+        let specimen = Specimen {
+            name: "beam".to_owned(),
+            mass: 1.0,
+            behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
+            damping: 0.0,
+            coulomb: 0.0,
+        };
+        let impact = Impact {
+            specimen: 0,
+            striker: 0,
+            mass: Constant(1.0),
+            stiffness: Constant(327.65),
+            damping: Constant(0.0),
+            contact: Contact::Rigid,
+            time_step: Constant(0.01),
+            duration: Constant(1.0),
+            until: Until::StrikerStop,
+            pause: Constant(0.0),
+            max_tangent_ratio: Constant(2.0),
+            inspect: Vec::new(),
+        };
+        Plan {
+            title: "Example 1".to_owned(),
+            particulars: Vec::new(),
+            parameters: Vec::new(),
+            specimens: vec![specimen],
+            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+            rig: RigPlan {
+                name: "noisy".to_owned(),
+                link: Link::Virtual(VirtualLink { noise: 5.0, lag: 0.1, ..VirtualLink::default() }),
+                settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 10.0 },
+                sign: 1.0,
+                calibration: None,
+            },
+            limits: Limits { displacement: Interval { low: -0.1, high: farthest }, ..Limits::NONE },
+            procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],
+            requirements: Vec::new(),
+            report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+            files: Vec::new(),
+            settings: Vec::new(),
+        }
+    }
+
+    const PLAIN: Settings = Settings { color: false, stdout_color: false, unicode: true, stderr_terminal: false, can_ask: false };
+
+    #[test]
+    fn the_papers_first_example_is_predicted_without_the_rigs_noise() {
+        let plan = example(0.2);
+        let dry = DryRun::of(&plan);
+        let text = dry.text(PLAIN);
+        // Critical step (2π/10)√(M/K), the paper's largest displacement, and what is left to the limit.
+        for expected in ["34.71 ms", "10.00 ms, 0.288 of it", "0.1579 m", "42.14 mm", "`noisy`"] {
+            assert!(text.contains(expected), "{expected} in\n{text}");
+        }
+        assert_eq!(dry.exit(), Exit::Met);
+    }
+
+    #[test]
+    fn a_limit_that_would_stop_the_run_is_said() {
+        let plan = example(0.1);
+        let dry = DryRun::of(&plan);
+        assert!(dry.text(PLAIN).contains("The run would be stopped: "), "{}", dry.text(PLAIN));
+        assert_eq!(dry.exit(), Exit::Stopped);
+    }
+}

@@ -1,0 +1,119 @@
+//! Files of a plan. In: paths. Out: their text. What a plan may `use` is confined to its folder: relative paths of
+//! regular files, no way up and no link out, at most [`FILE_BYTES`] of UTF-8.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Component, Path, PathBuf};
+
+use super::exit::Failure;
+use crate::check::{LoadFault, Loader};
+use crate::syntax::limits::FILE_BYTES;
+
+/// Gives files of one folder and what is under it.
+#[derive(Debug)]
+pub struct FolderLoader {
+    /// Without links, so that a file's true place can be compared with it.
+    folder: PathBuf,
+}
+
+impl FolderLoader {
+    /// A loader for the folder of `plan`, which exists.
+    pub fn beside(plan: &Path) -> Result<Self, Failure> {
+        let plan = plan.canonicalize().map_err(|error| Failure::file(plan, plain(&error)))?;
+        Ok(Self { folder: plan.parent().unwrap_or(&plan).to_owned() })
+    }
+}
+
+impl Loader for FolderLoader {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        let relative = Path::new(path);
+        let inside = relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if !inside || path.is_empty() || path.contains(['\\', '\0']) {
+            return Err(LoadFault::Refused("the path must lead down from the plan's folder".to_owned()));
+        }
+        let file = self.folder.join(relative).canonicalize().map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => LoadFault::NotFound,
+            _ => LoadFault::Refused(plain(&error)),
+        })?;
+        if !file.starts_with(&self.folder) {
+            return Err(LoadFault::Refused("it is a link that leads out of the plan's folder".to_owned()));
+        }
+        read(&file).map_err(LoadFault::Refused)
+    }
+}
+
+/// The text of the plan itself. It may be a link: the person named it.
+pub fn read_plan(path: &Path) -> Result<String, Failure> {
+    let metadata = path.metadata().map_err(|error| Failure::file(path, plain(&error)))?;
+    if metadata.is_dir() {
+        return Err(Failure::file(path, "is a folder").help("name the plan itself, a `.psd` file"));
+    }
+    read(path).map_err(|reason| Failure::NotAPlan { path: path.to_owned(), reason })
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    // Asked before opening: to open a pipe or a device may wait for ever.
+    if !path.metadata().map_err(|error| plain(&error))?.is_file() {
+        return Err("it is not a regular file".to_owned());
+    }
+    let file = File::open(path).map_err(|error| plain(&error))?;
+    let mut bytes = Vec::new();
+    file.take(FILE_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(|error| plain(&error))?;
+    if bytes.len() > FILE_BYTES {
+        return Err(format!("it is larger than {} MiB", FILE_BYTES >> 20));
+    }
+    String::from_utf8(bytes).map_err(|error| format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
+}
+
+/// The system's word for an error, without its number.
+pub fn plain(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => {
+            let text = error.to_string();
+            text.split(" (os error").next().unwrap_or(&text).to_owned()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(loader: &FolderLoader, path: &str) -> String {
+        match loader.load(path) {
+            Err(LoadFault::Refused(reason)) => reason,
+            other => panic!("{path}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn only_regular_files_under_the_plans_folder_are_given() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("plans");
+        std::fs::create_dir_all(folder.join("lib")).unwrap();
+        for (name, bytes) in [
+            ("plans/a.psd", "let a = 1".as_bytes()),
+            ("plans/lib/b.psd", b"let b = 2"),
+            ("secret.psd", b"x"),
+            ("plans/bytes.psd", b"a\xffb"),
+        ] {
+            std::fs::write(root.path().join(name), bytes).unwrap();
+        }
+        std::fs::write(folder.join("large.psd"), vec![b' '; FILE_BYTES + 1]).unwrap();
+        std::os::unix::fs::symlink("../secret.psd", folder.join("out.psd")).unwrap();
+        std::os::unix::fs::symlink("lib/b.psd", folder.join("in.psd")).unwrap();
+        let loader = FolderLoader::beside(&folder.join("a.psd")).unwrap();
+
+        assert_eq!(loader.load("lib/b.psd").as_deref(), Ok("let b = 2"));
+        assert_eq!(loader.load("./in.psd").as_deref(), Ok("let b = 2"));
+        assert_eq!(loader.load("lib/none.psd"), Err(LoadFault::NotFound));
+        assert!(refused(&loader, "../secret.psd").contains("plan's folder"));
+        assert!(refused(&loader, folder.join("a.psd").to_str().unwrap()).contains("plan's folder"));
+        assert!(refused(&loader, "out.psd").contains("leads out"));
+        assert!(refused(&loader, "lib").contains("regular"));
+        assert!(refused(&loader, "bytes.psd").contains("byte 1"));
+        assert!(refused(&loader, "large.psd").contains("1 MiB"));
+    }
+}

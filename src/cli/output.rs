@@ -1,0 +1,20 @@
+//! The two streams: what is told to a person goes to standard error, results to standard output. A reader that went
+//! away (`psd explain | head`) is no failure; a full disk behind standard output is.
+
+use std::io::{ErrorKind, Write as _};
+
+use super::exit::Failure;
+
+/// Tells a person. Nobody listening is no reason to fail.
+pub fn tell(text: &str) {
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Gives a result.
+pub fn give(text: &str) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Stdout(error)),
+        _ => Ok(()),
+    }
+}

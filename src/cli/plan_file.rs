@@ -1,0 +1,37 @@
+//! A plan on disk → a checked plan, and its diagnostics told. What `run` and `check` have in common.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::args::PlanSettings;
+use super::exit::Failure;
+use super::loader::{FolderLoader, read_plan};
+use super::output::tell;
+use super::settings::{Settings, folder_of};
+use crate::check::{Checked, Options, check};
+use crate::diagnostic::{json, render};
+
+/// Reads and checks a plan. Its name inside the program is its file's name: where it lies is recorded nowhere.
+pub fn open(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {
+    let text = read_plan(path)?;
+    let loader = FolderLoader::beside(path)?;
+    let options = Options { rig: settings.rig.clone(), settings: settings.set.clone(), date: settings.date.clone() };
+    Ok(check(&name_of(path), &text, &loader, &options))
+}
+
+/// Draws what the checker found, for a person.
+pub fn show(checked: &Checked, path: &Path, settings: Settings) {
+    tell(&render::render_all(&checked.diagnostics, &checked.sources, &settings.appearance(path)));
+}
+
+/// What the checker found, for an editor.
+pub fn diagnostics(checked: &Checked, path: &Path) -> Vec<Value> {
+    let (name, folder) = (name_of(path), folder_of(path));
+    checked.diagnostics.iter().map(|found| json::diagnostic(found, &checked.sources, &name, &folder)).collect()
+}
+
+/// The name of a plan's file, without its folder.
+pub fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

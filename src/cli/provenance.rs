@@ -1,0 +1,104 @@
+//! Where a run's numbers come from. In: the plan as it was checked. Out: [`Provenance`]. A function of the plan and
+//! this program's version alone, so that the same plan gives the same id everywhere.
+
+use std::fmt::Write as _;
+
+use sha2::{Digest as _, Sha256};
+
+use crate::output::Provenance;
+use crate::plan::{Link, Plan};
+
+/// The provenance of a run of `plan` by this version of the program.
+pub fn of(plan: &Plan) -> Provenance {
+    let version = env!("CARGO_PKG_VERSION");
+    let date = plan.particulars.iter().find(|(field, _)| *field == "date").map(|(_, date)| date.clone());
+    let text = plan.files.first().map_or("", |file| file.text.as_str());
+    Provenance {
+        run_id: run_id(plan, version),
+        psd_version: version.to_owned(),
+        plan_sha256: hex(&Sha256::digest(text.as_bytes())),
+        date,
+    }
+}
+
+/// The first 16 hex digits of SHA-256 over the plan and every file it used, the settings, the rig with its seed, and
+/// the version. Every part is preceded by its length, so that no two lists of parts read the same.
+fn run_id(plan: &Plan, version: &str) -> String {
+    let mut digest = Sha256::new();
+    let mut part = |text: &str| {
+        digest.update((text.len() as u64).to_le_bytes());
+        digest.update(text.as_bytes());
+    };
+    part("psd run 1");
+    part(version);
+    part(&plan.files.len().to_string());
+    for file in &plan.files {
+        part(&file.name);
+        part(&file.text);
+    }
+    part(&plan.settings.len().to_string());
+    for (name, value) in &plan.settings {
+        part(name);
+        part(value);
+    }
+    part(&plan.rig.name);
+    let Link::Virtual(link) = &plan.rig.link;
+    part(&link.seed.to_string());
+    hex(&digest.finalize())[..16].to_owned()
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Limits, PlanFile, Report, RigPlan, Settle, VirtualLink};
+
+    fn plan(files: &[(&str, &str)], settings: &[(&str, &str)], seed: u64) -> Plan {
+        let own = |(name, text): &(&str, &str)| (String::from(*name), String::from(*text));
+        let settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 1.0 };
+        let link = Link::Virtual(VirtualLink { seed, ..VirtualLink::default() });
+        Plan {
+            title: String::new(),
+            particulars: vec![("date", "2026-05-31".to_owned())],
+            parameters: Vec::new(),
+            specimens: Vec::new(),
+            strikers: Vec::new(),
+            rig: RigPlan { name: "ideal".to_owned(), link, settle, sign: 1.0, calibration: None },
+            limits: Limits::NONE,
+            procedures: Vec::new(),
+            requirements: Vec::new(),
+            report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+            files: files.iter().map(own).map(|(name, text)| PlanFile { name, text }).collect(),
+            settings: settings.iter().map(own).collect(),
+        }
+    }
+
+    #[test]
+    fn the_id_changes_with_every_part_and_with_nothing_else() {
+        let id = |files: &[(&str, &str)], settings: &[(&str, &str)], seed| run_id(&plan(files, settings, seed), "1");
+        let base = id(&[("a", "bc")], &[], 7);
+        assert_eq!(base, id(&[("a", "bc")], &[], 7));
+        assert_eq!(base.len(), 16);
+        let others = [
+            id(&[("ab", "c")], &[], 7),
+            id(&[("a", "bc"), ("", "")], &[], 7),
+            id(&[("a", "bc")], &[("v", "1")], 7),
+            id(&[("a", "bc")], &[], 8),
+            run_id(&plan(&[("a", "bc")], &[], 7), "2"),
+        ];
+        assert!(others.iter().all(|other| *other != base), "{others:?} against {base}");
+    }
+
+    #[test]
+    fn the_plans_digest_is_the_one_sha256sum_prints() {
+        let provenance = of(&plan(&[("a.psd", "abc")], &[], 0));
+        assert_eq!(provenance.plan_sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+        assert_eq!(provenance.date.as_deref(), Some("2026-05-31"));
+    }
+}

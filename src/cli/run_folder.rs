@@ -1,0 +1,119 @@
+//! The run folder: new or empty, each file created once. In: where the person wants it, and the files. Out: the
+//! folder on disk. Never overwrites and never deletes.
+
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Component, Path, PathBuf};
+
+use super::exit::Failure;
+use super::loader::plain;
+use crate::output::OutputFile;
+
+/// An empty folder that belongs to this run.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// The folder named by `--out`, or `runs/PLAN-N` with the next free number.
+    pub fn create(out: Option<&Path>, plan: &Path) -> Result<Self, Failure> {
+        match out {
+            Some(path) => Self::named(path),
+            None => Self::numbered(Path::new("runs"), &plan.file_stem().unwrap_or_default().to_string_lossy()),
+        }
+    }
+
+    fn named(path: &Path) -> Result<Self, Failure> {
+        let failed = |error: std::io::Error| Failure::file(path, plain(&error));
+        match std::fs::read_dir(path) {
+            Ok(mut entries) => {
+                if entries.next().is_some() {
+                    return Err(Failure::file(path, "the run folder must be new or empty").help("name another with `--out`"));
+                }
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => std::fs::create_dir_all(path).map_err(failed)?,
+            Err(error) => return Err(failed(error)),
+        }
+        Ok(Self { path: path.to_owned() })
+    }
+
+    fn numbered(runs: &Path, plan: &str) -> Result<Self, Failure> {
+        let failed = |path: &Path, error: &std::io::Error| Failure::file(path, plain(error));
+        std::fs::create_dir_all(runs).map_err(|error| failed(runs, &error))?;
+        let taken = std::fs::read_dir(runs).map_err(|error| failed(runs, &error))?.filter_map(|entry| {
+            let name = entry.ok()?.file_name().into_string().ok()?;
+            name.strip_prefix(plan)?.strip_prefix('-')?.parse::<u32>().ok()
+        });
+        let mut number = taken.max().unwrap_or(0);
+        loop {
+            number = number.checked_add(1).ok_or_else(|| Failure::file(runs, "no number is free"))?;
+            let path = runs.join(format!("{plan}-{number}"));
+            // To make the folder is to take the number, also from a run that starts at the same moment.
+            match std::fs::create_dir(&path) {
+                Ok(()) => return Ok(Self { path }),
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(failed(&path, &error)),
+            }
+        }
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes every file.
+    pub fn write(&self, files: &[OutputFile]) -> Result<(), Failure> {
+        files.iter().try_for_each(|file| write_new(&self.path, file))
+    }
+}
+
+/// Creates one file under `folder`, which must not have it.
+pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
+    let relative = Path::new(&file.path);
+    let path = folder.join(relative);
+    if !relative.components().all(|part| matches!(part, Component::Normal(_))) {
+        return Err(Failure::file(path, "would be written outside its folder"));
+    }
+    let write = || -> std::io::Result<()> {
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent)?;
+        }
+        let mut created = OpenOptions::new().write(true).create_new(true).open(&path)?;
+        created.write_all(&file.bytes)?;
+        created.sync_all()
+    };
+    write().map_err(|error| Failure::file(&path, plain(&error)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(path: &str) -> OutputFile {
+        OutputFile { path: path.to_owned(), bytes: b"x".to_vec() }
+    }
+
+    #[test]
+    fn numbers_go_up_and_no_file_is_written_twice() {
+        let root = tempfile::tempdir().unwrap();
+        let first = RunFolder::numbered(root.path(), "beam").unwrap();
+        std::fs::create_dir(root.path().join("beam-7")).unwrap();
+        std::fs::create_dir(root.path().join("beam-of-9")).unwrap();
+        let next = RunFolder::numbered(root.path(), "beam").unwrap();
+        assert!(first.path().ends_with("beam-1") && next.path().ends_with("beam-8"));
+        next.write(&[file("a/b.csv")]).unwrap();
+        assert!(next.write(&[file("a/b.csv")]).is_err());
+        assert!(next.write(&[file("../b.csv")]).is_err());
+    }
+
+    #[test]
+    fn a_folder_in_use_is_refused() {
+        let root = tempfile::tempdir().unwrap();
+        assert!(RunFolder::named(&root.path().join("new/deep")).is_ok());
+        assert!(RunFolder::named(&root.path().join("new/deep")).is_ok(), "empty");
+        assert!(RunFolder::named(root.path()).is_err());
+        std::fs::write(root.path().join("file"), "").unwrap();
+        assert!(RunFolder::named(&root.path().join("file")).is_err());
+    }
+}

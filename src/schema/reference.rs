@@ -1,0 +1,175 @@
+//! The vocabulary as text: the generated part of the language reference, in Markdown. In: the tables of blocks,
+//! functions, units and diagnostic codes. Out: one text. Knows no plan.
+
+use std::fmt::Write as _;
+
+use super::{BLOCKS, BlockKind, FUNCTIONS, Field, FieldType, Kind, Naming, Need, Range, ResultKind, Variant};
+use crate::diagnostic::Code;
+use crate::quantity::Dimension;
+use crate::quantity::display::{si_unit, significant};
+use crate::quantity::unit::{PREFIXES, UNITS};
+
+/// The generated part of `grammar/LANGUAGE.md`: every block, field, choice and result, then functions, units and codes.
+#[must_use]
+pub fn reference() -> String {
+    let mut text = "## Vocabulary\n".to_owned();
+    for block in BLOCKS.iter().filter(|block| block.kind != Kind::Later) {
+        write_block(&mut text, block);
+    }
+    write_later(&mut text);
+    write_functions(&mut text);
+    write_units(&mut text);
+    write_codes(&mut text);
+    text
+}
+
+// Writing to a text cannot fail, so that the results of `write!` say nothing.
+
+fn write_block(text: &mut String, block: &BlockKind) {
+    let naming = match block.naming {
+        Naming::Named => " NAME",
+        Naming::Titled => " \"TITLE\"",
+        Naming::Unnamed => "",
+        Naming::MaybeNamed => " [NAME]",
+    };
+    let _ = write!(text, "\n### `{}{naming} {{ … }}`\n\n{}.", block.words(), block.doc);
+    let _ = writeln!(text, "{}\n", if block.procedure { " A procedure." } else { "" });
+    let _ = writeln!(text, "| field | takes | if absent | |\n|---|---|---|---|");
+    for field in block.fields.iter().filter(|field| field.available) {
+        let _ = writeln!(text, "| `{}` | {} | {} | {} |", field.name, takes(field), absent(field), field.doc);
+    }
+    for field in block.fields {
+        if let FieldType::Choice(variants) | FieldType::Choices(variants) = field.ty {
+            let _ = writeln!(text, "\n`{}`:\n", field.name);
+            write_variants(text, variants, 0);
+        }
+    }
+    write_values(text, "what follows", block.exports);
+    write_values(text, "result", block.results);
+    let later: Vec<String> = block.fields.iter().filter(|field| !field.available).map(|field| format!("`{}`", field.name)).collect();
+    if !later.is_empty() {
+        let _ = writeln!(text, "\nNot in this version: {}.", later.join(", "));
+    }
+}
+
+/// A choice's words, each with its arguments below it.
+fn write_variants(text: &mut String, variants: &[Variant], depth: usize) {
+    let indent = "  ".repeat(depth);
+    for variant in variants {
+        let names: Vec<&str> = variant.arguments.iter().map(|argument| argument.name).collect();
+        let brackets = if names.is_empty() { String::new() } else { format!("({})", names.join(", ")) };
+        let later = if variant.available { "" } else { " (not in this version)" };
+        let _ = writeln!(text, "{indent}- `{}{brackets}`: {}{later}", variant.name, variant.doc);
+        for argument in variant.arguments {
+            let absent = match absent(argument) {
+                words if words.is_empty() => String::new(),
+                words if argument.need == Need::Required => format!("; {words}"),
+                words => format!("; if absent {words}"),
+            };
+            let _ = writeln!(text, "{indent}  - `{}`: {}; {}{absent}", argument.name, argument.doc, takes(argument));
+            if let FieldType::Choice(inner) = argument.ty {
+                write_variants(text, inner, depth + 2);
+            }
+        }
+    }
+}
+
+fn write_values(text: &mut String, head: &str, values: &[ResultKind]) {
+    if values.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n| {head} | unit | |\n|---|---|---|");
+    for value in values {
+        let unit = if value.dimension == Dimension::NUMBER { String::new() } else { format!("`{}`", si_unit(value.dimension)) };
+        let measured = if value.measured { ", with its standard uncertainty `.u`" } else { "" };
+        let _ = writeln!(text, "| `{}` | {unit} | {}{measured} |", value.name, value.doc);
+    }
+}
+
+/// What a field takes: `mass in kg, above 0`, `one of …`.
+fn takes(field: &Field) -> String {
+    match field.ty {
+        FieldType::Text => "a text".to_owned(),
+        FieldType::Texts => "a list of texts".to_owned(),
+        FieldType::Quantity(dimension) => format!("{}{}", measure(dimension), allowed(field.range, dimension)),
+        FieldType::Quantities(dimension) => format!("a list or a range with a step: {}", measure(dimension)),
+        FieldType::Bounds { dimension, symmetric } => {
+            let low = if symmetric { "−b" } else { "0" };
+            format!("a range, or one bound b for {low} .. b: {}", measure(dimension))
+        }
+        FieldType::Count => format!("a whole number{}", allowed(field.range, Dimension::NUMBER)),
+        FieldType::Choice(_) => "a choice".to_owned(),
+        FieldType::Choices(_) => "a list of choices".to_owned(),
+        FieldType::Reference(kind) => format!("the name of a `{}`", super::block(kind).words()),
+        FieldType::Figures => "a list of `figure(PROCEDURE)`".to_owned(),
+    }
+}
+
+fn measure(dimension: Dimension) -> String {
+    if dimension == Dimension::NUMBER {
+        return "a number or `%`".to_owned();
+    }
+    match dimension.name() {
+        Some(name) => format!("{name}, such as `{}`", dimension.usual_unit()),
+        None => format!("`{}`", dimension.usual_unit()),
+    }
+}
+
+/// The range of a value, `, above 0`; a limit of a dimension stands in its SI unit.
+fn allowed(range: Range, dimension: Dimension) -> String {
+    let shown = |value: f64| {
+        let number = if value.abs() < 1e7 { value.to_string() } else { significant(value, 2) };
+        if value == 0.0 || dimension == Dimension::NUMBER { number } else { format!("{number} {}", si_unit(dimension)) }
+    };
+    match (range.low.is_finite(), range.high.is_finite()) {
+        (false, false) => String::new(),
+        (true, false) if range.above => format!(", above {}", shown(range.low)),
+        (true, false) => format!(", at least {}", shown(range.low)),
+        (false, true) => format!(", at most {}", shown(range.high)),
+        (true, true) if range.above => format!(", above {} and at most {}", shown(range.low), shown(range.high)),
+        (true, true) => format!(", {} to {}", shown(range.low), shown(range.high)),
+    }
+}
+
+fn absent(field: &Field) -> String {
+    match (field.need, field.default_text()) {
+        (Need::Required, _) => "**required**".to_owned(),
+        (_, Some(default)) => default,
+        (_, None) => String::new(),
+    }
+}
+
+fn write_later(text: &mut String) {
+    let _ = writeln!(text, "\n### Not in this version\n\nKnown words that this version of psd does not carry out.\n");
+    for block in BLOCKS.iter().filter(|block| block.kind == Kind::Later) {
+        let _ = writeln!(text, "- `{}`: {}", block.words(), block.doc);
+    }
+}
+
+fn write_functions(text: &mut String) {
+    let _ = writeln!(text, "\n## Functions\n\n| function | |\n|---|---|");
+    for function in FUNCTIONS {
+        let arguments = if function.many { "a, b, …" } else { "a" };
+        let _ = writeln!(text, "| `{}({arguments})` | {} |", function.name, function.doc);
+    }
+}
+
+fn write_units(text: &mut String) {
+    let _ = writeln!(text, "\n## Units\n\n| unit | | measures | prefixes | in SI |\n|---|---|---|---|---|");
+    for unit in UNITS {
+        let prefixes = if unit.prefixes { "yes" } else { "" };
+        let base = if unit.dimension == Dimension::NUMBER { String::new() } else { format!(" `{}`", si_unit(unit.dimension)) };
+        let (symbol, doc, measures) = (unit.symbol, unit.doc, unit.dimension.describe());
+        let _ = writeln!(text, "| `{symbol}` | {doc} | {measures} | {prefixes} | {}{base} |", unit.factor);
+    }
+    let prefixes: Vec<String> = PREFIXES.iter().map(|(prefix, factor)| format!("`{prefix}` {factor:e}")).collect();
+    let _ = writeln!(text, "\nPrefixes: {}.", prefixes.join(", "));
+}
+
+fn write_codes(text: &mut String) {
+    let _ = writeln!(text, "\n## Diagnostic codes\n\nWarnings start with W. `psd explain CODE` tells more.\n\n| code | |\n|---|---|");
+    for code in Code::ALL {
+        let title = code.page().lines().next().and_then(|line| line.split_once(": ")).map_or("", |(_, title)| title);
+        let _ = writeln!(text, "| {code} | {title} |");
+    }
+}
