@@ -1,1 +1,194 @@
-//! plans
+//! The plans of `plans/`, run as a user runs them: through the program, to a run folder.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every plan of `plans/`, by name, in order.
+fn plans() -> Vec<PathBuf> {
+    let mut found: Vec<PathBuf> = fs::read_dir(root().join("plans"))
+        .expect("plans/ is there")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "psd"))
+        .collect();
+    found.sort();
+    found
+}
+
+fn psd_run(plan: &Path, out: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_psd"))
+        .args(["run", plan.to_str().expect("UTF-8"), "--yes", "--out", out.to_str().expect("UTF-8")])
+        .args(more)
+        .output()
+        .expect("psd starts")
+}
+
+fn summary(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("summary.json")).expect("a run leaves summary.json");
+    serde_json::from_str(&text).expect("summary.json is JSON")
+}
+
+fn result(summary: &Value, procedure: &str, name: &str) -> f64 {
+    summary["procedures"][procedure]["results"][name]["value"].as_f64().unwrap_or_else(|| panic!("{procedure}.{name} is a number"))
+}
+
+/// Every file under a folder with its bytes.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(current) = folders.pop() {
+        for entry in fs::read_dir(&current).expect("readable") {
+            let path = entry.expect("readable").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).expect("inside").to_string_lossy().into_owned();
+                found.insert(name, fs::read(&path).expect("readable"));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_plan_runs_to_a_pass() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let plans = plans();
+    assert!(plans.len() >= 11, "five tutorials and six of the paper");
+    for plan in plans {
+        let out = scratch.path().join(plan.file_stem().expect("named"));
+        let output = psd_run(&plan, &out, &[]);
+        assert!(output.status.success(), "{}: {}", plan.display(), String::from_utf8_lossy(&output.stderr));
+        assert_eq!(summary(&out)["verdict"], "pass", "{}", plan.display());
+    }
+}
+
+/// The paper's cases to the digits of the derivation: value and half a unit of its last digit.
+#[test]
+fn the_papers_figures_come_out_of_the_program() {
+    let cases: &[(&str, &str, f64, f64)] = &[
+        ("example_1", "max_displacement", 0.157_864, 5e-7),
+        ("example_1", "stop_time", 0.29, 1e-9),
+        ("example_1", "max_contact_force", 252.0, 0.5),
+        ("example_1", "critical_time_step", 0.0347, 5e-5),
+        ("example_1_converged", "max_displacement", 0.157_70, 5e-6),
+        ("example_1_converged", "stop_time", 0.2805, 5e-5),
+        ("example_2", "max_displacement", 0.168_965, 5e-7),
+        ("example_2", "stop_time", 0.28, 1e-9),
+        ("example_2", "max_contact_force", 97.7, 0.05),
+        ("limit_5000", "max_displacement", 0.164_429, 5e-7),
+        ("limit_5000", "stop_time", 0.297, 1e-9),
+        ("limit_5000", "max_contact_force", 2301.0, 0.5),
+        ("limit_1500", "max_displacement", 0.165_524, 5e-7),
+        ("limit_1500", "stop_time", 0.3, 1e-9),
+        ("limit_1500", "max_contact_force", 1500.0, 1e-9),
+        ("limit_1500", "indentation_energy", 3.35, 5e-3),
+    ];
+    let scratch = tempfile::tempdir().expect("a folder");
+    let mut summaries: BTreeMap<&str, Value> = BTreeMap::new();
+    for (plan, name, expected, tolerance) in cases {
+        let run = summaries.entry(plan).or_insert_with(|| {
+            let out = scratch.path().join(plan);
+            let output = psd_run(&root().join(format!("plans/{plan}.psd")), &out, &[]);
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            summary(&out)
+        });
+        let value = result(run, "hit", name);
+        assert!((value - expected).abs() <= *tolerance, "{plan}: {name} is {value}, expected {expected} ± {tolerance}");
+    }
+}
+
+#[test]
+fn the_beam_is_within_the_papers_measurement() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let out = scratch.path().join("beam");
+    assert!(psd_run(&root().join("plans/beam.psd"), &out, &[]).status.success());
+    let run = summary(&out);
+    let displacement = result(&run, "hit", "max_displacement");
+    assert!((displacement / 7.95e-3 - 1.0).abs() < 0.02, "measured 7.95 mm, here {displacement} m");
+    let absorbed = result(&run, "hit", "absorbed_energy");
+    assert!((absorbed / 9.48 - 1.0).abs() < 0.10, "the paper reckons 9.48 J, here {absorbed} J");
+    assert!(run["procedures"]["k0"]["results"]["stiffness"]["u"].as_f64().is_some_and(|u| u > 0.0), "a measured stiffness has u");
+}
+
+#[test]
+fn the_same_plan_gives_the_same_bytes() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    for plan in ["beam", "limit_1500"] {
+        let plan_path = root().join(format!("plans/{plan}.psd"));
+        let (first, second) = (scratch.path().join(format!("{plan}_1")), scratch.path().join(format!("{plan}_2")));
+        psd_run(&plan_path, &first, &[]);
+        psd_run(&plan_path, &second, &[]);
+        let (first, second) = (files(&first), files(&second));
+        assert!(first.contains_key("certificate.html") && first.contains_key("summary.json"));
+        assert_eq!(first.keys().collect::<Vec<_>>(), second.keys().collect::<Vec<_>>());
+        for (name, bytes) in &first {
+            assert!(bytes == &second[name], "{plan}: {name} differs between two runs");
+        }
+    }
+}
+
+/// The blessed results are what the program gives today: text exactly, numbers to 1e-9 of their size.
+#[test]
+fn the_blessed_reports_are_true() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    for plan in ["example_1", "example_1_converged", "example_2", "limit_5000", "limit_1500", "beam"] {
+        let out = scratch.path().join(plan);
+        psd_run(&root().join(format!("plans/{plan}.psd")), &out, &[]);
+        let blessed = root().join("reports").join(plan);
+        compare(&summary(&out), &summary(&blessed), plan);
+        for name in files(&blessed).keys() {
+            assert!(out.join(name).exists(), "reports/{plan}/{name} is no longer written by a run");
+        }
+        for name in files(&blessed).keys().filter(|name| name.ends_with(".csv")) {
+            compare_tables(&blessed.join(name), &out.join(name));
+        }
+    }
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1e-9)
+}
+
+fn compare(new: &Value, old: &Value, place: &str) {
+    match (new, old) {
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.as_f64().expect("finite"), b.as_f64().expect("finite"));
+            assert!(near(a, b), "{place}: {a} now, {b} blessed");
+        }
+        (Value::Object(a), Value::Object(b)) => {
+            assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>(), "{place}: keys");
+            for (key, value) in a {
+                compare(value, &b[key], &format!("{place}.{key}"));
+            }
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            assert_eq!(a.len(), b.len(), "{place}: length");
+            for (index, (a, b)) in a.iter().zip(b).enumerate() {
+                compare(a, b, &format!("{place}[{index}]"));
+            }
+        }
+        _ => assert_eq!(new, old, "{place}"),
+    }
+}
+
+fn compare_tables(old: &Path, new: &Path) {
+    let (old_text, new_text) = (fs::read_to_string(old).expect("readable"), fs::read_to_string(new).expect("readable"));
+    assert_eq!(old_text.lines().count(), new_text.lines().count(), "{}: rows", old.display());
+    for (row, (a, b)) in old_text.lines().zip(new_text.lines()).enumerate() {
+        for (a, b) in a.split(',').zip(b.split(',')) {
+            let same = match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(a), Ok(b)) => near(a, b),
+                _ => a == b,
+            };
+            assert!(same, "{} row {row}: {b} now, {a} blessed", old.display());
+        }
+    }
+}
