@@ -9,3 +9,70 @@ pub struct LineFit {
     pub intercept_error: f64,
     pub r_squared: f64,
 }
+
+/// Least squares with an intercept, about the means so that no digits are lost. None with fewer than three points, with
+/// lists of different length, or where x does not vary.
+#[must_use]
+pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
+    if x.len() != y.len() || x.len() < 3 {
+        return None;
+    }
+    #[allow(clippy::cast_precision_loss)] // no test has 2^53 readings
+    let count = x.len() as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+    let (mean_x, mean_y) = (mean(x), mean(y));
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for (x, y) in x.iter().zip(y) {
+        let (dx, dy) = (x - mean_x, y - mean_y);
+        xx += dx * dx;
+        xy += dx * dy;
+        yy += dy * dy;
+    }
+    if xx.is_nan() || xx <= 0.0 {
+        return None;
+    }
+    let slope = xy / xx;
+    let residual: f64 = x.iter().zip(y).map(|(x, y)| (y - mean_y - slope * (x - mean_x)).powi(2)).sum();
+    let variance = residual / (count - 2.0);
+    Some(LineFit {
+        slope,
+        slope_error: (variance / xx).sqrt(),
+        intercept: mean_y - slope * mean_x,
+        intercept_error: (variance * (1.0 / count + mean_x * mean_x / xx)).sqrt(),
+        r_squared: if yy > 0.0 { 1.0 - residual / yy } else { 1.0 },
+    })
+}
+
+/// F_d = c·v + F_c·sign v: slope c (N·s/m) and intercept F_c (N), fitted as F_d·sign v against |v|. Readings at rest say
+/// nothing of it and are left out.
+#[must_use]
+pub fn fit_damping(velocities: &[f64], damping_forces: &[f64]) -> Option<LineFit> {
+    if velocities.len() != damping_forces.len() {
+        return None;
+    }
+    let (speeds, forces): (Vec<f64>, Vec<f64>) = velocities
+        .iter()
+        .zip(damping_forces)
+        .filter(|(velocity, _)| **velocity != 0.0)
+        .map(|(velocity, force)| (velocity.abs(), force * velocity.signum()))
+        .unzip();
+    fit_line(&speeds, &forces)
+}
+
+/// ∮R dX by the trapezoid, closed from the last point to the first, J: positive where energy was spent.
+#[must_use]
+pub fn loop_energy(displacements: &[f64], forces: &[f64]) -> f64 {
+    let count = displacements.len().min(forces.len());
+    (0..count)
+        .map(|i| {
+            let next = (i + 1) % count;
+            0.5 * (forces[i] + forces[next]) * (displacements[next] - displacements[i])
+        })
+        .sum()
+}
+
+/// ζ = c / (2√(KM)).
+#[must_use]
+pub fn damping_ratio(damping: f64, stiffness: f64, mass: f64) -> f64 {
+    damping / (2.0 * (stiffness * mass).sqrt())
+}

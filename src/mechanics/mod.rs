@@ -1,5 +1,14 @@
 //! Pure numerics: integrator, contact, specimen models, identification, energy. SI throughout; no rig, no plan text.
 
+pub mod beam;
 pub mod contact;
+pub mod damping;
 pub mod energy;
 pub mod identification;
+pub mod impact;
+pub mod integrator;
+pub mod law;
+pub mod specimen;
+pub mod summary;
+
+pub use integrator::critical_time_step;

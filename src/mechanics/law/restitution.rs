@@ -1,0 +1,186 @@
+//! Impacts with a coefficient of restitution, each at its own instant inside the step; where bounces die out the two
+//! bodies go on together until the contact would have to pull. Between events the step is eq. (5) over a part of Δt.
+
+use super::{Advance, Bodies, Law, Start};
+use crate::mechanics::contact::StepState;
+use crate::mechanics::integrator::Motion;
+
+/// Flights shorter than this part of Δt are not followed: the bodies stay together. Larger, and bouncing ends too
+/// early; smaller, and a step near e = 1 takes more bounces than it is worth. Its error shrinks with Δt.
+const SHORTEST_FLIGHT: f64 = 1e-3;
+/// Halvings of an interval of time: past the resolution of a double.
+const HALVINGS: u32 = 60;
+/// Bounces of one step; `SHORTEST_FLIGHT` ends them long before.
+const MOST_EVENTS: u32 = 4000;
+
+/// Separation speed = `coefficient` × closing speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestitutionContact {
+    coefficient: f64,
+    /// The bodies move as one.
+    joined: bool,
+}
+
+impl RestitutionContact {
+    #[must_use]
+    pub const fn new(coefficient: f64) -> Self {
+        Self { coefficient, joined: false }
+    }
+}
+
+/// The two bodies while a step is under way.
+struct Course {
+    structure: Motion,
+    striker_displacement: f64,
+    striker_velocity: f64,
+    /// Xs − X, at most 0; the very 0 after an impact.
+    overlap: f64,
+    left: f64,
+    impulse: f64,
+    loss: f64,
+    damping_work: f64,
+}
+
+impl Course {
+    /// Goes on for `duration` to where the structure is then.
+    fn go(&mut self, bodies: &Bodies, to: Motion, striker_velocity: f64, duration: f64) {
+        let moved = to.displacement - self.structure.displacement;
+        let striker_moved = 0.5 * duration * (self.striker_velocity + striker_velocity);
+        self.damping_work += 0.5 * bodies.damping * (self.structure.velocity + to.velocity) * moved;
+        self.structure = to;
+        self.striker_displacement += striker_moved;
+        self.striker_velocity = striker_velocity;
+        self.overlap = (self.overlap + striker_moved - moved).min(0.0);
+        self.left -= duration;
+    }
+
+    /// Momentum p passes from striker to structure; what the damper adds to M Ẍ comes with it.
+    fn strike(&mut self, bodies: &Bodies, impulse: f64) {
+        let change = impulse / bodies.mass;
+        self.structure.velocity += change;
+        self.structure.acceleration -= bodies.damping * change / bodies.mass;
+        self.striker_velocity -= impulse / bodies.striker_mass;
+        self.impulse += impulse;
+    }
+}
+
+/// First instant in (0, end] at which `reached` holds, by halving; it holds at `end`.
+fn locate(end: f64, mut reached: impl FnMut(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, end);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if reached(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+impl RestitutionContact {
+    /// Both bodies apart, to the next impact or to the end of the step. True if there was an impact.
+    fn fly(&mut self, bodies: &Bodies, tangent: f64, course: &mut Course) -> bool {
+        let Bodies { mass, damping, striker_mass, time_step } = *bodies;
+        let from = course.structure;
+        let (overlap, striker_velocity, left) = (course.overlap, course.striker_velocity, course.left);
+        let free = |duration: f64| from.free(mass, damping, tangent, duration);
+        // Xs − X > 0 divided by the time flown, so that the touch at the start of a flight is no root of it.
+        let closed =
+            |duration: f64| overlap / duration + striker_velocity - 0.5 * (from.velocity + free(duration).velocity) > 0.0;
+        let touching_and_closing = overlap == 0.0 && striker_velocity > from.velocity;
+        if !touching_and_closing && !closed(left) {
+            course.go(bodies, free(left), striker_velocity, left);
+            return false;
+        }
+        if !touching_and_closing {
+            let instant = locate(left, closed);
+            course.go(bodies, free(instant), striker_velocity, instant);
+            course.overlap = 0.0;
+        }
+        let closing = course.striker_velocity - course.structure.velocity;
+        if closing < 0.0 {
+            return true;
+        }
+        let reduced_mass = mass * striker_mass / (mass + striker_mass);
+        course.strike(bodies, reduced_mass * (1.0 + self.coefficient) * closing);
+        course.loss += 0.5 * reduced_mass * (1.0 - self.coefficient * self.coefficient) * closing * closing;
+
+        // The striker flies straight: the structure's deceleration brings them together again.
+        let separation = self.coefficient * closing;
+        let deceleration = -course.structure.acceleration;
+        if 2.0 * separation <= deceleration * SHORTEST_FLIGHT * time_step {
+            course.strike(bodies, -reduced_mass * separation);
+            course.loss += 0.5 * reduced_mass * separation * separation;
+            course.striker_velocity = course.structure.velocity;
+            course.structure.acceleration *= mass / (mass + striker_mass);
+            self.joined = true;
+        }
+        true
+    }
+
+    /// Both bodies as one, to the end of the step or to the instant the contact would pull.
+    fn ride(&mut self, bodies: &Bodies, tangent: f64, course: &mut Course) {
+        let Bodies { mass, damping, striker_mass, .. } = *bodies;
+        let from = course.structure;
+        let together = |duration: f64| from.free(mass + striker_mass, damping, tangent, duration);
+        let mut duration = course.left;
+        let mut to = together(duration);
+        // F = −Ms Ẍ: it pulls where the pair speeds up.
+        if to.acceleration > 0.0 {
+            duration = locate(duration, |duration| together(duration).acceleration > 0.0);
+            to = together(duration);
+            to.acceleration *= (mass + striker_mass) / mass;
+            self.joined = false;
+        }
+        course.impulse += striker_mass * (from.velocity - to.velocity);
+        course.go(bodies, to, to.velocity, duration);
+        course.overlap = 0.0;
+    }
+}
+
+impl Law for RestitutionContact {
+    fn advance(&mut self, bodies: &Bodies, start: &Start) -> Advance {
+        let overlap = if self.joined { 0.0 } else { (start.striker_displacement - start.structure.displacement).min(0.0) };
+        let mut course = Course {
+            structure: start.structure,
+            striker_displacement: start.striker_displacement,
+            striker_velocity: start.striker_velocity,
+            overlap,
+            left: bodies.time_step,
+            impulse: 0.0,
+            loss: 0.0,
+            damping_work: 0.0,
+        };
+        let mut touched = false;
+        let mut events = 0;
+        while course.left > 0.0 {
+            events += 1;
+            if self.joined {
+                touched = true;
+                self.ride(bodies, start.tangent_stiffness, &mut course);
+            } else if events > MOST_EVENTS {
+                let rest = course.left;
+                let to = course.structure.free(bodies.mass, bodies.damping, start.tangent_stiffness, rest);
+                let striker_velocity = course.striker_velocity;
+                course.go(bodies, to, striker_velocity, rest);
+            } else {
+                touched |= self.fly(bodies, start.tangent_stiffness, &mut course);
+            }
+        }
+        Advance {
+            structure: course.structure,
+            striker_displacement: course.striker_displacement,
+            striker_velocity: course.striker_velocity,
+            state: if touched { StepState::Contact } else { StepState::Free },
+            contact_force: course.impulse / bodies.time_step,
+            indentation: start.indentation,
+            contact_loss: course.loss,
+            damping_work: course.damping_work,
+            indentation_work: 0.0,
+        }
+    }
+}

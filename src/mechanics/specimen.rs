@@ -1,0 +1,101 @@
+//! Restoring force of virtual specimens against displacement. A model knows its own path and nothing of time.
+
+use crate::plan::Behaviour;
+
+/// What a virtual rig bends.
+pub trait RestoringForce {
+    /// Moves on to `displacement` (m) and gives the force there, N.
+    fn move_to(&mut self, displacement: f64) -> f64;
+    /// Stiffness before anything has happened, N/m.
+    fn initial_stiffness(&self) -> f64;
+}
+
+/// R = K X.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    pub stiffness: f64,
+}
+
+impl RestoringForce for Elastic {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        self.stiffness * displacement
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        self.stiffness
+    }
+}
+
+/// Elastic–plastic with kinematic hardening: the force runs with stiffness K between two parallel lines of slope K_p,
+/// `R = K_p X ± (1 − K_p/K) F_y`, and along the line it meets. The elastic trial cut to the band is the exact return map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bilinear {
+    stiffness: f64,
+    hardened: f64,
+    half_band: f64,
+    displacement: f64,
+    force: f64,
+}
+
+impl Bilinear {
+    /// `stiffness` K (N/m), `yield_force` (N), `hardening` K_p/K, 0 to 1.
+    #[must_use]
+    pub fn new(stiffness: f64, yield_force: f64, hardening: f64) -> Self {
+        Self {
+            stiffness,
+            hardened: hardening * stiffness,
+            half_band: (1.0 - hardening) * yield_force,
+            displacement: 0.0,
+            force: 0.0,
+        }
+    }
+}
+
+impl RestoringForce for Bilinear {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        let trial = self.force + self.stiffness * (displacement - self.displacement);
+        let middle = self.hardened * displacement;
+        self.displacement = displacement;
+        self.force = trial.max(middle - self.half_band).min(middle + self.half_band);
+        self.force
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        self.stiffness
+    }
+}
+
+/// Any specimen a plan can declare.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpecimenModel {
+    Elastic(Elastic),
+    Bilinear(Bilinear),
+}
+
+impl SpecimenModel {
+    #[must_use]
+    pub fn new(behaviour: &Behaviour) -> Self {
+        match *behaviour {
+            Behaviour::Elastic { stiffness } | Behaviour::Beam { stiffness, .. } => Self::Elastic(Elastic { stiffness }),
+            Behaviour::Bilinear { stiffness, yield_force, hardening } => {
+                Self::Bilinear(Bilinear::new(stiffness, yield_force, hardening))
+            }
+        }
+    }
+}
+
+impl RestoringForce for SpecimenModel {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        match self {
+            Self::Elastic(model) => model.move_to(displacement),
+            Self::Bilinear(model) => model.move_to(displacement),
+        }
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        match self {
+            Self::Elastic(model) => model.initial_stiffness(),
+            Self::Bilinear(model) => model.initial_stiffness(),
+        }
+    }
+}

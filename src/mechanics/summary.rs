@@ -1,0 +1,163 @@
+//! What an impact comes to: peaks, times, impulse, energies, from its steps as they end.
+
+use super::contact::{ContactLaw, StepState};
+use super::impact::{ImpactInput, ImpactState};
+
+/// Results of an impact. Peaks are over step ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactSummary {
+    /// m
+    pub max_displacement: f64,
+    /// s
+    pub time_of_max_displacement: f64,
+    /// End of the first step with Ẋs ≤ 0, s.
+    pub stop_time: Option<f64>,
+    /// Computed X at the end of the run, m.
+    pub residual_displacement: f64,
+    /// Largest |Ẋ|, m/s.
+    pub max_velocity: f64,
+    /// N
+    pub max_contact_force: f64,
+    /// ∫F dt, N·s
+    pub impulse: f64,
+    /// Blows: times a free step was followed by one in contact.
+    pub contacts: u64,
+    /// Separation over closing speed of the first blow; none before it has ended.
+    pub restitution: Option<f64>,
+    /// m
+    pub indentation: f64,
+    /// J
+    pub indentation_energy: f64,
+    /// ∫R dX up to the largest X, J.
+    pub absorbed_energy: f64,
+    /// ½ Ms V0², J
+    pub striker_energy: f64,
+    /// As a fraction of the input.
+    pub energy_error: f64,
+    /// The structure was still on its way: the largest X is not a peak.
+    pub peak_is_final: bool,
+    /// The step at which the striker stopped had a contact force.
+    pub last_blow_cut: bool,
+}
+
+/// The first blow as it goes by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FirstBlow {
+    /// Closing speed at the last step end apart, m/s.
+    ToCome {
+        closing: f64,
+    },
+    UnderWay {
+        closing: f64,
+    },
+    Over {
+        restitution: Option<f64>,
+    },
+}
+
+/// Sums up steps one by one, step 0 first.
+#[derive(Clone, Debug)]
+pub struct SummaryBuilder {
+    input: ImpactInput,
+    first_blow: FirstBlow,
+    last_state: StepState,
+    last_velocity: f64,
+    summary: ImpactSummary,
+}
+
+impl SummaryBuilder {
+    #[must_use]
+    pub fn new(input: &ImpactInput) -> Self {
+        Self {
+            input: *input,
+            first_blow: FirstBlow::ToCome { closing: input.striker_velocity },
+            last_state: StepState::Free,
+            last_velocity: 0.0,
+            summary: ImpactSummary {
+                max_displacement: f64::NEG_INFINITY,
+                time_of_max_displacement: 0.0,
+                stop_time: None,
+                residual_displacement: 0.0,
+                max_velocity: 0.0,
+                max_contact_force: 0.0,
+                impulse: 0.0,
+                contacts: 0,
+                restitution: None,
+                indentation: 0.0,
+                indentation_energy: 0.0,
+                absorbed_energy: 0.0,
+                striker_energy: input.striker_energy(),
+                energy_error: 0.0,
+                peak_is_final: false,
+                last_blow_cut: false,
+            },
+        }
+    }
+
+    pub fn push(&mut self, state: &ImpactState) {
+        let summary = &mut self.summary;
+        if state.displacement > summary.max_displacement {
+            summary.max_displacement = state.displacement;
+            summary.time_of_max_displacement = state.time;
+            summary.absorbed_energy = state.energies.restoring;
+        }
+        summary.residual_displacement = state.displacement;
+        summary.max_velocity = summary.max_velocity.max(state.velocity.abs());
+        summary.max_contact_force = summary.max_contact_force.max(state.contact_force);
+        summary.impulse += state.contact_force * self.input.time_step;
+        summary.indentation = state.indentation;
+        summary.indentation_energy = state.energies.indentation;
+        if summary.striker_energy > 0.0 {
+            summary.energy_error = state.energies.error / summary.striker_energy;
+        }
+        if summary.stop_time.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
+            summary.stop_time = Some(state.time);
+            summary.last_blow_cut = state.contact_force > 0.0;
+        }
+        let touching = state.state != StepState::Free;
+        if touching && self.last_state == StepState::Free {
+            summary.contacts += 1;
+        }
+        self.follow_first_blow(state, touching);
+        self.last_state = state.state;
+        self.last_velocity = state.velocity;
+    }
+
+    /// A blow is over at the end of the free step that follows it: the tensile step, taken again as a free one.
+    fn follow_first_blow(&mut self, state: &ImpactState, touching: bool) {
+        let closing_now = state.striker_velocity - state.velocity;
+        self.first_blow = match self.first_blow {
+            FirstBlow::ToCome { closing } if touching => FirstBlow::UnderWay { closing },
+            FirstBlow::ToCome { .. } => FirstBlow::ToCome { closing: closing_now },
+            FirstBlow::UnderWay { closing } if !touching => {
+                FirstBlow::Over { restitution: (closing > 0.0).then(|| -closing_now / closing) }
+            }
+            unchanged => unchanged,
+        };
+    }
+
+    #[must_use]
+    pub fn finish(mut self) -> ImpactSummary {
+        self.summary.restitution = match (self.input.law, self.first_blow) {
+            // Located inside a step: the law's own number, which a step's ends only show with what came after.
+            (ContactLaw::Restitution { coefficient }, _) => (self.summary.contacts > 0).then_some(coefficient),
+            (_, FirstBlow::Over { restitution }) => restitution,
+            _ => None,
+        };
+        self.summary.peak_is_final = self.last_velocity > 0.0;
+        if self.summary.max_displacement == f64::NEG_INFINITY {
+            self.summary.max_displacement = 0.0;
+        }
+        self.summary
+    }
+}
+
+/// The summary of a run that is all there.
+#[must_use]
+pub fn summarise<'a>(input: &ImpactInput, states: impl IntoIterator<Item = &'a ImpactState>) -> ImpactSummary {
+    let mut builder = SummaryBuilder::new(input);
+    for state in states {
+        builder.push(state);
+    }
+    builder.finish()
+}
