@@ -9,21 +9,18 @@ use crate::{
 
 /// `found` and `expected` are in human words, marks included.
 pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, format!("found {found}, expected {expected}"))
-        .at(span, format!("expected {expected}"))
-        .help(match found {
-        "`}`" => "each `}` closes one `{`: take this one away, or open the block it should close".to_owned(),
-        _ if expected == "a value" => "a value is a number with its unit, a text, a name, a list or a range".to_owned(),
-        "`<`" | "`<=`" | "`>`" | "`>=`" | "`==`" | "`!=`" if expected.contains("the end of the line") => {
-            "one comparison holds two values; join two with `and`: `1 mm < x and x < 2 mm`".to_owned()
-        }
-        _ if expected == "an item" => {
-            "an item is a block, such as `striker hammer { … }`, or a line that starts with `use`, `param`, `let` or `require`"
-                .to_owned()
-        }
-        _ if expected.contains("the end of the line") => "one field or item stands on one line".to_owned(),
-        _ => format!("write {expected} here"),
-    })
+    Diagnostic::new(Code::Syntax, format!("found {found}, expected {expected}")).at(span, format!("expected {expected}")).help(
+        match found {
+            "`}`" => "each `}` closes one `{`: take this one away, or open the block it should close".to_owned(),
+            "`use`" | "`param`" | "`let`" | "`require`" | "`and`" | "`within`" | "`of`" | "`step`" | "`between`" => {
+                format!("{found} is a word of the language: names are other words")
+            }
+            _ if expected == "a field" => "write `key = value`".to_owned(),
+            _ if expected == "a value" => "a value is a number with its unit, a text, a name, a list or a range".to_owned(),
+            _ if expected.contains("the end of the line") => "one field or item stands on one line".to_owned(),
+            _ => format!("write {expected} here"),
+        },
+    )
 }
 
 pub fn field_outside(span: Span, key: &str) -> Diagnostic {

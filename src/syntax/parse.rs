@@ -44,13 +44,14 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
         ast.items = items;
         return (ast, Vec::new());
     }
-    let found = std::mem::take(&mut tokens.faults);
-    let mut reader = Pieces { tokens: &tokens, lexical: found.len(), faults: found };
-    reader.read(&mut ast.items);
-    let mut faults = reader.faults;
+    if tokens.cut_short {
+        return (ast, tokens.faults);
+    }
+    let (items, mut faults) = piecewise(&mut tokens);
+    ast.items = items;
     if faults.is_empty() {
         // The grammar refused what its pieces allow: say where it stopped.
-        faults.extend(Grammar::parse(Rule::file, text).err().map(|error| refused(&tokens, text, 0, &error)));
+        faults.extend(Grammar::parse(Rule::file, text).err().map(|error| refused(&tokens, text, 0, Rule::file, &error)));
     }
     faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
     (ast, faults)
@@ -65,12 +66,25 @@ fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
     lowering.faults.into_inner().is_empty().then_some(items)?
 }
 
-/// Why the grammar refuses `text`, which starts at byte `base`.
-fn refused(tokens: &Tokens, text: &str, base: usize, error: &pest::error::Error<Rule>) -> Diagnostic {
+/// Every piece of a file read alone. A sound file gives the same items as [`whole`].
+fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
+    let found = std::mem::take(&mut tokens.faults);
+    let mut reader = Pieces { tokens, lexical: found.len(), faults: found };
+    let mut items = Vec::new();
+    reader.read(&mut items);
+    (items, reader.faults)
+}
+
+/// Why the grammar's `rule` refuses `text`, which starts at byte `base`.
+fn refused(tokens: &Tokens, text: &str, base: usize, rule: Rule, error: &pest::error::Error<Rule>) -> Diagnostic {
     let offset = match error.location {
         InputLocation::Pos(offset) | InputLocation::Span((offset, _)) => offset,
     };
     let expected = match &error.variant {
+        // A head ends where its brace opens.
+        ErrorVariant::ParsingError { positives, .. } if rule == Rule::head_alone && positives.contains(&Rule::EOI) => {
+            "`{`".to_owned()
+        }
         ErrorVariant::ParsingError { positives, .. } => rule_names::expected(positives),
         ErrorVariant::CustomError { .. } => "something else".to_owned(),
     };
@@ -78,21 +92,17 @@ fn refused(tokens: &Tokens, text: &str, base: usize, error: &pest::error::Error<
     let later = &tokens.list[tokens.list.partition_point(|token| token.end <= at)..];
     let next = later.iter().find(|token| token.kind != Kind::Comment);
     let inside = next.filter(|token| token.start < base + text.len() || token.kind == Kind::Newline);
-    match inside.filter(|token| token.kind != Kind::Newline) {
-        Some(token) => {
-            let mut found: String = tokens.text_of(*token).chars().take(30).collect();
-            if found.len() < token.end - token.start {
-                found.push('…');
-            }
-            faults::unexpected(tokens.span(token.start, token.end), &format!("`{found}`"), &expected)
+    if let Some(token) = inside.filter(|token| token.kind != Kind::Newline) {
+        let mut found: String = tokens.text_of(*token).chars().take(30).collect();
+        if found.len() < token.end - token.start {
+            found.push('…');
         }
-        None => {
-            let end = base + text.len().min(offset);
-            let end = base + tokens.text[base..end].trim_end().len();
-            let place = if inside.is_some() { "the end of the line" } else { "the end of the file" };
-            faults::unexpected(tokens.span(end, end), place, &expected)
-        }
+        return faults::unexpected(tokens.span(token.start, token.end), &format!("`{found}`"), &expected);
     }
+    let end = base + text.len().min(offset);
+    let end = base + tokens.text[base..end].trim_end().len();
+    let place = if inside.is_some() { "the end of the line" } else { "the end of the file" };
+    faults::unexpected(tokens.span(end, end), place, &expected)
 }
 
 /// Reads the pieces of a faulty file.
@@ -139,7 +149,7 @@ impl Pieces<'_> {
         let mut pairs = match Grammar::parse(rule, text) {
             Ok(pairs) => pairs,
             Err(error) => {
-                self.faults.push(refused(self.tokens, text, start, &error));
+                self.faults.push(refused(self.tokens, text, start, rule, &error));
                 return None;
             }
         };
@@ -163,7 +173,7 @@ impl Pieces<'_> {
             self.no_item(statement);
             return None;
         }
-        if let Some(item) = self.alone(statement, Rule::item_alone, |lowering, pair| lowering.item(pair)) {
+        if let Some(item) = self.alone(statement, Rule::item_alone, Lowering::item) {
             return Some(item);
         }
         let (start, end) = self.bounds(statement);
@@ -189,14 +199,14 @@ impl Pieces<'_> {
         let key = self.word(statement.start).filter(|_| self.tokens.is(statement.start + 1, "="));
         if let Some(key) = key {
             self.faults.push(faults::field_outside(key.span, &key.node));
-        } else if self.alone(statement, Rule::head_alone, |lowering, pair| lowering.head(pair)).is_some() {
+        } else if self.alone(statement, Rule::head_alone, Lowering::head).is_some() {
             let (_, end) = self.bounds(statement);
             self.faults.push(faults::unexpected(self.tokens.span(end, end), "the end of the line", "`{`"));
         }
     }
 
     fn block(&mut self, head: Statement, open: usize, fields: &[Statement], close: Option<usize>) -> Option<Item> {
-        let sound = (head.end > head.start).then(|| self.alone(head, Rule::head_alone, |lowering, pair| lowering.head(pair)));
+        let sound = (head.end > head.start).then(|| self.alone(head, Rule::head_alone, Lowering::head));
         if sound.is_none() {
             let brace = self.tokens.list[open];
             let span = self.tokens.span(brace.start, brace.end);
@@ -220,12 +230,31 @@ impl Pieces<'_> {
 
     /// A field; of a faulty one, its key with a faulty value, so that it is not missed as well.
     fn entry(&mut self, statement: Statement) -> Option<Entry> {
-        if let Some(entry) = self.alone(statement, Rule::entry_alone, |lowering, pair| lowering.entry(pair)) {
+        if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
             return Some(entry);
         }
         let key = self.word(statement.start)?;
         let (start, end) = self.bounds(statement);
         let value = self.tokens.span(end.min(key.span.end as usize), end);
         Some(Entry { span: self.tokens.span(start, end), key, value: Lowering::faulty(value) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::tests::{IMPACT, QUAKE};
+
+    #[test]
+    fn a_sound_file_reads_the_same_whole_and_in_pieces() {
+        for text in
+            [IMPACT, QUAKE, "a { }\r\nb \"t\" { x = 1 } # c\nlet x = (1 +\n # c\n 2)\n", "c {\n x = [\n1 ,\n2] m\n\n y = 1 }"]
+        {
+            let file = FileId(0);
+            let mut tokens = Tokens::read(text, file);
+            let (items, faults) = piecewise(&mut tokens);
+            assert_eq!(faults, []);
+            assert_eq!(Some(items), whole(text, file));
+        }
     }
 }

@@ -43,7 +43,6 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
         Rule::name | Rule::new_name | Rule::word => "a name",
         Rule::between_word => "`between`",
         Rule::of_word => "`of`",
-        Rule::within_word | Rule::step_word => return None,
         Rule::equals => "`=`",
         Rule::comma => "`,`",
         Rule::colon => "`:`",
@@ -52,7 +51,9 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
         Rule::close_bracket => "`]`",
         Rule::close_paren => "`)`",
         Rule::end_of_line | Rule::newline | Rule::EOI => "the end of the line",
-        Rule::WHITESPACE
+        Rule::within_word
+        | Rule::step_word
+        | Rule::WHITESPACE
         | Rule::comment
         | Rule::gap
         | Rule::postfix
@@ -80,6 +81,10 @@ pub fn expected(rules: &[Rule]) -> String {
     // Where a value may start, what else may stand there (a text, an argument's name) is only noise.
     if names.contains(&"a value") {
         names.retain(|name| !matches!(*name, "a text in quotes" | "an argument"));
+    }
+    // An operator may be `(` or `[` too, where a call or index could go on: that is no new value.
+    if names.contains(&"an operator") {
+        names.retain(|name| *name != "a value");
     }
     // What may follow on comes before what ends the line.
     names.sort_by_key(|name| *name == "the end of the line");

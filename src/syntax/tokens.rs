@@ -2,7 +2,7 @@
 //! grammar (bad characters, bad numbers, units glued to expressions, all size limits). In: text. Out: [`Tokens`].
 //! The grammar reads the text itself; tokens serve recovery (`layout`), messages and the formatter.
 
-use super::{characters, faults, limits, numbers};
+use super::{characters, faults, layout::ITEM_WORDS, limits, numbers};
 use crate::{
     diagnostic::Diagnostic,
     source::{FileId, Span, Spanned},
@@ -36,12 +36,15 @@ pub struct Tokens<'a> {
     pub file: FileId,
     pub list: Vec<Token>,
     pub faults: Vec<Diagnostic>,
+    /// The file was too large to be read to its end.
+    pub cut_short: bool,
 }
 
 impl<'a> Tokens<'a> {
     #[must_use]
     pub fn read(text: &'a str, file: FileId) -> Self {
-        let mut reader = Reader { tokens: Tokens { text, file, list: Vec::new(), faults: Vec::new() }, at: 0, depth: 0 };
+        let mut reader =
+            Reader { tokens: Tokens { text, file, list: Vec::new(), faults: Vec::new(), cut_short: false }, at: 0, depth: 0 };
         reader.read();
         reader.tokens
     }
@@ -107,17 +110,19 @@ impl<'a> Reader<'a> {
         self.lines_too_long();
         while let Some(first) = self.rest().chars().next() {
             if self.tokens.list.len() >= limits::TOKENS {
+                self.tokens.cut_short = true;
                 self.fault(faults::too_large(self.span(first.len_utf8()), "this file", limits::TOKENS, "words and signs"));
                 return;
             }
             if self.tokens.faults.len() >= limits::FAULTS {
+                self.tokens.cut_short = true;
                 self.fault(faults::too_large(self.span(first.len_utf8()), "the list of faults", limits::FAULTS, "faults"));
                 return;
             }
             match first {
                 ' ' | '\t' => self.at += 1,
-                '\n' => self.push(Kind::Newline, 1),
-                '\r' if self.rest().starts_with("\r\n") => self.push(Kind::Newline, 2),
+                '\n' => self.newline(1),
+                '\r' if self.rest().starts_with("\r\n") => self.newline(2),
                 '#' => self.comment(),
                 '"' => self.text(),
                 '0'..='9' => self.number(),
@@ -125,6 +130,19 @@ impl<'a> Reader<'a> {
                 'a'..='z' | 'A'..='Z' | '_' => self.word(),
                 _ => self.sign(first),
             }
+        }
+    }
+
+    /// A line end. No bracket reaches past a line that starts a field or an item, so an open one is forgotten there.
+    fn newline(&mut self, length: usize) {
+        self.push(Kind::Newline, length);
+        let line = self.rest().trim_start_matches([' ', '\t']);
+        let after = line.trim_start_matches(|next: char| next.is_ascii_alphanumeric() || next == '_');
+        let word = &line[..line.len() - after.len()];
+        let sign = after.trim_start_matches([' ', '\t']);
+        let field = sign.starts_with('=') && !sign.starts_with("==");
+        if !word.is_empty() && (field || ITEM_WORDS.contains(&word)) {
+            self.depth = 0;
         }
     }
 

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::format;
-use crate::syntax::tests::{IMPACT, QUAKE, outline, read, sound};
+use crate::syntax::tests::{IMPACT, QUAKE, corpus::soup, outline, read, sound};
 
 fn formatted(text: &str) -> String {
     let (ast, _) = sound(text);
@@ -72,6 +72,7 @@ fn comments_stay_where_they_were() {
     let text =
         "let x = 1 + # why\n  # own\n 2 +\n\n f(\n 3 # three\n)\nlet yy = (1 +\n2)\nlet z = f([1, # one\n2], a: # name\n 3)\n";
     formatted(text);
+    assert_eq!(formatted("let x = [\"a  # b\", # c\n 2]"), "let x = [\n  \"a  # b\",  # c\n  2,\n]\n");
     assert!(formatted("let x = 1 +\n2").contains("let x = 1 +\n  2\n"));
 }
 
@@ -107,8 +108,9 @@ fn plan() -> impl Strategy<Value = String> {
     });
     let after = prop::sample::select(vec!["\n", " # c\n", "\n\n\n", "\n# own\n"]);
     prop::collection::vec((prop::sample::select(vec!["x", "longer_key"]), value, after), 0..6).prop_map(|fields| {
-        let lines: String = fields.iter().map(|(key, value, after)| format!(" {key} = {value}{after}")).collect();
-        let items: String = fields.iter().map(|(key, value, after)| format!("let {key} = {value} < 2{after}")).collect();
+        let lines: String = fields.iter().map(|(key, value, after)| [" ", *key, " = ", value, after].concat()).collect();
+        let items: String =
+            fields.iter().map(|(key, value, after)| ["let ", *key, " = ", value, " < 2", after].concat()).collect();
         format!("b {{\n{lines}}}\n{items}")
     })
 }
@@ -119,5 +121,12 @@ proptest! {
     #[test]
     fn formatting_is_idempotent_and_keeps_the_meaning(text in plan()) {
         formatted(&text);
+    }
+
+    #[test]
+    fn whatever_reads_without_fault_is_formatted(text in soup()) {
+        if read(&text).1.is_empty() {
+            formatted(&text);
+        }
     }
 }

@@ -45,7 +45,7 @@ pub fn lines(tokens: &Tokens, start: usize, end: usize, head: &str, indent: usiz
             return vec![line];
         }
     }
-    let mut writer = Writer { lines: vec![head.to_owned()], fresh: true };
+    let mut writer = Writer { lines: vec![head.to_owned()], fresh: true, commented: false };
     writer.value(&atoms, 0, atoms.len(), indent);
     writer.lines
 }
@@ -118,6 +118,8 @@ struct Writer {
     lines: Vec<String>,
     /// The last line has nothing yet but what stands before a value.
     fresh: bool,
+    /// The last line ends with a comment: nothing more goes there.
+    commented: bool,
 }
 
 impl Writer {
@@ -132,6 +134,7 @@ impl Writer {
     fn new_line(&mut self, indent: usize) {
         self.lines.push(" ".repeat(indent));
         self.fresh = true;
+        self.commented = false;
     }
 
     fn push(&mut self, atom: Atom) {
@@ -149,6 +152,7 @@ impl Writer {
         }
         self.line().push_str(text);
         self.fresh = false;
+        self.commented = true;
     }
 
     fn value(&mut self, atoms: &[Atom], start: usize, end: usize, indent: usize) {
@@ -240,7 +244,7 @@ impl Writer {
 
     /// The comments from `at` on; gives the first atom that is none.
     fn comments(&mut self, atoms: &[Atom], mut at: usize, end: usize, indent: usize) -> usize {
-        let mut own_line = self.lines.last().is_some_and(|line| line.contains("  #"));
+        let mut own_line = self.commented;
         while at < end {
             match atoms[at].role {
                 Role::Newline => own_line = true,

@@ -60,6 +60,8 @@ fn an_open_bracket_is_reported_where_it_opens_and_swallows_nothing() {
     assert_eq!(sources.position(found[0].span().unwrap()).line, 1);
     assert_eq!(outline(&ast), "a\n  x = 1\nb\n  y = 2\nlet c = ?\n");
     one("a {", UnclosedBracket, "{");
+    let many = format!("a {{\n{}}}\n", "x = f(\n".repeat(100));
+    assert!(faults(&many).iter().all(|(code, _)| *code == UnclosedBracket) && faults(&many).len() == 100);
     field("f([1, 2)", UnclosedBracket, "[");
 }
 
@@ -146,4 +148,37 @@ fn all_faults_of_a_file_are_found_at_once() {
 #[test]
 fn a_faulty_list_over_lines_is_one_fault() {
     one("a {\n  x = [\n    f(1, 2),\n    f(; 2),\n    f(3),\n  ]\n  y = 1\n}\n", Syntax, ";");
+}
+
+#[test]
+fn helps_are_written_for_the_fault() {
+    let found = |text: &str| {
+        let (_, found, _) = read(text);
+        format!("{} | {}", found[0].message, found[0].help.clone().unwrap())
+    };
+    for (text, expected) in [
+        ("b {\n  x 3\n}", "found `3`, expected `=` | write `=` here"),
+        (
+            "b {\n  x = f(1 2)\n}",
+            "found `2`, expected a unit, an operator, `,` or `)` | write a unit, an operator, `,` or `)` here",
+        ),
+        ("b {\n  x = 1 kg y\n}", "found `y`, expected an operator or the end of the line | one field or item stands on one line"),
+        ("striker p\n", "found the end of the line, expected `{` | write `{` here"),
+        ("plan \"a\" x {\n}\n", "found `x`, expected `{` | write `{` here"),
+        (
+            "foo = 3\n",
+            "found the field `foo` outside a block, expected an item | move it into its block, or name a value with `let foo = …`",
+        ),
+        ("}\n", "found `}`, expected an item | each `}` closes one `{`: take this one away, or open the block it should close"),
+        ("let step = 3\n", "found `step`, expected a name | `step` is a word of the language: names are other words"),
+        ("use lib\n", "found `lib`, expected a text in quotes | write a text in quotes here"),
+        ("b {\n x = (1 + a y)\n}", "found `y`, expected an operator or `)` | write an operator or `)` here"),
+        ("b {\n 3 = 4\n}\n", "found `3`, expected a field | write `key = value`"),
+        (
+            "let x = 1 and\n",
+            "found the end of the line, expected a value | a value is a number with its unit, a text, a name, a list or a range",
+        ),
+    ] {
+        assert_eq!(found(text), expected);
+    }
 }

@@ -1,6 +1,6 @@
 //! Tests of the whole folder: text in, tree and faults out.
 
-mod corpus;
+pub mod corpus;
 mod faulty;
 mod sound;
 
