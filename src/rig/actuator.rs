@@ -54,7 +54,7 @@ impl Actuator {
     /// The reference moves evenly to `to` in `seconds`. With e = reference − x: ė = v − e/lag, so
     /// e(t) = v·lag + (e₀ − v·lag)·exp(−t/lag). The reference goes on at this velocity until `stop`.
     pub(super) fn advance(&mut self, to: f64, seconds: f64) {
-        if !(seconds > 0.0) {
+        if seconds <= 0.0 {
             return;
         }
         let velocity = (to - self.reference) / seconds;

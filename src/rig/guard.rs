@@ -58,14 +58,9 @@ impl<'rig> Guard<'rig> {
     pub fn move_to(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         let speed = speed.or_else(|| Some(self.limits.speed.high).filter(|high| high.is_finite()));
         self.check_targets(targets)?;
-        for index in 0..targets.len() {
-            let (target, from) = (targets[index], self.commanded[index]);
-            // The rounding of this subtraction is not held against the plan: 0.3 − 0.2 is not quite 0.1.
-            let rounding = 4.0 * f64::EPSILON * target.abs().max(from.abs());
-            let increment = (target - from).abs();
-            let increment = if increment <= rounding { 0.0 } else { increment - rounding };
-            self.check(LimitedQuantity::Increment, self.limits.increment, increment)?;
-        }
+        let increments = targets.iter().zip(&self.commanded).map(|(to, from)| increment(*from, *to));
+        let longest = increments.fold(0.0, f64::max);
+        self.check(LimitedQuantity::Increment, self.limits.increment, longest)?;
         if let Some(speed) = speed {
             self.check(LimitedQuantity::Speed, self.limits.speed, speed)?;
         }
@@ -205,6 +200,12 @@ impl<'rig> Guard<'rig> {
         }
         outcome
     }
+}
+
+/// Size of a change of target, m. The rounding of the subtraction is not held against the plan: 0.3 − 0.2 is not quite 0.1.
+fn increment(from: f64, to: f64) -> f64 {
+    let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs());
+    ((to - from).abs() - rounding).max(0.0)
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ pub struct Reading {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RigFault {
     /// A target or reading lies outside a limit: the run is aborted.
-    #[error("{quantity} {value} is outside its limit {low} .. {high}")]
+    #[error("{quantity} {value}{unit} is outside its limit {low} .. {high}{unit}", unit = quantity.unit())]
     LimitBreached { quantity: LimitedQuantity, value: f64, low: f64, high: f64 },
     #[error("the rig did not settle within {timeout} s")]
     NotSettled { timeout: f64 },
@@ -52,6 +52,19 @@ pub enum LimitedQuantity {
     Increment,
     TrackingError,
     EnergyError,
+}
+
+impl LimitedQuantity {
+    /// The SI unit as it follows a number; nothing for a fraction.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::TargetDisplacement | Self::MeasuredDisplacement | Self::Increment | Self::TrackingError => " m",
+            Self::Force => " N",
+            Self::Speed => " m/s",
+            Self::EnergyError => "",
+        }
+    }
 }
 
 impl std::fmt::Display for LimitedQuantity {

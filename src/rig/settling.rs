@@ -39,7 +39,7 @@ pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
             bound = bound.min(left / rate_per_lagging);
         }
     }
-    if !(bound >= 0.0) {
+    if bound < 0.0 {
         return None;
     }
     let wait = if unsettled.lagging <= bound { 0.0 } else { unsettled.lag * (unsettled.lagging / bound).ln() };

@@ -1,8 +1,11 @@
 //! `damping sweep` (Melo et al. 2006, sec. 6 (b)): traverses of one stroke and back at rising constant velocities.
-//! In: velocities, stroke, the K of an earlier ramp. Out: c and the Coulomb force by F_d = R − K·X = c·v + F_c·sign v.
+//! In: velocities, stroke, the K of an earlier ramp. Out: c and the Coulomb force by `F_d = R − K·X = c·v + F_c·sign v`.
 //!
 //! X and R are as measured, X from the rig's zero. An offset of the cell, or an error of K, adds the same to both
-//! directions of a stroke, and so moves neither c nor F_c; it shows in the residuals, and thus in their errors.
+//! directions at one place: the fit is of half the difference between a reading and the one at the same place on the way
+//! back, so that neither reaches c, `F_c` or their standard errors.
+
+use std::ops::Range;
 
 use super::Performed;
 use super::inputs::Inputs;
@@ -30,19 +33,28 @@ const MOST_SAMPLES: f64 = 1e6;
 
 pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let Link::Virtual(link) = whole.rig.link;
-    let mut sweep = Sweep { steps: Vec::new(), stiffness: None, lag: link.lag };
+    let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag: link.lag };
     let stop = sweep.run(plan, inputs, session).err();
     let fit = sweep.fit();
     if fit.is_none() && stop.is_none() {
-        let text = "no damping: the steady parts of the strokes hold too few readings for a line".to_owned();
+        let text =
+            "no damping: the steady parts of the strokes hold too few readings, or too few velocities, for a line".to_owned();
         session.event(EventKind::Remark, text);
     }
     let results = sweep.results(fit.as_ref(), whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
     Performed { history: History::Sweep(SweepHistory { steps: sweep.steps, fit }), results, stop }
 }
 
+/// Steps of one stroke, out and back.
+struct Stroke {
+    out: Range<usize>,
+    back: Range<usize>,
+}
+
 struct Sweep {
     steps: Vec<SweepStep>,
+    /// The steps of each stroke that came back whole.
+    strokes: Vec<Stroke>,
     stiffness: Option<Estimate>,
     /// s
     lag: f64,
@@ -66,8 +78,9 @@ impl Sweep {
             let seconds = (stroke / velocity).abs();
             let samples = self.samples(seconds, rate)?;
             let speed = velocity.abs().copysign(stroke);
-            self.stroke(home + stroke, speed, seconds, samples, session)?;
-            self.stroke(home, -speed, seconds, samples, session)?;
+            let out = self.traverse(home + stroke, speed, seconds, samples, session)?;
+            let back = self.traverse(home, -speed, seconds, samples, session)?;
+            self.strokes.push(Stroke { out, back });
         }
         Ok(())
     }
@@ -92,7 +105,16 @@ impl Sweep {
         Ok(wanted as usize)
     }
 
-    fn stroke(&mut self, to: f64, velocity: f64, seconds: f64, samples: usize, session: &mut Session<'_>) -> Result<(), Stop> {
+    /// One way of a stroke; the steps it added.
+    fn traverse(
+        &mut self,
+        to: f64,
+        velocity: f64,
+        seconds: f64,
+        samples: usize,
+        session: &mut Session<'_>,
+    ) -> Result<Range<usize>, Stop> {
+        let began = self.steps.len();
         let stiffness = self.stiffness.map_or(0.0, |estimate| estimate.value);
         let steady_from = self.steady_from(seconds);
         let traversed = session.guard.traverse(&[to], velocity, samples);
@@ -112,13 +134,21 @@ impl Sweep {
             });
             session.step_done(step, reading.time, displacement, restoring_force)?;
         }
-        traversed.fault.map_or(Ok(()), |fault| Err(fault.into()))
+        traversed.fault.map_or(Ok(began..self.steps.len()), |fault| Err(fault.into()))
     }
 
     fn fit(&self) -> Option<LineFit> {
-        let steady = self.steps.iter().filter(|step| step.steady);
-        let (velocities, forces): (Vec<f64>, Vec<f64>) = steady.map(|step| (step.velocity, step.damping_force)).unzip();
+        let (velocities, forces): (Vec<f64>, Vec<f64>) = self.strokes.iter().flat_map(|stroke| self.pairs(stroke)).unzip();
         fit_damping(&velocities, &forces)
+    }
+
+    /// Velocity, and half the difference of `F_d` between the way out and the way back at one place, over what is steady
+    /// on both. The last reading of a way is where the next one starts, and has no partner.
+    fn pairs(&self, stroke: &Stroke) -> impl Iterator<Item = (f64, f64)> {
+        let out = self.steps[stroke.out.clone()].iter();
+        let back = self.steps[stroke.back.clone()].iter().rev().skip(1);
+        let steady = out.zip(back).filter(|(out, back)| out.steady && back.steady);
+        steady.map(|(out, back)| (out.velocity, 0.5 * (out.damping_force - back.damping_force)))
     }
 
     fn results(&self, fit: Option<&LineFit>, mass: Option<f64>) -> Vec<NamedResult> {

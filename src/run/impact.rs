@@ -28,7 +28,7 @@ pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, sess
         let history = ImpactHistory { steps: Vec::new(), time_step: 0.0, critical_time_step: 0.0 };
         return Performed { results: results(None, &history), history: History::Impact(history), stop };
     };
-    let mut strike = Strike { setting, steps: Vec::new(), summary: SummaryBuilder::new(&setting.input) };
+    let mut strike = Strike { setting, steps: room_for(setting.steps), summary: SummaryBuilder::new(&setting.input) };
     let stop = strike.run(plan, session).err();
     let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
     if let (Some(summary), None) = (&summary, &stop) {
@@ -37,6 +37,11 @@ pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, sess
     let history =
         ImpactHistory { steps: strike.steps, time_step: setting.input.time_step, critical_time_step: setting.critical_time_step };
     Performed { results: results(summary.as_ref(), &history), history: History::Impact(history), stop }
+}
+
+/// Room for the steps to come, as far as it is cheap: `duration` is often far beyond the end.
+fn room_for(steps: u64) -> Vec<ImpactStep> {
+    Vec::with_capacity(usize::try_from(steps + 1).unwrap_or(usize::MAX).min(100_000))
 }
 
 /// Everything known before the first step.
@@ -93,11 +98,11 @@ impl Setting {
 fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
     Ok(match contact {
         Contact::Rigid => ContactLaw::Rigid,
-        Contact::Limit { force } => ContactLaw::Limit { force: inputs.positive("force", force, Dimension::FORCE)? },
+        Contact::Limit { force } => ContactLaw::Limit { force: inputs.positive("force_limit", force, Dimension::FORCE)? },
         Contact::Restitution { coefficient } => {
-            let coefficient = inputs.not_negative("coefficient", coefficient, Dimension::NUMBER)?;
+            let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
             if coefficient > 1.0 {
-                return Err(Stop::BadInput { field: "coefficient", value: coefficient, wanted: "at most 1" });
+                return Err(Stop::BadInput { field: "restitution", value: coefficient, wanted: "at most 1" });
             }
             ContactLaw::Restitution { coefficient }
         }

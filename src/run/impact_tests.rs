@@ -45,6 +45,11 @@ fn value(record: &Record, name: &str) -> f64 {
     number(record, 0, name).0.unwrap_or_else(|| panic!("{name} is missing"))
 }
 
+#[expect(clippy::cast_precision_loss, reason = "some hundred steps")]
+fn count(steps: u64) -> f64 {
+    steps as f64
+}
+
 #[test]
 fn example_1_comes_out_as_printed() {
     let record = run_unwatched(&plan(impact()));
@@ -58,7 +63,7 @@ fn example_1_comes_out_as_printed() {
     let steps = steps(&record);
     assert_eq!((steps[0].step, steps[0].time, steps[0].state), (0, 0.0, StepState::Free));
     assert_eq!(steps[1].state, StepState::Contact);
-    assert_eq!(value(&record, "steps"), (steps.len() - 1) as f64);
+    assert_eq!(value(&record, "steps"), count(steps.len() as u64 - 1));
     // Each move at the rig's own 1 mm/s: 0.157864 m out at least.
     let way: f64 = steps.windows(2).map(|pair| (pair[1].command - pair[0].command).abs()).sum();
     assert!((steps.last().unwrap().wall_time - way / 1e-3).abs() < 1e-9);
@@ -86,8 +91,7 @@ fn pauses_take_rig_time_and_a_time_step_may_be_critical() {
     let steps = steps(&record);
     let last = steps.last().unwrap();
     let way: f64 = steps.windows(2).map(|pair| (pair[1].command - pair[0].command).abs()).sum();
-    #[expect(clippy::cast_precision_loss, reason = "some hundred steps")]
-    let by_hand = way / 1e-3 + 0.5 * last.step as f64;
+    let by_hand = way / 1e-3 + 0.5 * count(last.step);
     assert!((last.wall_time - by_hand).abs() < 1e-6, "{} {by_hand}", last.wall_time);
 }
 
@@ -120,7 +124,7 @@ fn a_breach_keeps_every_step_and_what_follows_from_them() {
     assert!(last.displacement <= 0.1 && last.displacement > 0.07);
     let largest = steps(&record).iter().map(|step| step.displacement).fold(0.0, f64::max);
     assert_eq!(value(&record, "max_displacement"), largest);
-    assert_eq!(value(&record, "steps"), last.step as f64);
+    assert_eq!(value(&record, "steps"), count(last.step));
     assert_eq!(record.events.last().unwrap().kind, EventKind::LimitBreach);
     assert_eq!(record.events.last().unwrap().step, Some(last.step));
 }

@@ -8,6 +8,8 @@ mod inputs;
 mod inspect;
 mod move_to;
 mod results;
+#[cfg(test)]
+mod rig_fault_tests;
 mod session;
 mod stiffness_ramp;
 mod stop;
@@ -74,7 +76,10 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     let mut record = Record { rig: identity, procedures: Vec::new(), events: Vec::new(), outcome: Outcome::Completed };
     let mut session = match Session::begin(plan, rig, observer) {
         Ok(session) => session,
-        Err((event, stop)) => return Record { events: vec![event], outcome: stop.outcome(), ..record },
+        Err(ended) => {
+            let (event, stop) = *ended;
+            return Record { events: vec![event], outcome: stop.outcome(), ..record };
+        }
     };
     for procedure in &plan.procedures {
         session.enter(procedure);

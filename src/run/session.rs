@@ -3,6 +3,8 @@
 
 use super::stop::Stop;
 use super::{Inspection, Observer};
+use crate::formula::NoResults;
+use crate::mechanics::critical_time_step;
 use crate::plan::{Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault};
@@ -18,7 +20,11 @@ pub(super) struct Session<'run> {
 
 impl<'run> Session<'run> {
     /// Takes the rig behind its guard. The error is the event to record and what ended the run.
-    pub(super) fn begin(plan: &Plan, rig: &'run mut dyn Rig, observer: &'run mut dyn Observer) -> Result<Self, (Event, Stop)> {
+    pub(super) fn begin(
+        plan: &Plan,
+        rig: &'run mut dyn Rig,
+        observer: &'run mut dyn Observer,
+    ) -> Result<Self, Box<(Event, Stop)>> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
         let guard = if axes == 1 {
@@ -31,7 +37,8 @@ impl<'run> Session<'run> {
             Ok(guard) => Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None }),
             Err(fault) => {
                 let stop = Stop::Rig(fault);
-                Err((Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() }, stop))
+                let event = Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() };
+                Err(Box::new((event, stop)))
             }
         }
     }
@@ -124,7 +131,9 @@ fn steps(kind: &ProcedureKind) -> Option<u64> {
         }
         ProcedureKind::DampingSweep(_) => None,
         ProcedureKind::Impact(impact) => {
-            let ratio = impact.duration.constant()? / impact.time_step.constant()?;
+            let critical = critical_time_step(impact.mass.constant()?, impact.stiffness.constant()?);
+            let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+            let ratio = impact.duration.constant()? / time_step;
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
             Some(ratio.ceil() as u64)
         }

@@ -102,16 +102,13 @@ impl Ramp {
     }
 
     fn results(&self, fit: Option<&LineFit>) -> Vec<NamedResult> {
-        // Two points leave nothing to judge the line by.
-        let judged = self.steps.iter().filter(|step| !step.returning).count() >= 3;
-        let with_error = |value, error| (value, judged.then_some(error));
         let first_secant = self.start.zip(self.steps.first()).and_then(|(start, step)| secant(start, point(step)));
         let relaxation = (!self.steps.is_empty()).then(|| mean(self.steps.iter().map(|step| step.relaxation)));
         let loop_energy = (!self.loops.is_empty()).then(|| mean(self.loops.iter().copied()));
         vec![
-            measured("stiffness", Dimension::STIFFNESS, fit.map(|fit| with_error(fit.slope, fit.slope_error))),
+            measured("stiffness", Dimension::STIFFNESS, fit.map(|fit| (fit.slope, Some(fit.slope_error)))),
             result("secant_stiffness", Dimension::STIFFNESS, first_secant),
-            measured("intercept_force", Dimension::FORCE, fit.map(|fit| with_error(fit.intercept, fit.intercept_error))),
+            measured("intercept_force", Dimension::FORCE, fit.map(|fit| (fit.intercept, Some(fit.intercept_error)))),
             result("r_squared", Dimension::NUMBER, fit.map(|fit| fit.r_squared)),
             result("max_force", Dimension::FORCE, largest(self.steps.iter().map(|step| step.restoring_force))),
             result("max_displacement", Dimension::LENGTH, largest(self.steps.iter().map(|step| step.displacement))),
