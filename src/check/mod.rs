@@ -1,9 +1,40 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod call;
+mod checker;
+mod choice;
+mod damping_sweep;
+mod expression;
+mod faults;
+mod fields;
+mod impact;
+mod imports;
+mod inspect;
+mod limits;
+mod literal;
+mod move_block;
+mod names;
+mod parameters;
+mod plan_block;
+mod procedures;
+mod report;
+mod require;
+mod rig;
+mod scope;
+mod specimen;
+mod stiffness_ramp;
+mod striker;
+#[cfg(test)]
+mod tests;
+mod warnings;
+
 use crate::diagnostic::Diagnostic;
-use crate::plan::Plan;
-use crate::source::Sources;
+use crate::plan::{Plan, PlanFile, Procedure, ProcedureKind};
+use crate::schema::Kind;
+use crate::source::{FileId, Sources, Span};
+use checker::Checker;
+use scope::Scope;
 
 /// Gives the text of used files. Paths are relative to the plan's folder, with `/`, already free of `..`.
 pub trait Loader {
@@ -41,8 +72,86 @@ pub struct Checked {
 
 /// Checks a plan and all it uses.
 #[must_use]
-pub fn check(name: &str, text: &str, _loader: &dyn Loader, _options: &Options) -> Checked {
+pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Checked {
     let mut sources = Sources::default();
-    sources.add(name, text);
-    Checked { plan: None, diagnostics: Vec::new(), sources }
+    let mut faults = Vec::new();
+    let imports = imports::load(name, text, loader, &mut sources, &mut faults);
+    let unread = unread_lines(&sources, &faults);
+    let files: Vec<PlanFile> =
+        sources.iter().map(|(_, file)| PlanFile { name: file.name.clone(), text: file.text.clone() }).collect();
+    let settings = parameters::read_settings(&mut sources, &imports.asts, &options.settings, &mut faults);
+    let scope = Scope::collect(&imports.asts, &settings, &mut faults);
+    let mut checker = Checker::new(&sources, &scope, faults, unread, imports.incomplete);
+    let plan = plan(&mut checker, name, files, options);
+    let mut diagnostics = checker.faults;
+    diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
+    let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
+    Checked { plan, diagnostics, sources }
+}
+
+/// The lines at which the text could not be read.
+fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
+    let line = |span: Span| {
+        let text = &sources.file(span.file).text;
+        let (start, end) = (span.range().start.min(text.len()), span.range().end.min(text.len()));
+        let first = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let last = text[end..].find('\n').map_or(text.len(), |newline| end + newline);
+        Span::new(span.file, first, last)
+    };
+    let unreadable = |fault: &&Diagnostic| fault.code.id().starts_with("E1");
+    faults.iter().filter(unreadable).filter_map(Diagnostic::span).map(line).collect()
+}
+
+fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Options) -> Option<Plan> {
+    for block in 0..checker.scope.blocks.len() {
+        checker.entries_of(block);
+    }
+    let (title, particulars) = plan_block::plan_block(checker, options.date.as_deref());
+    let parameters = checker.parameters();
+    let of_kind = |checker: &Checker, kind| checker.scope.of_kind(kind).map(|(index, _)| index).collect::<Vec<_>>();
+    let specimens: Vec<_> =
+        of_kind(checker, Kind::Specimen).into_iter().map(|block| specimen::specimen(checker, block)).collect();
+    let strikers: Vec<_> = of_kind(checker, Kind::Striker).into_iter().map(|block| striker::striker(checker, block)).collect();
+    let rig = rig::rig_of_run(checker, options.rig.as_deref());
+    let limits = checker.limits(rig.as_ref().and_then(|rig| rig.limits));
+    let procedures = procedures::procedures(checker);
+    if let Some(limits) = &limits {
+        limits::hold_targets(checker, limits);
+    }
+    for (block, procedure) in &procedures {
+        if let Some(Procedure { kind: ProcedureKind::Impact(impact), .. }) = procedure {
+            let striker = strikers.get(impact.striker).and_then(Option::as_ref);
+            warnings::impact(checker, *block, impact, striker);
+        }
+    }
+    let requirements = checker.requirements();
+    let by_place: Vec<Option<Procedure>> = procedures.iter().map(|(_, procedure)| procedure.clone()).collect();
+    let report = report::report(checker, &by_place);
+    if !checker.faults.iter().any(Diagnostic::is_error) {
+        let head = checker.scope.of_kind(Kind::Plan).map(|(_, block)| block.block.head).next();
+        let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
+        warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
+    }
+    let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();
+    settings.extend(options.settings.iter().cloned());
+    Some(Plan {
+        title: title.unwrap_or_else(|| stem(name).to_owned()),
+        particulars,
+        parameters,
+        specimens: specimens.into_iter().collect::<Option<_>>()?,
+        strikers: strikers.into_iter().collect::<Option<_>>()?,
+        rig: rig?.plan,
+        limits: limits?.limits,
+        procedures: by_place.into_iter().collect::<Option<_>>()?,
+        requirements: requirements?,
+        report: report?,
+        files,
+        settings: settings.into_iter().collect(),
+    })
+}
+
+/// `plans/beam.psd` is `beam`.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    file.strip_suffix(".psd").unwrap_or(file)
 }

@@ -1,0 +1,180 @@
+//! What every part of the check shares: the files, the scope, the faults so far, and values already worked out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::faults::names as fault;
+use super::scope::Scope;
+use crate::diagnostic::Diagnostic;
+use crate::formula::{Formula, ProcedureId};
+use crate::quantity::Dimension;
+use crate::source::{Sources, Span};
+use crate::syntax::ast::Expr;
+
+/// A place that has a value: a `let` or `param`, or an entry of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Node {
+    Value(usize),
+    Entry { block: usize, entry: usize },
+}
+
+/// One number or several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    Number,
+    List,
+}
+
+/// A checked expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Typed {
+    pub formula: Formula,
+    pub shape: Shape,
+    pub dimension: Dimension,
+    pub span: Span,
+    /// A number written without a unit (or a list of such), which may be a forgotten one.
+    pub bare: bool,
+    /// Written with `%`.
+    pub percent: bool,
+}
+
+/// Which results an expression may read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reads {
+    /// None: it is fixed before the run. The text says what it is: "a specimen".
+    Nothing(&'static str),
+    /// Those of procedures that ran before this one.
+    Before(ProcedureId),
+    All,
+}
+
+/// Where an expression stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// The block and its entry.
+    pub entry: Option<(usize, usize)>,
+    pub reads: Reads,
+    /// Whether `critical` has a meaning here.
+    pub critical: bool,
+}
+
+pub struct Checker<'a> {
+    pub sources: &'a Sources,
+    pub scope: &'a Scope<'a>,
+    pub faults: Vec<Diagnostic>,
+    /// Whether names may be missing because a used file could not be read.
+    pub names_lost: bool,
+    /// Lines that could not be read: names on them may be declared there.
+    pub unread: Vec<Span>,
+    pub known: BTreeMap<Node, Option<Typed>>,
+    pub used: BTreeSet<usize>,
+    stack: Vec<Node>,
+}
+
+impl<'a> Checker<'a> {
+    pub fn new(sources: &'a Sources, scope: &'a Scope<'a>, faults: Vec<Diagnostic>, unread: Vec<Span>, names_lost: bool) -> Self {
+        Self { sources, scope, faults, names_lost, unread, known: BTreeMap::new(), used: BTreeSet::new(), stack: Vec::new() }
+    }
+
+    /// Notes a fault; returns None, so that a caller can leave with it.
+    pub fn fail<T>(&mut self, fault: Diagnostic) -> Option<T> {
+        self.faults.push(fault);
+        None
+    }
+
+    pub fn text(&self, span: Span) -> &'a str {
+        self.sources.text(span)
+    }
+
+    /// Works a node out once. A node that needs itself is a fault that names the ring.
+    pub fn once(&mut self, node: Node, asked_at: Span, work: impl FnOnce(&mut Self) -> Option<Typed>) -> Option<Typed> {
+        if let Some(known) = self.known.get(&node) {
+            return known.clone();
+        }
+        self.guarded(node, asked_at, |checker| {
+            let value = work(checker);
+            checker.known.insert(node, value.clone());
+            value
+        })
+    }
+
+    /// Does `work` for a node, unless it is being done already further up.
+    pub fn guarded<T>(&mut self, node: Node, asked_at: Span, work: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        if let Some(start) = self.stack.iter().position(|open| *open == node) {
+            let ring: Vec<(String, Span)> = self.stack[start..].iter().map(|node| self.describe(*node)).collect();
+            for node in self.stack[start..].to_vec() {
+                self.known.insert(node, None);
+            }
+            return self.fail(fault::cycle(&ring, asked_at));
+        }
+        self.stack.push(node);
+        let value = work(self);
+        self.stack.pop();
+        value
+    }
+
+    /// Whether a name may have been declared where the text could not be read.
+    pub fn may_be_lost(&self, name: &str) -> bool {
+        let is_word = |text: &str| text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name);
+        self.names_lost || self.unread.iter().any(|span| is_word(self.sources.text(*span)))
+    }
+
+    /// Drops faults from `start` on that were reported before.
+    pub fn drop_repeated(&mut self, start: usize) {
+        for fault in self.faults.split_off(start) {
+            if !self.faults.contains(&fault) {
+                self.faults.push(fault);
+            }
+        }
+    }
+
+    fn describe(&self, node: Node) -> (String, Span) {
+        match node {
+            Node::Value(index) => {
+                let value = &self.scope.values[index];
+                (value.name.node.clone(), value.name.span)
+            }
+            Node::Entry { block, entry } => {
+                let declared = &self.scope.blocks[block];
+                let key = &declared.block.fields[entry].key;
+                let owner = declared.name.map_or_else(|| declared.kind.words(), |name| name.node.clone());
+                (format!("{owner}.{}", key.node), key.span)
+            }
+        }
+    }
+}
+
+impl Typed {
+    pub fn number(formula: Formula, dimension: Dimension, span: Span) -> Self {
+        Self { formula, shape: Shape::Number, dimension, span, bare: false, percent: false }
+    }
+
+    /// The value, if it is known before the run.
+    pub fn constant(&self) -> Option<f64> {
+        self.formula.constant()
+    }
+
+    /// Whether it needs the run.
+    pub fn is_late(&self) -> bool {
+        let mut references = Vec::new();
+        self.formula.collect_references(&mut references);
+        !references.is_empty() || self.formula.reads_critical_time_step()
+    }
+
+    /// The formulas of a list, or the one formula.
+    pub fn parts(&self) -> Vec<Formula> {
+        match &self.formula {
+            Formula::List(parts) => parts.clone(),
+            other => vec![other.clone()],
+        }
+    }
+}
+
+/// The number as it was written, without sign, and where: `3 mm`, `-3 mm` and `(3 mm)` are literals.
+pub fn literal(expr: &Expr) -> Option<&Expr> {
+    use crate::syntax::ast::ExprKind;
+    match &expr.kind {
+        ExprKind::Number { .. } => Some(expr),
+        ExprKind::Negate(inner) | ExprKind::Parenthesised(inner) => literal(inner),
+        _ => None,
+    }
+}

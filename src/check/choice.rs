@@ -1,0 +1,131 @@
+//! Words and variants: `rigid`, `limit(1500 N)`, `[every(20), force_drop(10 %)]`. In: an expression and the variants a
+//! field knows. Out: a [`Chosen`], its arguments in SI.
+
+use super::checker::{Checker, Place};
+use super::faults::values;
+use super::faults::{names as fault, types};
+use crate::formula::Formula;
+use crate::schema::{Field, FieldType, Need, Variant};
+use crate::source::Span;
+use crate::syntax::ast::{Argument, Expr, ExprKind};
+
+/// A variant as it was written.
+pub struct Chosen<'a> {
+    pub variant: &'static Variant,
+    /// What stands for each argument of the variant, in the schema's order.
+    arguments: Vec<Option<&'a Expr>>,
+}
+
+impl<'a> Checker<'a> {
+    /// The variant a field names. None where the field is left out or faulty.
+    pub fn choice(&mut self, block: usize, field: &str) -> Option<Chosen<'a>> {
+        let (_, written) = self.given(block, field)?;
+        let FieldType::Choice(variants) = self.scope.blocks[block].kind.field(field)?.ty else { return None };
+        self.chosen(field, variants, &written.value)
+    }
+
+    /// The word a field names, or `default` where it is left out.
+    pub fn word(&mut self, block: usize, field: &str, default: &'static str) -> Option<&'static str> {
+        if self.given(block, field).is_none() {
+            return Some(default);
+        }
+        self.choice(block, field).map(|chosen| chosen.variant.name)
+    }
+
+    /// The variants a field lists. None where the field is left out or faulty.
+    pub fn choices(&mut self, block: usize, field: &str) -> Option<Vec<Chosen<'a>>> {
+        let (_, written) = self.given(block, field)?;
+        let FieldType::Choices(variants) = self.scope.blocks[block].kind.field(field)?.ty else { return None };
+        match &written.value.kind {
+            ExprKind::List { items, unit: None } => {
+                let chosen: Vec<_> = items.iter().map(|item| self.chosen(field, variants, item)).collect();
+                chosen.into_iter().collect()
+            }
+            _ => self.chosen(field, variants, &written.value).map(|chosen| vec![chosen]),
+        }
+    }
+
+    pub fn chosen(&mut self, field: &str, variants: &'static [Variant], written: &'a Expr) -> Option<Chosen<'a>> {
+        let (name, span, arguments): (&str, Span, &'a [Argument]) = match &written.kind {
+            ExprKind::Name(name) => (name, written.span, &[]),
+            ExprKind::Call { name, arguments } => (&name.node, name.span, arguments),
+            ExprKind::Parenthesised(inner) => return self.chosen(field, variants, inner),
+            ExprKind::Faulty => return None,
+            _ => return self.fail(types::choice_wanted(field, variants, written.span, self.text(written.span))),
+        };
+        let Some(variant) = variants.iter().find(|variant| variant.name == name) else {
+            return self.fail(fault::unknown_variant(field, name, span, variants));
+        };
+        if !variant.available {
+            return self.fail(fault::variant_of_later_version(field, variant, span, variants));
+        }
+        let placed = self.place_arguments(variant, arguments, written.span)?;
+        Some(Chosen { variant, arguments: placed })
+    }
+
+    fn place_arguments(
+        &mut self,
+        variant: &'static Variant,
+        arguments: &'a [Argument],
+        span: Span,
+    ) -> Option<Vec<Option<&'a Expr>>> {
+        let mut placed: Vec<Option<&'a Expr>> = vec![None; variant.arguments.len()];
+        let mut faulty = false;
+        for (index, argument) in arguments.iter().enumerate() {
+            let position = match &argument.name {
+                None => Some(index).filter(|index| *index < placed.len()),
+                Some(name) => variant.arguments.iter().position(|field| field.name == name.node),
+            };
+            let Some(position) = position else {
+                let at = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
+                self.faults.push(fault::unknown_argument(variant, argument.name.as_ref().map(|name| name.node.as_str()), at));
+                faulty = true;
+                continue;
+            };
+            if let Some(first) = placed[position].replace(&argument.value) {
+                let at = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
+                self.faults.push(fault::argument_twice(variant.arguments[position].name, at, first.span));
+                faulty = true;
+            }
+        }
+        if faulty {
+            return None;
+        }
+        for (field, given) in variant.arguments.iter().zip(&placed) {
+            if given.is_none() && field.need == Need::Required {
+                self.faults.push(fault::missing_argument(variant, field, span));
+                faulty = true;
+            }
+        }
+        (!faulty).then_some(placed)
+    }
+
+    /// An argument that is a number: what was written, else its default. None where it is faulty or stands nowhere.
+    pub fn argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Formula> {
+        let (field, written) = chosen.find(name)?;
+        match written {
+            Some(written) => self.typed_field(field, written, place).map(|typed| typed.formula),
+            None => field.default_number().map(Formula::Constant),
+        }
+    }
+
+    /// An argument that is a number known before the run.
+    pub fn constant_argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<f64> {
+        let formula = self.argument(chosen, name, place)?;
+        let value = formula.constant();
+        if value.is_none()
+            && let Some((_, Some(written))) = chosen.find(name)
+        {
+            self.faults.push(values::needs_the_run(written.span, self.text(written.span)));
+        }
+        value
+    }
+}
+
+impl<'a> Chosen<'a> {
+    /// The argument of the schema, and what was written for it.
+    pub fn find(&self, name: &str) -> Option<(&'static Field, Option<&'a Expr>)> {
+        let index = self.variant.arguments.iter().position(|field| field.name == name)?;
+        Some((&self.variant.arguments[index], self.arguments[index]))
+    }
+}

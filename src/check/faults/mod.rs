@@ -1,0 +1,27 @@
+//! The wording of every diagnostic of the check, by what it is about. In: names, texts and places. Out: diagnostics.
+
+pub mod files;
+pub mod names;
+pub mod types;
+pub mod values;
+pub mod whole;
+
+/// `a`, `b` or `c`
+pub fn one_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
+    match quoted.as_slice() {
+        [] => "none".to_owned(),
+        [only] => only.clone(),
+        [most @ .., last] => format!("{} or {last}", most.join(", ")),
+    }
+}
+
+/// "did you mean `x`?", or what is known.
+pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    match crate::suggest::nearest(written, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => "remove it".to_owned(),
+        None => format!("known here: {}", one_of(known)),
+    }
+}

@@ -1,0 +1,300 @@
+//! Faults of names: E2xx, and rings of names.
+
+use super::{one_of, suggestion};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::quantity::unit::{PREFIXES, UNITS};
+use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Variant};
+use crate::source::{FileId, Span};
+use crate::syntax::ast::{Block, Ident};
+
+fn owner(kind: &BlockKind, name: Option<&Ident>) -> String {
+    name.map_or_else(|| format!("`{}`", kind.words()), |name| format!("{} `{}`", kind.words(), name.node))
+}
+
+pub fn unknown_block(block: &Block) -> Diagnostic {
+    let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
+    let keywords: Vec<String> = BLOCKS.iter().filter(|block| block.kind != Kind::Later).map(|block| block.words()).collect();
+    let known = || keywords.iter().map(String::as_str).chain(ITEM_WORDS.iter().copied());
+    // All words but the name, two of them, or the first alone: whichever is nearest to a keyword.
+    let near = [words.len().saturating_sub(1).max(1), 2, 1].into_iter().filter(|count| *count <= words.len()).find_map(|count| {
+        let written = words[..count].join(" ");
+        crate::suggest::nearest(&written, known()).map(|near| (count, near))
+    });
+    let begun = keywords.iter().find(|keyword| keyword.split(' ').next() == words.first().copied());
+    let (count, help) = match (near, begun) {
+        (Some((count, near)), _) => (count, format!("did you mean `{near}`?")),
+        (None, Some(keyword)) => (1, format!("did you mean `{keyword}`?")),
+        (None, None) => (1, format!("known blocks: {}", one_of(keywords.iter().map(String::as_str)))),
+    };
+    let written = words[..count].join(" ");
+    let span = block.words[0].span.to(block.words[count - 1].span);
+    Diagnostic::new(Code::UnknownBlock, format!("no block is called `{written}`")).at(span, "unknown block").help(help)
+}
+
+pub fn block_of_later_version(kind: &BlockKind, block: &Block) -> Diagnostic {
+    let last = kind.keyword.len().clamp(1, block.words.len()) - 1;
+    let span = block.words[0].span.to(block.words[last].span);
+    Diagnostic::new(Code::NotInThisVersion, format!("`{}` is not in this version", kind.words()))
+        .at(span, "a block of a later version")
+        .help(format!("remove this `{}` block", kind.words()))
+}
+
+pub fn field_of_later_version(kind: &BlockKind, field: &Field, key: &Ident) -> Diagnostic {
+    Diagnostic::new(Code::NotInThisVersion, format!("the field `{}` of `{}` is not in this version", field.name, kind.words()))
+        .at(key.span, "a field of a later version")
+        .help(format!("remove `{}`", field.name))
+}
+
+pub fn variant_of_later_version(field: &str, variant: &Variant, span: Span, variants: &[Variant]) -> Diagnostic {
+    let help = if field == "formats" {
+        format!("remove `{}`; `html` is made", variant.name)
+    } else {
+        format!(
+            "in this version `{field}` takes {}",
+            one_of(variants.iter().filter(|other| other.available).map(|other| other.name))
+        )
+    };
+    Diagnostic::new(Code::NotInThisVersion, format!("`{}` is not in this version", variant.name))
+        .at(span, "a word of a later version")
+        .help(help)
+}
+
+/// What is wrong with the words after the keyword, if something is.
+pub fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Diagnostic> {
+    let words = kind.words();
+    let example = kind.example.lines().next().unwrap_or_default();
+    let wrong = |message: String, span, label: &str| {
+        Diagnostic::new(Code::BlockName, message).at(span, label).help(format!("write it as in `{example}`"))
+    };
+    if let (Some(title), true) = (&block.title, kind.naming != Naming::Titled) {
+        return Some(wrong(format!("a `{words}` block has no title"), title.span, "a text in quotes"));
+    }
+    match (kind.naming, rest) {
+        (Naming::Named, []) => Some(wrong(format!("this `{words}` block has no name"), block.head, "a name is missing")),
+        (Naming::Unnamed | Naming::Titled, [name, ..]) => {
+            Some(wrong(format!("a `{words}` block has no name"), name.span, "one word too many"))
+        }
+        (_, [_, second, ..]) => {
+            Some(wrong(format!("a `{words}` block has one name of one word"), second.span, "one word too many"))
+        }
+        _ => None,
+    }
+}
+
+pub fn not_in_library(what: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BlockName, format!("`{what}` stands in a used file, where only declarations may stand"))
+        .at(span, "belongs into the plan itself")
+        .help("a used file holds `specimen`, `striker`, `rig`, `limits`, `let`, `param` and `use`")
+}
+
+pub fn declared_twice(name: &str, span: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("the name `{name}` is declared twice"))
+        .at(span, "again here")
+        .at(first, "first here")
+        .help("give one of them another name")
+}
+
+pub fn block_twice(kind: &BlockKind, span: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("there are two `{}` blocks", kind.words()))
+        .at(span, "again here")
+        .at(first, "first here")
+        .help("put their fields into one block")
+}
+
+pub fn field_twice(key: &Ident, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("the field `{}` is given twice", key.node))
+        .at(key.span, "again here")
+        .at(first, "first here")
+        .help("remove one of them")
+}
+
+pub fn argument_twice(name: &str, span: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("the argument `{name}` is given twice"))
+        .at(span, "again here")
+        .at(first, "first here")
+        .help("remove one of them")
+}
+
+pub fn velocity_twice(span: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, "the velocity is given twice: by `velocity` and by `drop_height`")
+        .at(span, "again here")
+        .at(first, "first here")
+        .help("remove one of them")
+}
+
+pub fn unknown_field(kind: &BlockKind, key: &Ident) -> Diagnostic {
+    let known = kind.fields.iter().filter(|field| field.available).map(|field| field.name);
+    Diagnostic::new(Code::UnknownField, format!("`{}` has no field `{}`", kind.words(), key.node))
+        .at(key.span, "unknown field")
+        .help(suggestion(&key.node, known))
+}
+
+pub fn missing_field(kind: &BlockKind, name: Option<&Ident>, head: Span, field: &str, example: &str) -> Diagnostic {
+    Diagnostic::new(Code::MissingField, format!("{} lacks the field `{field}`", owner(kind, name)))
+        .at(head, format!("`{field}` is missing"))
+        .help(format!("add a line such as `{example}`"))
+}
+
+pub fn mass_incomplete(name: Option<&Ident>, head: Span, missing: &str) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    Diagnostic::new(Code::MissingField, format!("specimen `{name}` lacks `{missing}` to work out its mass"))
+        .at(head, format!("`{missing}` is missing"))
+        .help(format!("give `{missing}`, or the `mass` itself: density * area * length / 2 is the mass"))
+}
+
+pub fn missing_block(kind: &BlockKind, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::MissingBlock, format!("the plan has no `{}` block", kind.words()))
+        .at(span, format!("this needs a `{}`", kind.words()))
+        .help(format!("add one such as\n{}", kind.example))
+}
+
+pub fn unknown_name<'n>(name: &str, span: Span, known: impl Iterator<Item = &'n str>) -> Diagnostic {
+    let help = if name == "critical" {
+        "`critical` stands only in `time_step`; after the run it is the result `critical_time_step`".to_owned()
+    } else if let Some(near) = crate::suggest::nearest(name, known) {
+        format!("did you mean `{near}`?")
+    } else {
+        format!("declare it, as in `let {name} = …`, or correct the name")
+    };
+    Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`")).at(span, "unknown name").help(help)
+}
+
+pub fn unknown_block_name(kind: Kind, name: &str, span: Span, known: &[&str]) -> Diagnostic {
+    let block = crate::schema::block(kind);
+    let help =
+        if known.is_empty() { format!("declare one, as in\n{}", block.example) } else { suggestion(name, known.iter().copied()) };
+    Diagnostic::new(Code::UnknownName, format!("no {} is called `{name}`", block.words())).at(span, "unknown name").help(help)
+}
+
+pub fn unknown_procedure(name: &str, span: Span, known: &[&str]) -> Diagnostic {
+    Diagnostic::new(Code::UnknownName, format!("no procedure is called `{name}`"))
+        .at(span, "unknown name")
+        .help(suggestion(name, known.iter().copied()))
+}
+
+pub fn unknown_unit(name: &str, span: Span) -> Diagnostic {
+    let mut known: Vec<String> = UNITS.iter().map(|unit| unit.symbol.to_owned()).collect();
+    for unit in UNITS.iter().filter(|unit| unit.prefixes) {
+        known.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{}", unit.symbol)));
+    }
+    let same_letters = known.iter().find(|unit| unit.eq_ignore_ascii_case(name));
+    let near = same_letters.map(String::as_str).or_else(|| crate::suggest::nearest(name, known.iter().map(String::as_str)));
+    let help = near.map_or_else(
+        || format!("known units: {}; SI prefixes may stand before the SI ones", one_of(UNITS.iter().map(|unit| unit.symbol))),
+        |near| format!("did you mean `{near}`?"),
+    );
+    Diagnostic::new(Code::UnknownUnit, format!("no unit is called `{name}`")).at(span, "unknown unit").help(help)
+}
+
+pub fn unknown_variant(field: &str, name: &str, span: Span, variants: &[Variant]) -> Diagnostic {
+    let known = variants.iter().filter(|variant| variant.available).map(|variant| variant.name);
+    Diagnostic::new(Code::UnknownVariant, format!("`{field}` knows no `{name}`"))
+        .at(span, "unknown word")
+        .help(suggestion(name, known))
+}
+
+pub fn unknown_figure(name: &str, span: Span, known: [&'static str; 7]) -> Diagnostic {
+    Diagnostic::new(Code::UnknownVariant, format!("no figure is called `{name}`"))
+        .at(span, "unknown figure")
+        .help(suggestion(name, known))
+}
+
+pub fn figure_of_other_procedure<'n>(
+    figure: &str,
+    procedure: &str,
+    span: Span,
+    drawn: impl Iterator<Item = &'n str>,
+) -> Diagnostic {
+    let drawn: Vec<&str> = drawn.collect();
+    let help = if drawn.is_empty() {
+        "remove it; such a procedure has no figures".to_owned()
+    } else {
+        format!("it draws {}", one_of(drawn))
+    };
+    Diagnostic::new(Code::UnknownVariant, format!("a `{procedure}` has no figure `{figure}`"))
+        .at(span, "not drawn by this procedure")
+        .help(help)
+}
+
+pub fn unknown_result(kind: &BlockKind, name: Option<&Ident>, member: &str, span: Span) -> Diagnostic {
+    let known: Vec<&str> = kind.results.iter().chain(kind.exports).map(|result| result.name).collect();
+    let what = if kind.procedure { "result" } else { "value" };
+    Diagnostic::new(Code::UnknownResult, format!("{} has no {what} `{member}`", owner(kind, name)))
+        .at(span, format!("unknown {what}"))
+        .help(suggestion(member, known))
+}
+
+pub fn field_not_given(kind: &BlockKind, name: Option<&Ident>, field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownResult, format!("{} does not give `{field}`", owner(kind, name)))
+        .at(span, "not given there")
+        .help(format!("add the field `{field}` to it"))
+}
+
+pub fn no_uncertainty(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownResult, format!("`{text}` has no uncertainty"))
+        .at(span, "only a measured result has `.u`")
+        .help("`.u` follows a result that was fitted, such as `k0.stiffness.u`")
+}
+
+pub fn no_member_of_number(member: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownResult, format!("a number has no `{member}`"))
+        .at(span, "unknown here")
+        .help("only `.u`, the standard uncertainty, may follow a result")
+}
+
+pub fn unknown_function(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownFunction, format!("no function is called `{name}`"))
+        .at(span, "unknown function")
+        .help(suggestion(name, FUNCTIONS.iter().map(|function| function.name)))
+}
+
+pub fn function_argument_with_name(function: &str, name: &Ident) -> Diagnostic {
+    Diagnostic::new(Code::BadArgument, format!("the arguments of `{function}` have no names"))
+        .at(name.span, "a name")
+        .help(format!("remove `{}:`", name.node))
+}
+
+pub fn function_arguments(kind: &FunctionKind, found: usize, span: Span) -> Diagnostic {
+    let wanted = if kind.many { "at least one value" } else { "one value" };
+    Diagnostic::new(Code::BadArgument, format!("`{}` takes {wanted}, found {found}", kind.name))
+        .at(span, format!("{found} values"))
+        .help(format!("write it as in `{}(x)`", kind.name))
+}
+
+pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Diagnostic {
+    let known: Vec<&str> = variant.arguments.iter().map(|argument| argument.name).collect();
+    let (message, help) = match name {
+        Some(name) => (format!("`{}` has no argument `{name}`", variant.name), suggestion(name, known)),
+        None if known.is_empty() => (format!("`{}` takes no arguments", variant.name), format!("write `{}` alone", variant.name)),
+        None => (format!("`{}` takes at most {} arguments", variant.name, known.len()), format!("they are {}", known.join(", "))),
+    };
+    Diagnostic::new(Code::BadArgument, message).at(span, "not an argument of it").help(help)
+}
+
+pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadArgument, format!("`{}` lacks its argument `{}`", variant.name, field.name))
+        .at(span, format!("`{}` is missing", field.name))
+        .help(format!("write it as in `{}({})`", variant.name, field.example))
+}
+
+pub fn unknown_parameter(name: &str, known: &[&str]) -> Diagnostic {
+    let help = if known.is_empty() { "the plan has no `param`".to_owned() } else { suggestion(name, known.iter().copied()) };
+    Diagnostic::new(Code::UnknownParameter, format!("`--set {name}`: no parameter is called `{name}`")).help(help)
+}
+
+pub fn setting_is_no_value(name: &str, file: FileId, length: usize) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, format!("`--set {name}` wants one value"))
+        .at(Span::new(file, 0, length), "more than a value")
+        .help(format!("write it as in `--set {name}=\"1.5 m/s\"`"))
+}
+
+/// `asked_at` is the place that closes the ring.
+pub fn cycle(ring: &[(String, Span)], asked_at: Span) -> Diagnostic {
+    let first = ring.first().map_or("", |(name, _)| name.as_str());
+    let names = ring.iter().map(|(name, _)| name.as_str()).chain([first]).collect::<Vec<_>>().join(" → ");
+    let fault =
+        Diagnostic::new(Code::Cycle, format!("these values need each other in a ring: {names}")).at(asked_at, "closes the ring");
+    ring.iter()
+        .fold(fault, |fault, (name, span)| fault.at(*span, format!("`{name}` is in the ring")))
+        .help("give one of them a value of its own")
+}

@@ -1,0 +1,179 @@
+//! Faults of dimension and type: E3xx.
+
+use super::one_of;
+use crate::check::checker::Typed;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::quantity::Dimension;
+use crate::schema::{BlockKind, Kind, Variant};
+use crate::source::Span;
+
+/// "a length", "an energy".
+fn article(dimension: Dimension) -> String {
+    let name = dimension.describe();
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {name}")
+}
+
+/// `3 kg`: the number as written in a unit that fits.
+fn example(number: Option<&str>, dimension: Dimension) -> String {
+    let number = number.unwrap_or("1");
+    if dimension == Dimension::NUMBER { number.to_owned() } else { format!("{number} {}", dimension.usual_unit()) }
+}
+
+pub fn missing_unit(text: &str, span: Span, number: Option<&str>, wanted: Dimension, wanted_by: &str) -> Diagnostic {
+    Diagnostic::new(Code::MissingUnit, format!("`{wanted_by}` wants {}, found a number without a unit", article(wanted)))
+        .at(span, format!("`{text}` has no unit"))
+        .help(format!("write the unit, such as `{}`", example(number, wanted)))
+}
+
+pub fn wrong_dimension(
+    text: &str,
+    span: Span,
+    number: Option<&str>,
+    found: Dimension,
+    wanted: Dimension,
+    wanted_by: &str,
+) -> Diagnostic {
+    Diagnostic::new(Code::WrongDimension, format!("`{wanted_by}` wants {}, found {}", article(wanted), article(found)))
+        .at(span, format!("this is {} (`{text}`)", article(found)))
+        .help(format!(
+            "`{text}` is {}; `{wanted_by}` wants {}, such as `{}`",
+            article(found),
+            article(wanted),
+            example(number, wanted)
+        ))
+}
+
+pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {
+    let (one, other) = (article(left.dimension), article(right.dimension));
+    Diagnostic::new(Code::MismatchedDimensions, format!("`{operator}` joins {one} and {other}"))
+        .at(left.span, format!("this is {one}"))
+        .at(right.span, format!("this is {other}"))
+        .help(format!(
+            "both sides must be of one kind; a {} is written as in `{}`",
+            left.dimension.describe(),
+            example(None, left.dimension)
+        ))
+}
+
+pub fn list_for_number(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "found a list where one number is wanted")
+        .at(span, "a list")
+        .help("take one entry, as in `list[0]`, or a function of them, as in `max(list)`")
+}
+
+pub fn text_for_number(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "found a text where a number is wanted")
+        .at(span, "a text")
+        .help("write the number without quotes")
+}
+
+pub fn block_for_number(name: &str, kind: &BlockKind, span: Span) -> Diagnostic {
+    let member = kind
+        .results
+        .iter()
+        .chain(kind.exports)
+        .next()
+        .map_or_else(|| "a number".to_owned(), |result| format!("`{name}.{}`", result.name));
+    Diagnostic::new(Code::WrongType, format!("`{name}` is a {}, not a number", kind.words()))
+        .at(span, format!("a {}", kind.words()))
+        .help(format!("read a value of it, such as {member}"))
+}
+
+pub fn condition_for_number(span: Span, operator: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{operator}` gives no number"))
+        .at(span, "a condition")
+        .help("conditions stand only in `require`; two of them are joined with `and`")
+}
+
+pub fn condition_wanted(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "`require` wants a condition")
+        .at(span, "a value, not a condition")
+        .help(format!("compare it, as in `{text} < …`"))
+}
+
+pub fn text_wanted(field: &str, span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{field}` wants a text in quotes"))
+        .at(span, "not a text")
+        .help(format!("write `\"{text}\"`"))
+}
+
+pub fn block_wanted(kind: Kind, span: Span, text: &str) -> Diagnostic {
+    let words = crate::schema::block(kind).words();
+    Diagnostic::new(Code::WrongType, format!("found `{text}` where the name of a {words} is wanted"))
+        .at(span, format!("not a {words}"))
+        .help(format!("write the name of a `{words}` block"))
+}
+
+pub fn procedure_wanted(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{name}` is not a procedure"))
+        .at(span, "has no figures")
+        .help("write the name of a procedure, as in `energy(hit)`")
+}
+
+pub fn figure_wanted(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{text}` is not a figure of a procedure"))
+        .at(span, "not a figure")
+        .help("a figure names its procedure, as in `energy(hit)`")
+}
+
+pub fn choice_wanted(field: &str, variants: &[Variant], span: Span, text: &str) -> Diagnostic {
+    let known = one_of(variants.iter().filter(|variant| variant.available).map(|variant| variant.name));
+    Diagnostic::new(Code::WrongType, format!("`{field}` wants one of its words, found `{text}`"))
+        .at(span, "not one of its words")
+        .help(format!("it takes {known}"))
+}
+
+pub fn range_wanted(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "found one value where a range is wanted")
+        .at(span, "not a range")
+        .help(format!("write both ends, as in `0 .. {text}`"))
+}
+
+pub fn index_of_number(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "only a list has entries").at(span, "one number").help("remove the index")
+}
+
+pub fn index_not_whole(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "the place in a list is a whole number from 0")
+        .at(span, "not a place in a list")
+        .help("write it as in `list[0]`")
+}
+
+pub fn angle_with_unit(function: &str, argument: &Typed) -> Diagnostic {
+    let found = article(argument.dimension);
+    Diagnostic::new(Code::WrongDimension, format!("`{function}` wants an angle in radians, found {found}"))
+        .at(argument.span, format!("this is {found}"))
+        .help("divide by a value of the same kind, so that a number is left")
+}
+
+pub fn exponent_with_unit(exponent: &Typed) -> Diagnostic {
+    let found = article(exponent.dimension);
+    Diagnostic::new(Code::BadExponent, format!("an exponent is a number, found {found}"))
+        .at(exponent.span, format!("this is {found}"))
+        .help("write a number without a unit, as in `x^2`")
+}
+
+pub fn exponent_not_constant(span: Span, base: Dimension) -> Diagnostic {
+    Diagnostic::new(Code::BadExponent, format!("the exponent of {} must be known before the run", article(base)))
+        .at(span, "known only after the run")
+        .help("write a number, as in `x^2`")
+}
+
+pub fn exponent_not_rational(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadExponent, "the exponent of a quantity must be a simple fraction")
+        .at(span, "no fraction with a denominator up to 12")
+        .help("write it as in `x^1.5` or `x^(1 / 3)`")
+}
+
+pub fn exponent_too_large(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadExponent, "the exponents of this unit leave their range")
+        .at(span, "too large")
+        .help("use smaller powers")
+}
+
+pub fn unit_exponent(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadExponent, format!("`{text}` is not the exponent of a unit"))
+        .at(span, "not a simple fraction")
+        .help("write it as in `mm^2` or `N/m^1.5`")
+}

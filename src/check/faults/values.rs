@@ -1,0 +1,168 @@
+//! Faults of values: E4xx.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::Interval;
+use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::schema::{Field, Range};
+use crate::source::Span;
+
+fn allowed(range: Range, dimension: Dimension) -> String {
+    let show =
+        |value: f64| if dimension == Dimension::NUMBER || value == 0.0 { value.to_string() } else { readable(value, dimension) };
+    match (range.low.is_finite(), range.above, range.high.is_finite()) {
+        (true, true, false) => format!("greater than {}", show(range.low)),
+        (true, false, false) => format!("at least {}", show(range.low)),
+        (true, _, true) => format!("between {} and {}", show(range.low), show(range.high)),
+        _ => format!("at most {}", show(range.high)),
+    }
+}
+
+pub fn out_of_range(field: &Field, dimension: Dimension, value: f64, text: &str, span: Span) -> Diagnostic {
+    let allowed = allowed(field.range, dimension);
+    let is = if dimension == Dimension::NUMBER { value.to_string() } else { readable(value, dimension) };
+    Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name))
+        .at(span, format!("`{text}` is {is}"))
+        .help(format!("give a value that is {allowed}"))
+}
+
+pub fn not_whole(field: &str, span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, format!("`{field}` must be a whole number"))
+        .at(span, format!("`{text}` is not whole"))
+        .help("write it without decimals")
+}
+
+pub fn negative_bound(field: &str, span: Span, text: &str, symmetric: bool) -> Diagnostic {
+    let help =
+        if symmetric { "write both ends, as in `-2 mm .. 25 mm`, or the size alone" } else { "write the size, without a sign" };
+    Diagnostic::new(Code::OutOfRange, format!("the bound on `{field}` must be at least 0"))
+        .at(span, format!("`{text}` is negative"))
+        .help(help)
+}
+
+pub fn bounds_reversed(span: Span, low: &str, high: &str) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, format!("the range runs backwards: `{low}` is more than `{high}`"))
+        .at(span, "the lower end stands first")
+        .help(format!("write `{high} .. {low}`"))
+}
+
+pub fn parameter_out_of_bounds(name: &str, text: &str, span: Span, bounds: Interval, dimension: Dimension) -> Diagnostic {
+    let (low, high) = (readable(bounds.low, dimension), readable(bounds.high, dimension));
+    Diagnostic::new(Code::OutOfRange, format!("`{name}` is outside its own range {low} .. {high}"))
+        .at(span, format!("`{text}` is outside"))
+        .help("widen the range or change the value")
+}
+
+pub fn setting_out_of_range(
+    name: &str,
+    text: &str,
+    span: Span,
+    bounds: Interval,
+    dimension: Dimension,
+    bounds_at: Span,
+) -> Diagnostic {
+    let (low, high) = (readable(bounds.low, dimension), readable(bounds.high, dimension));
+    Diagnostic::new(Code::SettingOutOfRange, format!("`--set {name}` is outside {low} .. {high}"))
+        .at(span, format!("`{text}` is outside"))
+        .at(bounds_at, "the range it must stay in")
+        .help(format!("set a value between {low} and {high}"))
+}
+
+pub fn no_such_entry(span: Span, place: usize, length: usize) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, format!("the list has no entry {place}: it has {length}"))
+        .at(span, "past the end")
+        .help(format!("the last entry is {}", length.saturating_sub(1)))
+}
+
+pub fn empty_list(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, "a list has at least one entry")
+        .at(span, "nothing in it")
+        .help("write the entries, as in `[1, 2, 5] mm`")
+}
+
+pub fn range_without_step(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::BadRange, "this range has no step")
+        .at(span, "a list is wanted")
+        .help(format!("add one, as in `{text} step …`"))
+}
+
+pub fn step_in_bounds(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadRange, "a range of allowed values has no step").at(span, "not here").help("remove `step`")
+}
+
+pub fn range_not_constant(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UsedBeforeItRan, "both ends and the step of a range must be known before the run")
+        .at(span, "known only after a procedure ran")
+        .help("write numbers, or a `let` or `param` of numbers")
+}
+
+pub fn step_leads_away(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::BadRange, "the step does not lead from the start to the end")
+        .at(span, format!("`{text}` never arrives"))
+        .help("a step is not zero, and negative where the range falls")
+}
+
+pub fn step_does_not_divide(range: Span, step: Span, length: f64, count: f64, dimension: Dimension) -> Diagnostic {
+    let show = |steps: f64| {
+        let size = length / steps;
+        if dimension == Dimension::NUMBER { size.to_string() } else { readable(size, dimension) }
+    };
+    let (fewer, more) = (count.floor().max(1.0), count.floor().max(0.0) + 1.0);
+    let nearest =
+        if fewer == more { format!("`{}` does", show(more)) } else { format!("`{}` and `{}` do", show(more), show(fewer)) };
+    Diagnostic::new(Code::BadRange, "the step does not divide the range")
+        .at(step, "leaves a rest at the end")
+        .at(range, "both ends belong to the range")
+        .help(format!("{nearest}"))
+}
+
+pub fn too_many_entries(span: Span, found: f64, most: usize) -> Diagnostic {
+    Diagnostic::new(Code::TooMany, format!("a list has at most {most} entries, this one {found}"))
+        .at(span, "too many")
+        .help("take a larger step")
+}
+
+pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::TooMany, format!("a procedure has at most {most} {what}, this one {found}"))
+        .at(span, "too many")
+        .help(help)
+}
+
+pub fn not_finite(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::NotFinite, "this is not a finite number")
+        .at(span, "a division by zero, a root of a negative number, or too large")
+        .help("change the expression so that it has a value")
+}
+
+pub fn edition(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::Edition, format!("this version reads edition 1 of the language, not {text}"))
+        .at(span, "another edition")
+        .help("write `edition = 1`, or use the version of psd that the plan was written for")
+}
+
+pub fn needs_the_run(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::UsedBeforeItRan, "this must be known before the run")
+        .at(span, format!("`{text}` is known only during the run"))
+        .help("write a number, or a `let` or `param` of numbers")
+}
+
+pub fn result_before_the_run(text: &str, span: Span, what: &str, procedure: Span) -> Diagnostic {
+    Diagnostic::new(Code::UsedBeforeItRan, format!("`{text}` is a result, and {what} is fixed before the run"))
+        .at(span, "known only after the run")
+        .at(procedure, "the procedure it comes from")
+        .help("read results in the fields of later procedures and in `require`")
+}
+
+pub fn own_result(text: &str, span: Span, procedure: Span) -> Diagnostic {
+    Diagnostic::new(Code::UsedBeforeItRan, format!("`{text}` is a result of the very procedure that needs it"))
+        .at(span, "known only after this procedure")
+        .at(procedure, "this procedure")
+        .help("read a result of an earlier procedure")
+}
+
+pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Diagnostic {
+    Diagnostic::new(Code::UsedBeforeItRan, format!("`{text}` is used before its procedure ran"))
+        .at(span, "used here")
+        .at(procedure, "runs only later")
+        .help("procedures run in the order written: move that one up")
+}

@@ -1,0 +1,92 @@
+//! Faults and warnings of the test as a whole: E6xx and W7xx.
+
+use super::{one_of, suggestion};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::Interval;
+use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::source::Span;
+
+pub fn several_specimens(head: Span, declared: &[(&str, Span)]) -> Diagnostic {
+    let fault = Diagnostic::new(Code::AmbiguousSpecimen, "several specimens are declared, and this procedure names none")
+        .at(head, "on which specimen?");
+    let help = format!("add `specimen = …` with {}", one_of(declared.iter().map(|(name, _)| *name)));
+    declared.iter().fold(fault, |fault, (name, span)| fault.at(*span, format!("`{name}` is one"))).help(help)
+}
+
+pub fn beyond_limits(field: &str, value: f64, dimension: Dimension, span: Span, limit: Interval, limit_at: Span) -> Diagnostic {
+    let value = readable(value, dimension);
+    let (low, high) = (readable(limit.low, dimension), readable(limit.high, dimension));
+    Diagnostic::new(Code::BeyondLimits, format!("`{field}` asks for {value}, outside the limits {low} .. {high}"))
+        .at(span, format!("reaches {value}"))
+        .at(limit_at, "the limit")
+        .help("stay inside the limits, or widen them if the rig and the specimen allow it")
+}
+
+pub fn unknown_rig(name: &str, known: &[&str]) -> Diagnostic {
+    let help = if known.is_empty() {
+        "the plan declares no rig; leave `--rig` out for an ideal one".to_owned()
+    } else {
+        suggestion(name, known.iter().copied())
+    };
+    Diagnostic::new(Code::UnknownRig, format!("`--rig {name}`: no rig is called `{name}`")).help(help)
+}
+
+pub fn limits_wider(field: &str, plan: Span, plan_text: &str, rig: Span, rig_text: &str) -> Diagnostic {
+    Diagnostic::new(Code::LimitsWider, format!("the plan's limit on `{field}` is wider than its rig's"))
+        .at(plan, format!("`{plan_text}` asks for more"))
+        .at(rig, format!("the rig allows `{rig_text}`"))
+        .help("narrow the plan's limit to the rig's, or leave it out")
+}
+
+fn time(value: f64) -> String {
+    readable(value, Dimension::TIME)
+}
+
+pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
+    let (step, critical) = (time(step), time(critical));
+    Diagnostic::new(Code::StepAboveCritical, format!("the time step {step} is above the critical time step {critical}"))
+        .at(span, format!("{step}, critical is {critical}"))
+        .help("write `time_step = critical / 20`")
+}
+
+pub fn peak_force_under_rigid_law(span: Span, impact: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::PeakForceUnderRigidLaw,
+        "the peak contact force under the rigid law grows as 1/Δt: it says more of the time step than of the blow",
+    )
+    .at(span, "this figure follows the time step")
+    .at(impact, "`contact = rigid` holds here")
+    .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
+}
+
+/// `first`: the longest step at which the limit acts at the first blow; `resolved`: at which the displacement is resolved.
+pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64) -> Diagnostic {
+    let (now, first_text, resolved_text) = (time(step), time(first), time(resolved));
+    let message = if step >= first {
+        format!("with the time step {now} the limit force does not act at the first blow; it does below {first_text}")
+    } else {
+        format!("the time step {now} does not resolve the limit force; {resolved_text} does")
+    };
+    Diagnostic::new(Code::LimitForceNotResolved, message)
+        .at(span, format!("the step is {now}"))
+        .help(format!("write `time_step = {resolved_text}` or less"))
+}
+
+pub fn nothing_required(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::NothingRequired, "the plan requires nothing: its verdict says only that it ran")
+        .at(span, "the last procedure")
+        .help("add a line such as `require \"stays in travel\" hit.max_displacement <= 8.5 mm`")
+}
+
+pub fn nothing_runs(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::NothingRuns, "the plan runs nothing")
+        .at(span, "no procedure follows")
+        .help("add a procedure, such as `stiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }`")
+}
+
+pub fn unused(keyword: &str, name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::Unused, format!("the `{keyword}` `{name}` is never used"))
+        .at(span, "not used")
+        .help("remove it, or use it")
+}

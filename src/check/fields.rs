@@ -1,0 +1,242 @@
+//! The entries of a block against the fields of its kind: unknown, twice, missing; and their values, typed as the schema
+//! says. In: a declared block. Out: formulas and numbers in SI; a field left out gives its default.
+
+use super::checker::{Checker, Node, Place, Reads, Typed};
+use super::faults::{names as fault, types, values};
+use crate::formula::Formula;
+use crate::schema::{Field, FieldType, Kind, Need};
+use crate::source::Span;
+use crate::suggest;
+use crate::syntax::ast::{Entry, Expr, ExprKind};
+
+impl<'a> Checker<'a> {
+    /// Reports what is wrong with the set of entries. Their values are for the block's own file to ask for.
+    pub fn entries_of(&mut self, block: usize) {
+        let declared = &self.scope.blocks[block];
+        let kind = declared.kind;
+        let mut meant: Vec<&str> = Vec::new();
+        for (index, entry) in declared.block.fields.iter().enumerate() {
+            let key = entry.key.node.as_str();
+            match kind.field(key) {
+                None => {
+                    meant.extend(suggest::nearest(key, kind.fields.iter().map(|field| field.name)));
+                    self.faults.push(fault::unknown_field(kind, &entry.key));
+                }
+                Some(field) if !field.available => self.faults.push(fault::field_of_later_version(kind, field, &entry.key)),
+                Some(_) => {
+                    if let Some(first) = declared.block.fields[..index].iter().find(|other| other.key.node == key) {
+                        self.faults.push(fault::field_twice(&entry.key, first.key.span));
+                    }
+                }
+            }
+        }
+        let unreadable = self.unreadable(block);
+        for field in kind.fields.iter().filter(|field| field.need == Need::Required) {
+            if !meant.contains(&field.name)
+                && !unreadable
+                && self.given(block, field.name).is_none()
+                && !self.replaced(block, field.name)
+            {
+                self.faults.push(fault::missing_field(kind, declared.name, declared.block.head, field.name, field.example));
+            }
+        }
+    }
+
+    /// A storeyed specimen is of a later version, which is said already; it needs no behaviour besides.
+    fn replaced(&self, block: usize, field: &str) -> bool {
+        let declared = &self.scope.blocks[block];
+        let has = |name: &str| declared.block.fields.iter().any(|entry| entry.key.node == name);
+        match declared.kind.kind {
+            Kind::Specimen => field == "behaviour" && has("storeys"),
+            Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
+            _ => false,
+        }
+    }
+
+    /// The entry of a field, where it stands, and its place among the entries.
+    pub fn given(&self, block: usize, field: &str) -> Option<(usize, &'a Entry)> {
+        self.scope.blocks[block].block.fields.iter().enumerate().find(|(_, entry)| entry.key.node == field)
+    }
+
+    /// Whether an entry of the block is a misspelt one of these fields, which is said already.
+    pub fn misspelt(&self, block: usize, fields: &[&str]) -> bool {
+        let declared = &self.scope.blocks[block];
+        let unknown =
+            declared.block.fields.iter().map(|entry| entry.key.node.as_str()).filter(|key| declared.kind.field(key).is_none());
+        let known = || declared.kind.fields.iter().map(|field| field.name);
+        unknown.filter_map(|key| suggest::nearest(key, known())).any(|meant| fields.contains(&meant)) || self.unreadable(block)
+    }
+
+    /// Whether some line of the block could not be read, so that fields may be missing through that.
+    fn unreadable(&self, block: usize) -> bool {
+        let span = self.scope.blocks[block].span;
+        self.unread.iter().any(|line| line.file == span.file && line.start < span.end && span.start < line.end)
+    }
+
+    /// Where the entry of a block stands: which results it may read, and whether `critical` means something.
+    pub fn place(&self, block: usize, entry: usize) -> Place {
+        let declared = &self.scope.blocks[block];
+        let reads = match (declared.procedure, declared.kind.kind) {
+            (Some(procedure), _) => Reads::Before(procedure),
+            (None, Kind::Specimen) => Reads::Nothing("a specimen"),
+            (None, Kind::Striker) => Reads::Nothing("a striker"),
+            (None, Kind::Rig) => Reads::Nothing("a rig"),
+            (None, Kind::Limits) => Reads::Nothing("a limit"),
+            (None, _) => Reads::Nothing("this field"),
+        };
+        let critical = declared.kind.kind == Kind::Impact && declared.block.fields[entry].key.node == "time_step";
+        Place { entry: Some((block, entry)), reads, critical }
+    }
+
+    /// The value of an entry with numbers, as its field wants it.
+    pub fn entry_value(&mut self, block: usize, entry: usize) -> Option<Typed> {
+        let declared = &self.scope.blocks[block];
+        let written = &declared.block.fields[entry];
+        let field = declared.kind.field(&written.key.node)?;
+        let place = self.place(block, entry);
+        self.typed_field(field, &written.value, place)
+    }
+
+    /// A number or a list of them against a field or argument.
+    pub fn typed_field(&mut self, field: &'static Field, written: &'a Expr, place: Place) -> Option<Typed> {
+        let dimension = field.dimension()?;
+        let many = matches!(field.ty, FieldType::Quantities(_));
+        let typed = if many { self.value(written, place)? } else { self.single(written, place)? };
+        let typed = self.expect(typed, dimension, field.name, written)?;
+        let parts = typed.parts();
+        for (index, part) in parts.iter().enumerate() {
+            if let Some(value) = part.constant()
+                && !field.range.contains(value)
+            {
+                let at = entry_span(written, index, parts.len());
+                let text = self.text(at);
+                return self.fail(values::out_of_range(field, dimension, value, text, at));
+            }
+        }
+        if matches!(field.ty, FieldType::Count) {
+            let Some(value) = typed.constant() else {
+                return self.fail(values::needs_the_run(written.span, self.text(written.span)));
+            };
+            if value.fract() != 0.0 {
+                return self.fail(values::not_whole(field.name, written.span, self.text(written.span)));
+            }
+        }
+        Some(typed)
+    }
+
+    /// One number: the entry, else the default. None where it is faulty or stands nowhere.
+    pub fn quantity(&mut self, block: usize, field: &str) -> Option<Formula> {
+        match self.given(block, field) {
+            Some((entry, written)) => self.entry(block, entry, written.value.span).map(|typed| typed.formula),
+            None => self.scope.blocks[block].kind.field(field)?.default_number().map(Formula::Constant),
+        }
+    }
+
+    /// A number known before the run.
+    pub fn constant(&mut self, block: usize, field: &str) -> Option<f64> {
+        let formula = self.quantity(block, field)?;
+        let value = formula.constant();
+        if value.is_none()
+            && let Some((_, written)) = self.given(block, field)
+        {
+            self.faults.push(values::needs_the_run(written.value.span, self.text(written.value.span)));
+        }
+        value
+    }
+
+    /// A whole number; its range is the schema's.
+    pub fn count(&mut self, block: usize, field: &str) -> Option<u32> {
+        self.constant(block, field).and_then(whole)
+    }
+
+    /// Some(None) where the field is left out, None where it is faulty.
+    #[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+    pub fn optional(&mut self, block: usize, field: &str) -> Option<Option<Formula>> {
+        match self.given(block, field) {
+            Some(_) => self.quantity(block, field).map(Some),
+            None => Some(None),
+        }
+    }
+
+    /// The numbers of a list or range.
+    pub fn quantities(&mut self, block: usize, field: &str) -> Option<Vec<Formula>> {
+        let (entry, written) = self.given(block, field)?;
+        self.entry(block, entry, written.value.span).map(|typed| typed.parts())
+    }
+
+    /// A text in quotes.
+    pub fn text_field(&mut self, block: usize, field: &str) -> Option<String> {
+        let (_, written) = self.given(block, field)?;
+        self.text_value(field, &written.value)
+    }
+
+    fn text_value(&mut self, field: &str, written: &Expr) -> Option<String> {
+        match &written.kind {
+            ExprKind::Text(text) => Some(text.clone()),
+            ExprKind::Faulty => None,
+            _ => self.fail(types::text_wanted(field, written.span, self.text(written.span))),
+        }
+    }
+
+    /// A list of texts; one text stands for a list of one.
+    pub fn texts(&mut self, block: usize, field: &str) -> Option<Vec<String>> {
+        let (_, written) = self.given(block, field)?;
+        match &written.value.kind {
+            ExprKind::List { items, unit: None } => {
+                let texts: Vec<Option<String>> = items.iter().map(|item| self.text_value(field, item)).collect();
+                texts.into_iter().collect()
+            }
+            _ => self.text_value(field, &written.value).map(|text| vec![text]),
+        }
+    }
+
+    /// The block a field names.
+    pub fn reference(&mut self, block: usize, field: &str, kind: Kind) -> Option<usize> {
+        let (_, written) = self.given(block, field)?;
+        let span = written.value.span;
+        let ExprKind::Name(name) = &written.value.kind else {
+            return match written.value.kind {
+                ExprKind::Faulty => None,
+                _ => self.fail(types::block_wanted(kind, span, self.text(span))),
+            };
+        };
+        match self.scope.meaning(name) {
+            Some(super::scope::Meaning::Block(index)) if self.scope.blocks[index].kind.kind == kind => Some(index),
+            Some(super::scope::Meaning::Poisoned) => None,
+            Some(_) => self.fail(types::block_wanted(kind, span, name)),
+            None if self.may_be_lost(name) => None,
+            None => {
+                let known: Vec<&str> =
+                    self.scope.of_kind(kind).filter_map(|(_, block)| block.name).map(|name| name.node.as_str()).collect();
+                self.fail(fault::unknown_block_name(kind, name, span, &known))
+            }
+        }
+    }
+
+    /// Does `work` for the entry of a field that has no number of its own, so that a ring through it is seen.
+    pub fn within_entry<T>(
+        &mut self,
+        block: usize,
+        field: &str,
+        asked_at: Span,
+        work: impl FnOnce(&mut Self, &'a Expr, Place) -> Option<T>,
+    ) -> Option<T> {
+        let (entry, written) = self.given(block, field)?;
+        let place = self.place(block, entry);
+        self.guarded(Node::Entry { block, entry }, asked_at, |checker| work(checker, &written.value, place))
+    }
+}
+
+/// Where entry `index` of a list was written, if the list was written out entry by entry.
+fn entry_span(written: &Expr, index: usize, count: usize) -> Span {
+    match &written.kind {
+        ExprKind::List { items, .. } if items.len() == count => items[index].span,
+        _ => written.span,
+    }
+}
+
+/// A whole number of at least 0 that fits.
+pub fn whole(value: f64) -> Option<u32> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked on the left")]
+    ((0.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0).then_some(value as u32)
+}

@@ -1,0 +1,113 @@
+//! `impact NAME { … }`
+
+use super::checker::{Checker, Place};
+use super::choice::Chosen;
+use super::faults::values;
+use super::fields::whole;
+use super::specimen;
+use crate::formula::{Formula, Operator};
+use crate::plan::{Contact, Impact, InspectTrigger, ProcedureKind, Until};
+use crate::schema::Kind;
+
+/// Most steps of one impact.
+const MOST_STEPS: f64 = 1e7;
+
+pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let head = checker.scope.blocks[block].block.head;
+    let striker = checker.reference(block, "striker", Kind::Striker);
+    let specimen_block = checker.specimen_block(block);
+    let mass = match checker.given(block, "mass") {
+        Some(_) => checker.quantity(block, "mass"),
+        None => specimen_block.and_then(|tested| specimen::export(checker, tested, "mass", head)).map(Formula::Constant),
+    };
+    let stiffness = match checker.given(block, "stiffness") {
+        Some(_) => checker.quantity(block, "stiffness"),
+        None => specimen_block.and_then(|tested| specimen::export(checker, tested, "stiffness", head)).map(Formula::Constant),
+    };
+    let damping = checker.quantity(block, "damping");
+    let contact = contact(checker, block);
+    checker.word(block, "integrator", "tangent");
+    let time_step = match checker.given(block, "time_step") {
+        Some(_) => checker.quantity(block, "time_step"),
+        None => Some(twentieth_of_critical()),
+    };
+    let duration = checker.quantity(block, "duration");
+    let until = checker.word(block, "until", "striker_stop");
+    let pause = checker.quantity(block, "pause");
+    let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
+    let inspect = triggers(checker, block);
+    let impact = Impact {
+        specimen: checker.scope.place_in_kind(specimen_block?),
+        striker: checker.scope.place_in_kind(striker?),
+        mass: mass?,
+        stiffness: stiffness?,
+        damping: damping?,
+        contact: contact?,
+        time_step: time_step?,
+        duration: duration?,
+        until: if until? == "duration" { Until::Duration } else { Until::StrikerStop },
+        pause: pause?,
+        max_tangent_ratio: max_tangent_ratio?,
+        inspect: inspect?,
+    };
+    if let (Some(time_step), Some(duration)) = (time_step_before_the_run(&impact), impact.duration.constant())
+        && duration / time_step > MOST_STEPS
+    {
+        let at = checker.given(block, "duration").map_or(head, |(_, entry)| entry.value.span);
+        let steps = (duration / time_step).ceil();
+        return checker.fail(values::too_many("steps", steps, MOST_STEPS, at, "shorten `duration` or take a longer `time_step`"));
+    }
+    Some(ProcedureKind::Impact(impact))
+}
+
+fn twentieth_of_critical() -> Formula {
+    Formula::Binary(Operator::Divide, Box::new(Formula::CriticalTimeStep), Box::new(Formula::Constant(20.0)))
+}
+
+/// Δtc = (2π/10)·√(M/K) (Melo et al. 2006, eq. 7), where mass and stiffness are known before the run.
+pub fn critical_before_the_run(impact: &Impact) -> Option<f64> {
+    let (mass, stiffness) = (impact.mass.constant()?, impact.stiffness.constant()?);
+    Some(std::f64::consts::TAU / 10.0 * (mass / stiffness).sqrt())
+}
+
+/// Δt, where it is known before the run.
+pub fn time_step_before_the_run(impact: &Impact) -> Option<f64> {
+    let critical = critical_before_the_run(impact);
+    impact.time_step.evaluate(&crate::formula::NoResults, critical).ok().map(|estimate| estimate.value)
+}
+
+fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
+    let Some((entry, _)) = checker.given(block, "contact") else { return Some(Contact::Rigid) };
+    let place = checker.place(block, entry);
+    let chosen = checker.choice(block, "contact")?;
+    Some(match chosen.variant.name {
+        "limit" => Contact::Limit { force: checker.argument(&chosen, "force", place)? },
+        "restitution" => Contact::Restitution { coefficient: checker.argument(&chosen, "coefficient", place)? },
+        "hertz" => {
+            let stiffness = checker.argument(&chosen, "stiffness", place);
+            let loss = checker.argument(&chosen, "loss", place);
+            let force_limit = match chosen.find("force_limit") {
+                Some((_, Some(_))) => checker.argument(&chosen, "force_limit", place).map(Some),
+                _ => Some(None),
+            };
+            Contact::Hertz { stiffness: stiffness?, loss: loss?, force_limit: force_limit? }
+        }
+        _ => Contact::Rigid,
+    })
+}
+
+fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> {
+    let Some((entry, _)) = checker.given(block, "inspect") else { return Some(Vec::new()) };
+    let place = checker.place(block, entry);
+    let chosen = checker.choices(block, "inspect")?;
+    let triggers: Vec<Option<InspectTrigger>> = chosen.iter().map(|chosen| trigger(checker, chosen, place)).collect();
+    triggers.into_iter().collect()
+}
+
+fn trigger<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<InspectTrigger> {
+    Some(match chosen.variant.name {
+        "every" => InspectTrigger::Every(checker.constant_argument(chosen, "steps", place).and_then(whole)?),
+        "force_drop" => InspectTrigger::ForceDrop(checker.constant_argument(chosen, "fraction", place)?),
+        _ => InspectTrigger::At(checker.constant_argument(chosen, "time", place)?),
+    })
+}

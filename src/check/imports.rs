@@ -1,0 +1,116 @@
+//! `use "lib/frame.psd"`: every file of a plan, each loaded once. In: the plan's text and a [`Loader`]. Out: the syntax
+//! trees, the plan's first.
+
+use super::faults::files as fault;
+use super::{LoadFault, Loader};
+use crate::diagnostic::Diagnostic;
+use crate::source::{FileId, Sources, Spanned};
+use crate::syntax;
+use crate::syntax::ast::{Ast, ItemKind};
+
+/// How deep files may use files.
+const DEEPEST: usize = 8;
+/// Files of one plan, the plan included.
+const MOST_FILES: usize = 64;
+
+/// All files of a plan.
+pub struct Imports {
+    pub asts: Vec<Ast>,
+    /// Whether some file could not be read, so that names may be missing through no fault of the plan's.
+    pub incomplete: bool,
+}
+
+struct Loading<'l> {
+    loader: &'l dyn Loader,
+    /// Path of each file loaded, with its tree.
+    loaded: Vec<(String, Ast)>,
+    /// The files that use each other down to the one being read.
+    chain: Vec<String>,
+    incomplete: bool,
+}
+
+pub fn load(name: &str, text: &str, loader: &dyn Loader, sources: &mut Sources, faults: &mut Vec<Diagnostic>) -> Imports {
+    let mut loading = Loading { loader, loaded: Vec::new(), chain: Vec::new(), incomplete: false };
+    // Paths of used files are relative to the plan's folder, and so is the plan's own.
+    let own = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    loading.read(own, name, text, sources, faults);
+    Imports { asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(), incomplete: loading.incomplete }
+}
+
+impl Loading<'_> {
+    fn read(&mut self, path: &str, name: &str, text: &str, sources: &mut Sources, faults: &mut Vec<Diagnostic>) {
+        let file = sources.add(name, text);
+        let (ast, found) = syntax::parse(sources, file);
+        faults.extend(found);
+        let used: Vec<Spanned<String>> = ast
+            .items
+            .iter()
+            .filter_map(|item| if let ItemKind::Use { path } = &item.kind { Some(path.clone()) } else { None })
+            .collect();
+        self.loaded.push((path.to_owned(), ast));
+        debug_assert_eq!(FileId(u32::try_from(self.loaded.len()).unwrap_or(0)), FileId(file.0 + 1));
+        self.chain.push(path.to_owned());
+        for used in used {
+            if let Err(found) = self.follow(path, &used, sources, faults) {
+                self.incomplete = true;
+                faults.push(found);
+            }
+        }
+        self.chain.pop();
+    }
+
+    /// Loads what one `use` names, unless it is loaded already.
+    fn follow(
+        &mut self,
+        from: &str,
+        used: &Spanned<String>,
+        sources: &mut Sources,
+        faults: &mut Vec<Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        let written = used.node.as_str();
+        if let Some(reason) = refused(written) {
+            return Err(fault::bad_path(written, used.span, reason));
+        }
+        let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
+        let steps = written.split('/').filter(|step| *step != ".");
+        let path = folder.split('/').filter(|step| !step.is_empty()).chain(steps).collect::<Vec<_>>().join("/");
+        if let Some(start) = self.chain.iter().position(|open| *open == path) {
+            return Err(fault::use_cycle(&self.chain[start..], &path, used.span));
+        }
+        if self.loaded.iter().any(|(known, _)| *known == path) {
+            return Ok(());
+        }
+        if self.chain.len() > DEEPEST {
+            return Err(fault::too_deep(DEEPEST, used.span));
+        }
+        if self.loaded.len() >= MOST_FILES {
+            return Err(fault::too_many_files(MOST_FILES, used.span));
+        }
+        match self.loader.load(&path) {
+            Ok(text) => {
+                self.read(&path, &path, &text, sources, faults);
+                Ok(())
+            }
+            Err(LoadFault::NotFound) => Err(fault::not_found(&path, used.span)),
+            Err(LoadFault::Refused(reason)) => Err(fault::refused(&path, &reason, used.span)),
+        }
+    }
+}
+
+/// Why a path may not be used, if so.
+fn refused(path: &str) -> Option<&'static str> {
+    let drive = path.as_bytes().get(1) == Some(&b':');
+    if path.is_empty() {
+        Some("it is empty")
+    } else if path.contains('\\') {
+        Some("folders are parted by `/`, also on Windows")
+    } else if path.starts_with('/') || drive {
+        Some("it is absolute")
+    } else if path.split('/').any(|step| step == "..") {
+        Some("it leaves the plan's folder by `..`")
+    } else if path.split('/').any(str::is_empty) {
+        Some("a folder in it has no name")
+    } else {
+        None
+    }
+}

@@ -1,0 +1,163 @@
+//! `limits`: ranges and bounds, the intersection of the plan's and the rig's, and targets known before the run.
+
+use super::checker::{Checker, Place, Typed};
+use super::faults::{types, values, whole};
+use crate::formula::Formula;
+use crate::plan::{Interval, Limits};
+use crate::quantity::Dimension;
+use crate::schema::{FieldType, Kind};
+use crate::source::Span;
+use crate::syntax::ast::{Expr, ExprKind};
+
+/// The limits of a run, and where the bound on each quantity was written.
+pub struct CheckedLimits {
+    pub limits: Limits,
+    pub displacement_at: Option<Span>,
+    pub speed_at: Option<Span>,
+}
+
+impl<'a> Checker<'a> {
+    /// `a .. b`, known before the run, with its dimension.
+    pub fn interval(&mut self, written: &'a Expr, place: Place) -> Option<(Interval, Dimension)> {
+        if !matches!(written.kind, ExprKind::Range { .. }) {
+            return match written.kind {
+                ExprKind::Faulty => None,
+                _ => self.fail(types::range_wanted(written.span, self.text(written.span))),
+            };
+        }
+        let parts = self.range_parts(written, None, place)?;
+        if let Some(step) = &parts.step {
+            return self.fail(values::step_in_bounds(step.span));
+        }
+        let (Some(low), Some(high)) = (parts.start.constant(), parts.end.constant()) else {
+            return self.fail(values::needs_the_run(written.span, self.text(written.span)));
+        };
+        if low > high {
+            return self.fail(values::bounds_reversed(written.span, self.text(parts.start.span), self.text(parts.end.span)));
+        }
+        // A range whose ends are both without a unit is the one that may have forgotten it.
+        if parts.start.bare && parts.end.bare {
+            return Some((Interval { low, high }, Dimension::NUMBER));
+        }
+        Some((Interval { low, high }, parts.start.dimension))
+    }
+
+    /// A range, or a bound `b`: −b .. b where both signs make sense, else 0 .. b.
+    fn bounds(&mut self, block: usize, field: &'static str) -> Option<Interval> {
+        let Some((entry, written)) = self.given(block, field) else { return Some(Interval::ALL) };
+        let FieldType::Bounds { dimension, symmetric } = self.scope.blocks[block].kind.field(field)?.ty else { return None };
+        let place = self.place(block, entry);
+        let written = &written.value;
+        if let ExprKind::Range { .. } = written.kind {
+            let (interval, found) = self.interval(written, place)?;
+            let bare = found == Dimension::NUMBER && dimension != Dimension::NUMBER;
+            let typed = Typed { bare, ..Typed::number(Formula::Constant(interval.high), found, written.span) };
+            self.expect(typed, dimension, field, written)?;
+            return Some(interval);
+        }
+        let typed = self.single(written, place)?;
+        let typed = self.expect(typed, dimension, field, written)?;
+        let bound = typed.constant()?;
+        if bound < 0.0 {
+            return self.fail(values::negative_bound(field, written.span, self.text(written.span), symmetric));
+        }
+        Some(Interval { low: if symmetric { -bound } else { 0.0 }, high: bound })
+    }
+
+    /// One `limits` block.
+    pub fn limits_block(&mut self, block: usize) -> Option<Limits> {
+        let displacement = self.bounds(block, "displacement");
+        let force = self.bounds(block, "force");
+        let speed = self.bounds(block, "speed");
+        let increment = self.bounds(block, "increment");
+        let tracking_error = self.bounds(block, "tracking_error");
+        let energy_error = self.bounds(block, "energy_error");
+        Some(Limits {
+            displacement: displacement?,
+            force: force?,
+            speed: speed?,
+            increment: increment?,
+            tracking_error: tracking_error?,
+            energy_error: energy_error?,
+        })
+    }
+
+    /// Every `limits` block; the intersection of those without a name and of the one the rig names. A plan that asks for
+    /// more than its rig allows is at fault.
+    pub fn limits(&mut self, rig_limits: Option<usize>) -> Option<CheckedLimits> {
+        let blocks: Vec<usize> = self.scope.of_kind(Kind::Limits).map(|(index, _)| index).collect();
+        let checked: Vec<Option<(usize, Limits)>> =
+            blocks.into_iter().map(|index| self.limits_block(index).map(|limits| (index, limits))).collect();
+        let checked: Vec<(usize, Limits)> = checked.into_iter().collect::<Option<_>>()?;
+        let rig = rig_limits.and_then(|rig| checked.iter().find(|(index, _)| *index == rig)).copied();
+        let plan: Vec<(usize, Limits)> =
+            checked.into_iter().filter(|(index, _)| self.scope.blocks[*index].name.is_none()).collect();
+        let mut all = Limits::NONE;
+        let (mut displacement_at, mut speed_at) = (None, None);
+        for (index, limits) in plan.iter().chain(&rig) {
+            if let (Some((rig, allowed)), true) = (&rig, Some(*index) != rig_limits) {
+                self.compare_limits(*index, limits, *rig, allowed);
+            }
+            all = intersection(&all, limits);
+            displacement_at = self.given(*index, "displacement").map(|(_, entry)| entry.span).or(displacement_at);
+            speed_at = self.given(*index, "speed").map(|(_, entry)| entry.span).or(speed_at);
+        }
+        Some(CheckedLimits { limits: all, displacement_at, speed_at })
+    }
+
+    fn compare_limits(&mut self, plan: usize, asked: &Limits, rig: usize, allowed: &Limits) {
+        for ((field, asked), (_, allowed)) in by_field(asked).into_iter().zip(by_field(allowed)) {
+            let wider = asked.is_bounded() && allowed.is_bounded() && (asked.low < allowed.low || asked.high > allowed.high);
+            if let (true, Some((_, plan)), Some((_, rig))) = (wider, self.given(plan, field), self.given(rig, field)) {
+                let (plan_text, rig_text) = (self.text(plan.value.span), self.text(rig.value.span));
+                self.faults.push(whole::limits_wider(field, plan.value.span, plan_text, rig.value.span, rig_text));
+            }
+        }
+    }
+}
+
+/// Each limit by the name of its field.
+fn by_field(limits: &Limits) -> [(&'static str, Interval); 6] {
+    [
+        ("displacement", limits.displacement),
+        ("force", limits.force),
+        ("speed", limits.speed),
+        ("increment", limits.increment),
+        ("tracking_error", limits.tracking_error),
+        ("energy_error", limits.energy_error),
+    ]
+}
+
+fn intersection(one: &Limits, other: &Limits) -> Limits {
+    Limits {
+        displacement: one.displacement.intersection(other.displacement),
+        force: one.force.intersection(other.force),
+        speed: one.speed.intersection(other.speed),
+        increment: one.increment.intersection(other.increment),
+        tracking_error: one.tracking_error.intersection(other.tracking_error),
+        energy_error: one.energy_error.intersection(other.energy_error),
+    }
+}
+
+/// Targets (m) and speeds (m/s) of the procedures, known before the run, against the limits.
+pub fn hold_targets(checker: &mut Checker, limits: &CheckedLimits) {
+    let procedures: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
+    for block in procedures {
+        for (field, interval, at) in [
+            ("displacements", limits.limits.displacement, limits.displacement_at),
+            ("to", limits.limits.displacement, limits.displacement_at),
+            ("stroke", limits.limits.displacement, limits.displacement_at),
+            ("speed", limits.limits.speed, limits.speed_at),
+            ("velocities", limits.limits.speed, limits.speed_at),
+        ] {
+            let Some((entry, written)) = checker.given(block, field) else { continue };
+            let (Some(field), Some(at)) = (checker.scope.blocks[block].kind.field(field), at) else { continue };
+            let Some(typed) = checker.entry(block, entry, written.value.span) else { continue };
+            let beyond = typed.parts().iter().filter_map(Formula::constant).find(|value| !interval.contains(*value));
+            if let Some(value) = beyond {
+                let fault = whole::beyond_limits(field.name, value, typed.dimension, written.value.span, interval, at);
+                checker.faults.push(fault);
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! What a name means where it stands: a sibling field, then a `let`, a `param`, a block; and what is read from a block,
+//! `pendulum.energy`, or from a procedure that ran, `k0.stiffness.u`.
+
+use super::checker::{Checker, Node, Place, Reads, Typed};
+use super::faults::{names as fault, types, values};
+use super::scope::Meaning;
+use super::{specimen, striker};
+use crate::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::quantity::Dimension;
+use crate::schema::{FieldType, Kind};
+use crate::source::Span;
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+
+impl<'a> Checker<'a> {
+    /// The value a bare name stands for.
+    pub fn name(&mut self, name: &str, span: Span, place: Place) -> Option<Typed> {
+        if let Some((block, own)) = place.entry
+            && let Some(entry) = self.sibling(block, own, name)
+        {
+            let typed = self.entry(block, entry, span)?;
+            return self.reads_allowed(typed, span, place);
+        }
+        if name == "critical" && place.critical {
+            return Some(Typed::number(Formula::CriticalTimeStep, Dimension::TIME, span));
+        }
+        match self.scope.meaning(name) {
+            Some(Meaning::Poisoned) => None,
+            Some(Meaning::Value(index)) => {
+                let typed = self.declared_value(index, span)?;
+                self.reads_allowed(Typed { span, bare: false, ..typed }, span, place)
+            }
+            Some(Meaning::Block(index)) => {
+                let block = &self.scope.blocks[index];
+                self.fail(types::block_for_number(name, block.kind, span))
+            }
+            None if self.may_be_lost(name) => None,
+            None => {
+                let siblings = place.entry.map_or(&[][..], |(block, _)| &self.scope.blocks[block].block.fields);
+                let known =
+                    siblings.iter().map(|entry| entry.key.node.as_str()).filter(|key| *key != name).chain(self.scope.names());
+                let fault = fault::unknown_name(name, span, known);
+                self.fail(fault)
+            }
+        }
+    }
+
+    /// The entry `name` of a block, if it is one with a number and not the entry that asks.
+    fn sibling(&self, block: usize, own: usize, name: &str) -> Option<usize> {
+        let declared = &self.scope.blocks[block];
+        let is_number = |ty| matches!(ty, FieldType::Quantity(_) | FieldType::Quantities(_) | FieldType::Count);
+        declared.kind.field(name).filter(|field| is_number(field.ty))?;
+        declared.block.fields.iter().position(|entry| entry.key.node == name).filter(|entry| *entry != own)
+    }
+
+    /// `base.name`
+    pub fn field_of(&mut self, base: &'a Expr, name: &Ident, span: Span, place: Place) -> Option<Typed> {
+        if let ExprKind::Name(owner) = &base.kind
+            && let Some(meaning) = self.scope.meaning(owner)
+        {
+            return match meaning {
+                Meaning::Poisoned => None,
+                Meaning::Block(block) => self.member(block, name, span, place),
+                Meaning::Value(_) => self.uncertainty(base, name, span, place),
+            };
+        }
+        if let ExprKind::Name(owner) = &base.kind {
+            let is_sibling = place.entry.is_some_and(|(block, own)| self.sibling(block, own, owner).is_some());
+            if !is_sibling {
+                if self.may_be_lost(owner) {
+                    return None;
+                }
+                let fault = fault::unknown_name(owner, base.span, self.scope.names());
+                return self.fail(fault);
+            }
+        }
+        self.uncertainty(base, name, span, place)
+    }
+
+    /// `.u` of a result, or of a name that stands for one.
+    fn uncertainty(&mut self, base: &'a Expr, name: &Ident, span: Span, place: Place) -> Option<Typed> {
+        let typed = self.value(base, place)?;
+        if name.node != "u" {
+            return self.fail(fault::no_member_of_number(&name.node, name.span));
+        }
+        let measured = typed.formula.as_result().filter(|reference| reference.part == Part::Value).filter(|reference| {
+            let kind = self.procedure(reference.procedure).and_then(|block| self.scope.blocks[block].kind.result(reference.name));
+            kind.is_some_and(|kind| kind.measured)
+        });
+        let Some(reference) = measured else {
+            let text = self.text(base.span);
+            return self.fail(fault::no_uncertainty(text, name.span));
+        };
+        let formula = Formula::Result(ResultReference { part: Part::Uncertainty, ..reference });
+        Some(Typed::number(formula, typed.dimension, span))
+    }
+
+    /// What a block gives: a result, a derived value, or a field.
+    fn member(&mut self, block: usize, name: &Ident, span: Span, place: Place) -> Option<Typed> {
+        let declared = &self.scope.blocks[block];
+        if let (Some(result), Some(procedure)) = (declared.kind.result(&name.node), declared.procedure) {
+            let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
+            return self.reads_allowed(Typed::number(formula, result.dimension, span), span, place);
+        }
+        if let Some(export) = declared.kind.export(&name.node) {
+            let value = match declared.kind.kind {
+                Kind::Specimen => specimen::export(self, block, export.name, span)?,
+                Kind::Striker => striker::export(self, block, export.name, span)?,
+                _ => return None,
+            };
+            return Some(Typed::number(Formula::Constant(value), export.dimension, span));
+        }
+        let is_number = |ty| matches!(ty, FieldType::Quantity(_) | FieldType::Quantities(_) | FieldType::Count);
+        if declared.kind.field(&name.node).is_some_and(|field| is_number(field.ty)) {
+            let Some(entry) = declared.block.fields.iter().position(|entry| entry.key.node == name.node) else {
+                return self.fail(fault::field_not_given(declared.kind, declared.name, &name.node, name.span));
+            };
+            let typed = self.entry(block, entry, span)?;
+            if typed.formula.reads_critical_time_step() {
+                return self.fail(values::needs_the_run(span, "a time step that follows `critical`"));
+            }
+            return self.reads_allowed(Typed { span, ..typed }, span, place);
+        }
+        let fault = fault::unknown_result(declared.kind, declared.name, &name.node, name.span);
+        self.fail(fault)
+    }
+
+    /// Holds every result that a value reads against what may be read here.
+    fn reads_allowed(&mut self, typed: Typed, span: Span, place: Place) -> Option<Typed> {
+        let mut references = Vec::new();
+        typed.formula.collect_references(&mut references);
+        for reference in references {
+            let owner = self.procedure(reference.procedure)?;
+            let head = self.scope.blocks[owner].block.head;
+            let text = self.text(span);
+            match place.reads {
+                Reads::All => {}
+                Reads::Nothing(what) => return self.fail(values::result_before_the_run(text, span, what, head)),
+                Reads::Before(procedure) if reference.procedure == procedure => {
+                    return self.fail(values::own_result(text, span, head));
+                }
+                Reads::Before(procedure) if reference.procedure > procedure => {
+                    return self.fail(values::result_of_later_procedure(text, span, head));
+                }
+                Reads::Before(_) => {}
+            }
+        }
+        Some(typed)
+    }
+
+    /// The block of a procedure.
+    pub fn procedure(&self, id: ProcedureId) -> Option<usize> {
+        self.scope.procedures().find(|(_, block)| block.procedure == Some(id)).map(|(index, _)| index)
+    }
+
+    /// The value of an entry of a block, as its field wants it.
+    pub fn entry(&mut self, block: usize, entry: usize, asked_at: Span) -> Option<Typed> {
+        self.once(Node::Entry { block, entry }, asked_at, |checker| checker.entry_value(block, entry))
+    }
+
+    /// The value of a `let` or `param`.
+    pub fn declared_value(&mut self, index: usize, asked_at: Span) -> Option<Typed> {
+        self.used.insert(index);
+        self.once(Node::Value(index), asked_at, |checker| checker.value_of_declaration(index))
+    }
+}

@@ -1,0 +1,64 @@
+//! What is run, in the order written, and on which specimen.
+
+use super::checker::Checker;
+use super::faults::{names, whole as fault};
+use super::{damping_sweep, impact, inspect, move_block, stiffness_ramp};
+use crate::plan::Procedure;
+use crate::schema::{self, Kind};
+
+/// Every procedure; None for those with a fault.
+pub fn procedures(checker: &mut Checker) -> Vec<(usize, Option<Procedure>)> {
+    let blocks: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
+    blocks.into_iter().map(|block| (block, procedure(checker, block))).collect()
+}
+
+fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
+    let declared = &checker.scope.blocks[block];
+    let kind = match declared.kind.kind {
+        Kind::StiffnessRamp => stiffness_ramp::stiffness_ramp(checker, block),
+        Kind::DampingSweep => damping_sweep::damping_sweep(checker, block),
+        Kind::Impact => impact::impact(checker, block),
+        Kind::Move => move_block::move_block(checker, block),
+        _ => inspect::inspect(checker, block),
+    };
+    Some(Procedure { name: declared.name?.node.clone(), kind: kind? })
+}
+
+impl Checker<'_> {
+    /// The specimen of a procedure as its place in the plan.
+    pub fn specimen_of(&mut self, block: usize) -> Option<usize> {
+        self.specimen_block(block).map(|specimen| self.scope.place_in_kind(specimen))
+    }
+
+    /// The specimen a procedure names, else the only one declared.
+    pub fn specimen_block(&mut self, block: usize) -> Option<usize> {
+        if self.given(block, "specimen").is_some() {
+            return self.reference(block, "specimen", Kind::Specimen);
+        }
+        let declared: Vec<_> =
+            self.scope.of_kind(Kind::Specimen).map(|(index, block)| (index, block.name, block.block.head)).collect();
+        match declared.as_slice() {
+            [(only, ..)] => Some(*only),
+            [] => {
+                self.specimen_needed(block);
+                None
+            }
+            several => {
+                let head = self.scope.blocks[block].block.head;
+                let names: Vec<_> =
+                    several.iter().filter_map(|(_, name, head)| name.map(|name| (name.node.as_str(), *head))).collect();
+                self.fail(fault::several_specimens(head, &names))
+            }
+        }
+    }
+
+    /// Says once that nothing is there to be tested.
+    pub fn specimen_needed(&mut self, block: usize) {
+        let none = self.scope.of_kind(Kind::Specimen).next().is_none();
+        let said = self.faults.iter().any(|fault| fault.code == crate::diagnostic::Code::MissingBlock);
+        if none && !said && !self.names_lost && self.unread.is_empty() {
+            let head = self.scope.blocks[block].block.head;
+            self.faults.push(names::missing_block(schema::block(Kind::Specimen), head));
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! `require "label" condition`: comparisons and `within`, one condition for each part joined with `and`.
+
+use super::checker::{Checker, Place, Reads, Typed};
+use super::faults::types as fault;
+use crate::formula::Formula;
+use crate::plan::{Comparison, Condition, Requirement, Test};
+use crate::quantity::Dimension;
+use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
+
+const PLACE: Place = Place { entry: None, reads: Reads::All, critical: false };
+
+impl<'a> Checker<'a> {
+    /// Every requirement; None if one has a fault.
+    pub fn requirements(&mut self) -> Option<Vec<Requirement>> {
+        let checked: Vec<Option<Requirement>> = (0..self.scope.requirements.len())
+            .map(|index| {
+                let declared = &self.scope.requirements[index];
+                let mut conditions = Vec::new();
+                self.conditions(declared.condition, &mut conditions);
+                let conditions = conditions.into_iter().collect::<Option<Vec<Condition>>>()?;
+                Some(Requirement { label: declared.label.node.clone(), conditions })
+            })
+            .collect();
+        checked.into_iter().collect()
+    }
+
+    fn conditions(&mut self, expr: &'a Expr, into: &mut Vec<Option<Condition>>) {
+        match &expr.kind {
+            ExprKind::Parenthesised(inner) => self.conditions(inner, into),
+            ExprKind::Binary { operator, left, right } if operator.node == BinaryOperator::And => {
+                self.conditions(left, into);
+                self.conditions(right, into);
+            }
+            _ => {
+                let condition = self.condition(expr);
+                into.push(condition);
+            }
+        }
+    }
+
+    fn condition(&mut self, expr: &'a Expr) -> Option<Condition> {
+        let text = self.text(expr.span).split_whitespace().collect::<Vec<_>>().join(" ");
+        match &expr.kind {
+            ExprKind::Faulty => None,
+            ExprKind::Within { value, tolerance, target } => {
+                let (value, width, target) =
+                    (self.single(value, PLACE), self.single(tolerance, PLACE), self.single(target, PLACE));
+                let (value, width, target) = (value?, width?, target?);
+                if value.dimension != target.dimension {
+                    return self.fail(fault::mismatched("within", &value, &target));
+                }
+                // `%` is of the target; a plain number beside a quantity would be a forgotten unit.
+                let relative = width.percent
+                    || (width.dimension == Dimension::NUMBER && value.dimension != Dimension::NUMBER && !width.bare);
+                let width = if relative { width } else { self.expect(width, value.dimension, "within", tolerance)? };
+                let test = Test::Within { target: target.formula, tolerance: width.formula, relative };
+                Some(Condition { text, value: value.formula, test, dimension: value.dimension })
+            }
+            ExprKind::Binary { operator, left, right } if comparison(operator.node).is_some() => {
+                let comparison = comparison(operator.node)?;
+                let (left, right) = (self.single(left, PLACE), self.single(right, PLACE));
+                let (left, right) = (left?, right?);
+                if left.dimension != right.dimension {
+                    return self.fail(fault::mismatched(operator.node.symbol(), &left, &right));
+                }
+                let dimension = left.dimension;
+                let (value, comparison, limit) = value_first(left, comparison, right);
+                Some(Condition { text, value, test: Test::Compare { comparison, limit }, dimension })
+            }
+            _ => self.fail(fault::condition_wanted(expr.span, self.text(expr.span))),
+        }
+    }
+}
+
+/// What is measured stands first: `8 mm >= hit.max_displacement` is `hit.max_displacement <= 8 mm`.
+fn value_first(left: Typed, comparison: Comparison, right: Typed) -> (Formula, Comparison, Formula) {
+    if left.is_late() || !right.is_late() {
+        return (left.formula, comparison, right.formula);
+    }
+    let mirrored = match comparison {
+        Comparison::Less => Comparison::Greater,
+        Comparison::LessEqual => Comparison::GreaterEqual,
+        Comparison::Greater => Comparison::Less,
+        Comparison::GreaterEqual => Comparison::LessEqual,
+        same => same,
+    };
+    (right.formula, mirrored, left.formula)
+}
+
+const fn comparison(operator: BinaryOperator) -> Option<Comparison> {
+    Some(match operator {
+        BinaryOperator::Less => Comparison::Less,
+        BinaryOperator::LessEqual => Comparison::LessEqual,
+        BinaryOperator::Greater => Comparison::Greater,
+        BinaryOperator::GreaterEqual => Comparison::GreaterEqual,
+        BinaryOperator::Equal => Comparison::Equal,
+        BinaryOperator::NotEqual => Comparison::NotEqual,
+        _ => return None,
+    })
+}

@@ -1,0 +1,32 @@
+//! `stiffness ramp NAME { … }`
+
+use super::checker::Checker;
+use super::faults::values;
+use crate::plan::{ProcedureKind, StiffnessRamp};
+
+/// Most readings of one ramp.
+const MOST_READINGS: f64 = 1e7;
+
+pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let specimen = checker.specimen_of(block);
+    let displacements = checker.quantities(block, "displacements");
+    let pause = checker.quantity(block, "pause");
+    let (samples, repeats) = (checker.count(block, "samples"), checker.count(block, "repeats"));
+    let return_path = checker.word(block, "return", "false").map(|word| word == "true");
+    let speed = checker.optional(block, "speed");
+    let (displacements, samples, repeats) = (displacements?, samples?, repeats?);
+    let readings = displacements.len() as f64 * f64::from(samples) * f64::from(repeats);
+    if readings > MOST_READINGS {
+        let head = checker.scope.blocks[block].block.head;
+        return checker.fail(values::too_many("readings", readings, MOST_READINGS, head, "take fewer `samples` or `repeats`"));
+    }
+    Some(ProcedureKind::StiffnessRamp(StiffnessRamp {
+        specimen: specimen?,
+        displacements,
+        pause: pause?,
+        samples,
+        repeats,
+        return_path: return_path?,
+        speed: speed?,
+    }))
+}

@@ -1,0 +1,72 @@
+//! What runs but is unwise. In: what was checked. Out: warnings, with the numbers.
+
+use super::checker::Checker;
+use super::faults::whole as fault;
+use super::impact::{critical_before_the_run, time_step_before_the_run};
+use crate::formula::Formula;
+use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker, Test};
+use crate::source::{FileId, Span};
+
+/// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
+pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Option<&Striker>) {
+    let head = checker.scope.blocks[block].block.head;
+    let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
+    let Some(step) = time_step_before_the_run(impact) else { return };
+    if let Some(critical) = critical_before_the_run(impact)
+        && step > critical
+    {
+        checker.faults.push(fault::step_above_critical(at, step, critical));
+    }
+    if let (Contact::Limit { force }, Some(mass), Some(striker)) = (&impact.contact, impact.mass.constant(), striker)
+        && let Some(force) = force.constant()
+    {
+        // Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
+        let first = 2.0 * mass * striker.mass * striker.velocity / ((2.0 * mass + striker.mass) * force);
+        let resolved = mass * striker.mass / (mass + striker.mass) * striker.velocity / (5.0 * force);
+        if step > resolved {
+            checker.faults.push(fault::limit_force_not_resolved(at, step, first, resolved));
+        }
+    }
+}
+
+/// Warnings of the whole plan; asked for only where no error stands.
+pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement], plan: Span) {
+    peak_forces(checker, procedures, requirements);
+    match procedures.last() {
+        None => checker.faults.push(fault::nothing_runs(plan)),
+        Some((block, _)) if requirements.is_empty() => {
+            let head = checker.scope.blocks[*block].block.head;
+            checker.faults.push(fault::nothing_required(head));
+        }
+        Some(_) => {}
+    }
+    for (index, value) in checker.scope.values.iter().enumerate() {
+        if value.name.span.file == FileId(0) && !checker.used.contains(&index) {
+            checker.faults.push(fault::unused(value.keyword, &value.name.node, value.name.span));
+        }
+    }
+}
+
+fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
+    for (index, requirement) in requirements.iter().enumerate() {
+        let mut references = Vec::new();
+        for condition in &requirement.conditions {
+            condition.value.collect_references(&mut references);
+            match &condition.test {
+                Test::Compare { limit, .. } => limit.collect_references(&mut references),
+                Test::Within { target, tolerance, .. } => {
+                    [target, tolerance].into_iter().for_each(|part: &Formula| part.collect_references(&mut references))
+                }
+            }
+        }
+        for reference in references.iter().filter(|reference| reference.name == "max_contact_force") {
+            if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
+                && let ProcedureKind::Impact(Impact { contact: Contact::Rigid, .. }) = procedure.kind
+            {
+                let (condition, head) =
+                    (checker.scope.requirements[index].condition.span, checker.scope.blocks[*block].block.head);
+                checker.faults.push(fault::peak_force_under_rigid_law(condition, head));
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The vocabulary, as data: every block, field, variant, default, range, result and function of the language, written
+//! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
+
+mod declarations;
+mod functions;
+mod later;
+mod limits;
+mod plan_block;
+mod procedures;
+mod report;
+mod results;
+mod rig;
+mod types;
+
+pub use functions::{FUNCTIONS, FunctionKind};
+pub use types::{BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, Variant};
+
+/// Every kind of block, in the order of the reference.
+pub const BLOCKS: &[&BlockKind] = &[
+    &plan_block::PLAN,
+    &declarations::SPECIMEN,
+    &declarations::STRIKER,
+    &limits::LIMITS,
+    &rig::RIG,
+    &procedures::STIFFNESS_RAMP,
+    &procedures::DAMPING_SWEEP,
+    &procedures::IMPACT,
+    &procedures::MOVE,
+    &procedures::INSPECT,
+    &report::REPORT,
+    &later::GROUND,
+    &later::SHAKE,
+    &later::CYCLE,
+    &later::STUDY,
+    &later::GOLDEN,
+];
+
+/// Items that are not blocks, for suggestions.
+pub const ITEM_WORDS: &[&str] = &["use", "param", "let", "require"];
+
+/// The kind whose keyword begins these words: the longest that fits.
+#[must_use]
+pub fn block_of_words(words: &[&str]) -> Option<&'static BlockKind> {
+    BLOCKS.iter().copied().filter(|block| words.starts_with(block.keyword)).max_by_key(|block| block.keyword.len())
+}
+
+/// The kind of block the program calls `kind`.
+#[must_use]
+pub fn block(kind: Kind) -> &'static BlockKind {
+    BLOCKS.iter().copied().find(|block| block.kind == kind).unwrap_or(&plan_block::PLAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_keyword_wins_and_a_name_is_no_part_of_it() {
+        assert_eq!(block_of_words(&["stiffness", "ramp", "k0"]).map(|block| block.kind), Some(Kind::StiffnessRamp));
+        assert_eq!(block_of_words(&["inspect"]).map(|block| block.kind), Some(Kind::Inspect));
+        assert!(block_of_words(&["stiffness", "k0"]).is_none());
+    }
+
+    #[test]
+    fn every_default_with_a_unit_has_the_dimension_of_its_field() {
+        let arguments = |field: &'static Field| match field.ty {
+            FieldType::Choice(variants) | FieldType::Choices(variants) => {
+                variants.iter().flat_map(|variant| variant.arguments).collect()
+            }
+            _ => Vec::new(),
+        };
+        for field in BLOCKS.iter().flat_map(|block| block.fields).flat_map(|field| [vec![field], arguments(field)].concat()) {
+            if let (Need::Default { unit, .. }, Some(dimension)) = (field.need, field.dimension())
+                && !unit.is_empty()
+            {
+                assert_eq!(crate::quantity::unit::parse(unit).unwrap().dimension, dimension, "{}", field.name);
+            }
+        }
+    }
+
+    #[test]
+    fn no_block_says_a_name_twice() {
+        for block in BLOCKS {
+            for names in [
+                block.fields.iter().map(|field| field.name).collect::<Vec<_>>(),
+                block.results.iter().map(|result| result.name).collect(),
+            ] {
+                let mut sorted = names.clone();
+                sorted.sort_unstable();
+                sorted.dedup();
+                assert_eq!(sorted.len(), names.len(), "{:?}", block.keyword);
+            }
+        }
+    }
+}

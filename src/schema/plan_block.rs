@@ -1,0 +1,37 @@
+//! `plan "Title" { … }`: the edition of the language and the data of the certificate.
+
+use super::types::{BlockKind, Field, Kind, Naming, Variant};
+
+pub(super) const PLAN: BlockKind = BlockKind {
+    kind: Kind::Plan,
+    keyword: &["plan"],
+    naming: Naming::Titled,
+    procedure: false,
+    fields: &[
+        Field::count("edition", 1.0, f64::INFINITY, "edition of the language").or(1.0, ""),
+        Field::text("standard", "standard or procedure the test follows"),
+        Field::text("specimen_id", "the specimen's identification"),
+        Field::text("laboratory", "laboratory that tests"),
+        Field::text("customer", "who asked for the test"),
+        Field::text("operator", "who runs the test"),
+        Field::text("date", "date of the test, ISO 8601"),
+        Field::text("revision", "revision of the plan"),
+        Field::text("project", "project the test belongs to"),
+        Field::text("material", "material of the specimen"),
+        Field::text("equipment", "equipment used"),
+        Field::text("notes", "remarks for the certificate"),
+        Field::choice(
+            "decision_rule",
+            &[
+                Variant::word("simple", "the value is held against the limit as it is"),
+                Variant::later("guarded", "the limit is narrowed by the uncertainty"),
+            ],
+            "how a value is held against a limit",
+        )
+        .or_said("simple"),
+    ],
+    exports: &[],
+    results: &[],
+    example: "plan \"My test\" { edition = 1 }",
+    doc: "Title and certificate data of the plan",
+};

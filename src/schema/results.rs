@@ -1,0 +1,43 @@
+//! What each procedure leaves, in the order of the tables and of `summary.json`.
+
+use super::types::ResultKind;
+use crate::quantity::Dimension;
+
+pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
+    ResultKind::measured("stiffness", Dimension::STIFFNESS, "slope of the straight line fitted to force on displacement"),
+    ResultKind::new("secant_stiffness", Dimension::STIFFNESS, "force over displacement of the first increment"),
+    ResultKind::measured("intercept_force", Dimension::FORCE, "force of the fitted line at no displacement"),
+    ResultKind::new("r_squared", Dimension::NUMBER, "coefficient of determination of the fit"),
+    ResultKind::new("max_force", Dimension::FORCE, "largest size of the restoring force"),
+    ResultKind::new("max_displacement", Dimension::LENGTH, "largest size of the measured displacement"),
+    ResultKind::new("loop_energy", Dimension::ENERGY, "energy of the hysteresis loop, with `return = true`"),
+    ResultKind::new("relaxation", Dimension::FORCE, "largest loss of force during a pause"),
+];
+
+pub(super) const DAMPING_SWEEP: &[ResultKind] = &[
+    ResultKind::measured("damping", Dimension::DAMPING, "slope of damping force on velocity"),
+    ResultKind::measured("coulomb_force", Dimension::FORCE, "friction: damping force of the fit at no velocity"),
+    ResultKind::new("r_squared", Dimension::NUMBER, "coefficient of determination of the fit"),
+    ResultKind::measured("damping_ratio", Dimension::NUMBER, "damping over critical damping, c / (2 sqrt(K M))"),
+    ResultKind::new("max_velocity", Dimension::VELOCITY, "largest velocity of the sweep"),
+];
+
+pub(super) const IMPACT: &[ResultKind] = &[
+    ResultKind::new("max_displacement", Dimension::LENGTH, "largest displacement of the structure over the run"),
+    ResultKind::new("time_of_max_displacement", Dimension::TIME, "virtual time of the largest displacement"),
+    ResultKind::new("stop_time", Dimension::TIME, "virtual time at which the striker first stood still"),
+    ResultKind::new("residual_displacement", Dimension::LENGTH, "displacement at the end of the run"),
+    ResultKind::new("max_velocity", Dimension::VELOCITY, "largest size of the structure's velocity"),
+    ResultKind::new("max_contact_force", Dimension::FORCE, "largest mean contact force of a step; grows as 1/Δt under `rigid`"),
+    ResultKind::new("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
+    ResultKind::new("contacts", Dimension::NUMBER, "number of blows"),
+    ResultKind::new("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
+    ResultKind::new("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
+    ResultKind::new("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
+    ResultKind::new("absorbed_energy", Dimension::ENERGY, "restoring force integrated up to the largest displacement"),
+    ResultKind::new("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
+    ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
+    ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
+    ResultKind::new("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
+    ResultKind::new("steps", Dimension::NUMBER, "number of steps"),
+];

@@ -1,0 +1,316 @@
+//! What an entry of the vocabulary is made of, and small look-ups in it.
+
+use crate::quantity::Dimension;
+
+/// Which block the program deals with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Plan,
+    Specimen,
+    Striker,
+    Limits,
+    Rig,
+    StiffnessRamp,
+    DampingSweep,
+    Impact,
+    Move,
+    Inspect,
+    Report,
+    /// A known word of the language that this version does not carry out.
+    Later,
+}
+
+/// What stands between the keyword and the brace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Naming {
+    /// A name, always: `striker pendulum { … }`.
+    Named,
+    /// A text: `plan "Title" { … }`.
+    Titled,
+    /// Nothing: `report { … }`.
+    Unnamed,
+    /// A name or nothing: `limits { … }` holds for the plan, `limits frame_limits { … }` is for rigs to name.
+    MaybeNamed,
+}
+
+/// One kind of block.
+#[derive(Debug)]
+pub struct BlockKind {
+    pub kind: Kind,
+    pub keyword: &'static [&'static str],
+    pub naming: Naming,
+    /// Whether it is run, in the order written.
+    pub procedure: bool,
+    pub fields: &'static [Field],
+    /// Values other expressions may read besides the fields: `pendulum.energy`.
+    pub exports: &'static [ResultKind],
+    /// What a procedure leaves: `hit.max_displacement`.
+    pub results: &'static [ResultKind],
+    /// Shown where one is missing: a short block that is right.
+    pub example: &'static str,
+    pub doc: &'static str,
+}
+
+/// One field of a block, or one argument of a variant (in positional order).
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    pub name: &'static str,
+    pub ty: FieldType,
+    pub need: Need,
+    pub range: Range,
+    pub example: &'static str,
+    pub doc: &'static str,
+    /// False for a known word that this version does not carry out.
+    pub available: bool,
+}
+
+/// What a field takes.
+#[derive(Clone, Copy, Debug)]
+pub enum FieldType {
+    Text,
+    /// A list of texts.
+    Texts,
+    /// One number with its unit.
+    Quantity(Dimension),
+    /// A list, or a range with a step.
+    Quantities(Dimension),
+    /// A range, or a bound: `b` means −b .. b if `symmetric`, else 0 .. b.
+    Bounds {
+        dimension: Dimension,
+        symmetric: bool,
+    },
+    /// A whole number.
+    Count,
+    /// One of these words or variants.
+    Choice(&'static [Variant]),
+    /// A list of these words or variants.
+    Choices(&'static [Variant]),
+    /// The name of a block of this kind.
+    Reference(Kind),
+    /// A list of `figure(procedure)`.
+    Figures,
+}
+
+/// Whether a field must stand, and what holds where it does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Need {
+    Required,
+    Optional,
+    /// A number in a unit of the table; no unit: a plain number.
+    Default {
+        number: f64,
+        unit: &'static str,
+    },
+    /// In the language's words or a person's: `rigid`, `critical / 20`, "the specimen's".
+    Said(&'static str),
+}
+
+/// Allowed values, in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    pub low: f64,
+    /// Whether `low` itself is refused.
+    pub above: bool,
+    pub high: f64,
+}
+
+impl Range {
+    pub const ANY: Self = Self { low: f64::NEG_INFINITY, above: false, high: f64::INFINITY };
+
+    /// Whether `value` is allowed; NaN never is.
+    #[must_use]
+    pub fn contains(self, value: f64) -> bool {
+        (if self.above { value > self.low } else { value >= self.low }) && value <= self.high
+    }
+}
+
+/// A value that can be read from outside a block.
+#[derive(Clone, Copy, Debug)]
+pub struct ResultKind {
+    pub name: &'static str,
+    pub dimension: Dimension,
+    /// Whether it carries a standard uncertainty, read as `.u`.
+    pub measured: bool,
+    pub doc: &'static str,
+}
+
+/// One word of a choice, with the arguments it takes.
+#[derive(Debug)]
+pub struct Variant {
+    pub name: &'static str,
+    pub arguments: &'static [Field],
+    pub doc: &'static str,
+    pub available: bool,
+}
+
+impl BlockKind {
+    /// The keyword as it is written: `stiffness ramp`.
+    #[must_use]
+    pub fn words(&self) -> String {
+        self.keyword.join(" ")
+    }
+
+    #[must_use]
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+
+    #[must_use]
+    pub fn result(&self, name: &str) -> Option<&'static ResultKind> {
+        self.results.iter().find(|result| result.name == name)
+    }
+
+    #[must_use]
+    pub fn export(&self, name: &str) -> Option<&'static ResultKind> {
+        self.exports.iter().find(|export| export.name == name)
+    }
+}
+
+impl Field {
+    const fn new(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
+        Self { name, ty, need: Need::Optional, range: Range::ANY, example: "", doc, available: true }
+    }
+
+    pub(super) const fn text(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Text, doc)
+    }
+
+    pub(super) const fn texts(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Texts, doc)
+    }
+
+    pub(super) const fn quantity(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Quantity(dimension), doc)
+    }
+
+    pub(super) const fn quantities(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Quantities(dimension), doc)
+    }
+
+    pub(super) const fn bounds(name: &'static str, dimension: Dimension, symmetric: bool, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Bounds { dimension, symmetric }, doc)
+    }
+
+    pub(super) const fn count(name: &'static str, low: f64, high: f64, doc: &'static str) -> Self {
+        let mut field = Self::new(name, FieldType::Count, doc);
+        field.range = Range { low, above: false, high };
+        field
+    }
+
+    pub(super) const fn choice(name: &'static str, variants: &'static [Variant], doc: &'static str) -> Self {
+        Self::new(name, FieldType::Choice(variants), doc)
+    }
+
+    pub(super) const fn choices(name: &'static str, variants: &'static [Variant], doc: &'static str) -> Self {
+        Self::new(name, FieldType::Choices(variants), doc)
+    }
+
+    pub(super) const fn reference(name: &'static str, kind: Kind, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Reference(kind), doc)
+    }
+
+    pub(super) const fn figures(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Figures, doc)
+    }
+
+    /// A known word of a later version.
+    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
+        let mut field = Self::new(name, FieldType::Text, doc);
+        field.available = false;
+        field
+    }
+
+    /// Must stand; the example is a line that is right.
+    pub(super) const fn required(mut self, example: &'static str) -> Self {
+        self.need = Need::Required;
+        self.example = example;
+        self
+    }
+
+    pub(super) const fn or(mut self, number: f64, unit: &'static str) -> Self {
+        self.need = Need::Default { number, unit };
+        self
+    }
+
+    pub(super) const fn or_said(mut self, words: &'static str) -> Self {
+        self.need = Need::Said(words);
+        self
+    }
+
+    pub(super) const fn above_zero(mut self) -> Self {
+        self.range = Range { low: 0.0, above: true, high: f64::INFINITY };
+        self
+    }
+
+    pub(super) const fn at_least_zero(mut self) -> Self {
+        self.range = Range { low: 0.0, above: false, high: f64::INFINITY };
+        self
+    }
+
+    pub(super) const fn within(mut self, low: f64, high: f64) -> Self {
+        self.range = Range { low, above: false, high };
+        self
+    }
+
+    /// The dimension of a field of numbers.
+    #[must_use]
+    pub const fn dimension(&self) -> Option<Dimension> {
+        match self.ty {
+            FieldType::Quantity(dimension) | FieldType::Quantities(dimension) | FieldType::Bounds { dimension, .. } => {
+                Some(dimension)
+            }
+            FieldType::Count => Some(Dimension::NUMBER),
+            _ => None,
+        }
+    }
+
+    /// The default as the reference shows it.
+    #[must_use]
+    pub fn default_text(&self) -> Option<String> {
+        match self.need {
+            Need::Default { number, unit } if unit.is_empty() => Some(number.to_string()),
+            Need::Default { number, unit } => Some(format!("{number} {unit}")),
+            Need::Said(words) => Some(words.to_owned()),
+            Need::Required | Need::Optional => None,
+        }
+    }
+
+    /// The default number in SI.
+    #[must_use]
+    pub fn default_number(&self) -> Option<f64> {
+        match self.need {
+            Need::Default { number, unit: "" } => Some(number),
+            Need::Default { number, unit } => crate::quantity::unit::parse(unit).ok().map(|unit| number * unit.factor),
+            _ => None,
+        }
+    }
+}
+
+impl Variant {
+    pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
+        Self { name, arguments: &[], doc, available: true }
+    }
+
+    pub(super) const fn with(name: &'static str, arguments: &'static [Field], doc: &'static str) -> Self {
+        Self { name, arguments, doc, available: true }
+    }
+
+    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
+        Self { name, arguments: &[], doc, available: false }
+    }
+
+    #[must_use]
+    pub fn argument(&self, name: &str) -> Option<&'static Field> {
+        self.arguments.iter().find(|argument| argument.name == name)
+    }
+}
+
+impl ResultKind {
+    pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self { name, dimension, measured: false, doc }
+    }
+
+    pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self { name, dimension, measured: true, doc }
+    }
+}
