@@ -7,12 +7,14 @@ mod later;
 mod limits;
 mod plan_block;
 mod procedures;
+mod reference;
 mod report;
 mod results;
 mod rig;
 mod types;
 
 pub use functions::{FUNCTIONS, FunctionKind};
+pub use reference::reference;
 pub use types::{BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, Variant};
 
 /// Every kind of block, in the order of the reference.

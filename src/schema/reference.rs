@@ -46,7 +46,8 @@ fn write_block(text: &mut String, block: &BlockKind) {
     }
     write_values(text, "what follows", block.exports);
     write_values(text, "result", block.results);
-    let later: Vec<String> = block.fields.iter().filter(|field| !field.available).map(|field| format!("`{}`", field.name)).collect();
+    let later: Vec<String> =
+        block.fields.iter().filter(|field| !field.available).map(|field| format!("`{}`", field.name)).collect();
     if !later.is_empty() {
         let _ = writeln!(text, "\nNot in this version: {}.", later.join(", "));
     }
@@ -167,7 +168,8 @@ fn write_units(text: &mut String) {
 }
 
 fn write_codes(text: &mut String) {
-    let _ = writeln!(text, "\n## Diagnostic codes\n\nWarnings start with W. `psd explain CODE` tells more.\n\n| code | |\n|---|---|");
+    let _ =
+        writeln!(text, "\n## Diagnostic codes\n\nWarnings start with W. `psd explain CODE` tells more.\n\n| code | |\n|---|---|");
     for code in Code::ALL {
         let title = code.page().lines().next().and_then(|line| line.split_once(": ")).map_or("", |(_, title)| title);
         let _ = writeln!(text, "| {code} | {title} |");

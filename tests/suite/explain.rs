@@ -5,6 +5,8 @@
 
 use psd::check::{Checked, LoadFault, Loader, Options, check};
 use psd::diagnostic::{Code, Severity};
+use psd::source::Sources;
+use psd::syntax::{format, parse};
 
 /// One fenced block of a page.
 struct Fence {
@@ -116,4 +118,18 @@ fn the_right_plan_of_a_page_gives_no_error_and_not_the_code() {
         checked.plan.is_some() && checked.diagnostics.iter().all(|diagnostic| !diagnostic.is_error() && diagnostic.code != code)
     });
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn the_plans_of_the_pages_are_written_as_the_formatter_writes_them() {
+    for &code in Code::ALL {
+        for fence in fences(code.page()) {
+            let mut sources = Sources::default();
+            let file = sources.add("plan.psd", fence.text.as_str());
+            let (ast, faults) = parse(&sources, file);
+            if faults.is_empty() {
+                assert_eq!(format(&ast, &fence.text), fence.text, "{code}: psd fmt would change a plan of the page");
+            }
+        }
+    }
 }

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 use psd::check::{LoadFault, Loader, Options, check};
 use psd::diagnostic::render::{Appearance, render_all};
 use psd::schema::reference;
+use psd::source::Sources;
+use psd::syntax::{format, parse};
 
 const START: &str = "<!-- generated -->\n";
 const END: &str = "<!-- end of generated -->\n";
@@ -48,6 +50,9 @@ fn the_plans_of_the_reference_are_right() {
     let plans: Vec<&str> = page.split("```psd\n").skip(1).map(|after| after.split("```").next().unwrap_or_default()).collect();
     assert!(plans.len() >= 2, "the reference shows whole plans");
     for plan in plans {
+        let mut sources = Sources::default();
+        let file = sources.add("LANGUAGE.md", plan);
+        assert_eq!(format(&parse(&sources, file).0, plan), plan, "psd fmt would change a plan of the reference");
         let checked = check("LANGUAGE.md", plan, &NoFiles, &Options::default());
         let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
         assert!(checked.plan.is_some() && checked.diagnostics.is_empty(), "{plan}\n{said}");

@@ -72,7 +72,7 @@ pub fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Dia
     match (kind.naming, rest) {
         (Naming::Named, []) => Some(wrong(format!("this `{words}` block has no name"), block.head, "a name is missing")),
         (Naming::Unnamed | Naming::Titled, [name, ..]) => {
-            Some(wrong(format!("a `{words}` block has no name"), name.span, "one word too many"))
+            Some(wrong(format!("a `{words}` block takes no name"), name.span, "one word too many"))
         }
         (_, [_, second, ..]) => {
             Some(wrong(format!("a `{words}` block has one name of one word"), second.span, "one word too many"))
