@@ -36,7 +36,9 @@ fn summary(folder: &Path) -> Value {
 }
 
 fn result(summary: &Value, procedure: &str, name: &str) -> f64 {
-    summary["procedures"][procedure]["results"][name]["value"].as_f64().unwrap_or_else(|| panic!("{procedure}.{name} is a number"))
+    summary["procedures"][procedure]["results"][name]["value"]
+        .as_f64()
+        .unwrap_or_else(|| panic!("{procedure}.{name} is a number"))
 }
 
 /// Every file under a folder with its bytes.
