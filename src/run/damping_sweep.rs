@@ -81,6 +81,8 @@ impl Sweep {
             let out = self.traverse(home + stroke, speed, seconds, samples, session)?;
             let back = self.traverse(home, -speed, seconds, samples, session)?;
             self.strokes.push(Stroke { out, back });
+            // A traverse ends in motion: the piston comes to rest at home before anything is read or asked of it there.
+            session.guard.move_to(&[home], None)?;
         }
         Ok(())
     }
