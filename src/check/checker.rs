@@ -101,7 +101,7 @@ impl<'a> Checker<'a> {
     pub fn guarded<T>(&mut self, node: Node, asked_at: Span, work: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if let Some(start) = self.stack.iter().position(|open| *open == node) {
             let ring: Vec<(String, Span)> = self.stack[start..].iter().map(|node| self.describe(*node)).collect();
-            for node in self.stack[start..].to_vec() {
+            for node in self.stack[start..].iter().copied() {
                 self.known.insert(node, None);
             }
             return self.fail(fault::cycle(&ring, asked_at));

@@ -133,7 +133,6 @@ impl<'a> Checker<'a> {
             let head = self.scope.blocks[owner].block.head;
             let text = self.text(span);
             match place.reads {
-                Reads::All => {}
                 Reads::Nothing(what) => return self.fail(values::result_before_the_run(text, span, what, head)),
                 Reads::Before(procedure) if reference.procedure == procedure => {
                     return self.fail(values::own_result(text, span, head));
@@ -141,7 +140,7 @@ impl<'a> Checker<'a> {
                 Reads::Before(procedure) if reference.procedure > procedure => {
                     return self.fail(values::result_of_later_procedure(text, span, head));
                 }
-                Reads::Before(_) => {}
+                Reads::Before(_) | Reads::All => {}
             }
         }
         Some(typed)

@@ -3,7 +3,6 @@
 use super::checker::Checker;
 use super::faults::whole as fault;
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::formula::Formula;
 use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker, Test};
 use crate::source::{FileId, Span};
 
@@ -55,7 +54,8 @@ fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)],
             match &condition.test {
                 Test::Compare { limit, .. } => limit.collect_references(&mut references),
                 Test::Within { target, tolerance, .. } => {
-                    [target, tolerance].into_iter().for_each(|part: &Formula| part.collect_references(&mut references))
+                    target.collect_references(&mut references);
+                    tolerance.collect_references(&mut references);
                 }
             }
         }

@@ -41,8 +41,9 @@ pub fn significant(value: f64, digits: usize) -> String {
     if !(-5.0..7.0).contains(&exponent) {
         return format!("{value:.*e}", digits.saturating_sub(1));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "exponent is between -5 and 7")]
-    let decimals = (digits as i64 - 1 - exponent as i64).max(0) as usize;
+    #[expect(clippy::cast_possible_truncation, reason = "the exponent is between -5 and 7")]
+    let exponent = exponent as isize;
+    let decimals = digits.saturating_sub(1).saturating_add_signed(-exponent);
     format!("{value:.decimals$}")
 }
 

@@ -268,7 +268,7 @@ impl Field {
     #[must_use]
     pub fn default_text(&self) -> Option<String> {
         match self.need {
-            Need::Default { number, unit } if unit.is_empty() => Some(number.to_string()),
+            Need::Default { number, unit: "" } => Some(number.to_string()),
             Need::Default { number, unit } => Some(format!("{number} {unit}")),
             Need::Said(words) => Some(words.to_owned()),
             Need::Required | Need::Optional => None,

@@ -1,5 +1,5 @@
-//! Text → syntax tree. The only folder that knows the grammar's tool: [`parse`] reads a file whole, faults and all,
-//! and [`format`] writes the canonical text of a plan.
+//! Text → syntax tree. The only folder that knows the grammar's tool: [`parse()`] reads a file whole, faults and all,
+//! and [`format()`] writes the canonical text of a plan.
 
 pub mod ast;
 pub mod format;

@@ -1,5 +1,5 @@
 //! The canonical text of a plan. In: a sound file. Out: the same plan with one indent, one spacing, `=` and comments in
-//! line. Works on tokens, so that nothing the author wrote is lost; [`rows`] finds the lines, [`value`] writes a value.
+//! line. Works on tokens, so that nothing the author wrote is lost; `rows` finds the lines, `value` writes a value.
 
 mod rows;
 mod value;
