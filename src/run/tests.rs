@@ -5,7 +5,7 @@ use super::{Inspection, Observer, Unwatched, run};
 use crate::formula::Formula;
 use crate::plan::{DampingSweep, Interval, Link, Move, Plan, ProcedureKind, StiffnessRamp, VirtualLink};
 use crate::record::{EventKind, History, Outcome, RampStep, SweepStep};
-use crate::rig::{LimitedQuantity, RigFault, VirtualRig};
+use crate::rig::{LimitedQuantity, Rig, RigFault, VirtualRig};
 
 fn constant(value: f64) -> Formula {
     Formula::Constant(value)
@@ -145,6 +145,20 @@ fn a_lagging_actuator_does_not_bias_the_damping() {
     let record = run_unwatched(&plan);
     let damping = number(&record, 1, "damping").0.unwrap();
     assert!((damping / 400.0 - 1.0).abs() < 0.005, "{damping}");
+}
+
+/// At 10 mm/s and a lag of 20 ms the piston trails by 0.2 mm where a stroke ends: it must come to rest before what follows.
+#[test]
+fn a_sweep_leaves_the_rig_at_rest_where_it_began() {
+    let mut plan = ramp_then_sweep();
+    link(&mut plan, VirtualLink { lag: 20e-3, ..VirtualLink::default() });
+    plan.rig.settle.band = 1e-7;
+    let mut rig = VirtualRig::of_plan(&plan);
+    let record = run(&plan, &mut rig, &mut Unwatched);
+    assert_eq!(record.outcome, Outcome::Completed);
+    let left = rig.read().unwrap().displacement[0];
+    // The settling time is solved for, so that the piston ends on the edge of the band, to rounding.
+    assert!(left.abs() <= 1e-7 * (1.0 + 1e-9), "left at {left} m");
 }
 
 #[test]

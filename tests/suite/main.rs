@@ -1,6 +1,7 @@
 //! All integration tests in one binary: one link, one module a concern.
 
 mod cli;
+mod docs;
 mod explain;
 mod house;
 mod lang;
