@@ -164,17 +164,16 @@ impl Law for RestitutionContact {
             loss: 0.0,
             damping_work: 0.0,
         };
-        let mut touched = false;
         let mut bounces = 0;
         while course.left > 0.0 {
             if self.joined {
-                touched = true;
                 self.ride(bodies, start.tangent_stiffness, &mut course);
             } else if self.fly(bodies, start.tangent_stiffness, &mut course, bounces < MOST_BOUNCES) {
-                touched = true;
                 bounces += 1;
             }
         }
+        // A pair that parts as the step begins has not touched in it.
+        let touched = self.joined || course.impulse > 0.0;
         Advance {
             structure: course.structure,
             striker_displacement: course.striker_displacement,

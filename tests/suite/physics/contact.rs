@@ -4,6 +4,9 @@ use psd::mechanics::contact::{ContactLaw, StepState};
 use psd::mechanics::impact::ImpactInput;
 use psd::mechanics::specimen::{Bilinear, Elastic, RestoringForce};
 
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
 use super::support::{Run, event_driven, impact, run, run_on, run_while};
 
 const K: f64 = 327.65;
@@ -206,5 +209,43 @@ fn noise_does_not_become_a_stiffness() {
             assert!((state.tangent_stiffness / 3e5 - 1.0).abs() < 0.25, "{} N/m", state.tangent_stiffness);
         }
         assert_eq!(run.states.iter().any(|state| state.tangent_stiffness != 3e5), moves);
+    }
+}
+
+/// A cell that drifts and rattles pushes a light structure both ways: every step still ends, apart or touching.
+#[test]
+fn restitution_stands_a_rattling_cell() {
+    struct Rattle {
+        random: Pcg64Mcg,
+        noise: f64,
+        drift: f64,
+    }
+    impl RestoringForce for Rattle {
+        fn move_to(&mut self, displacement: f64) -> f64 {
+            K * displacement + self.drift + self.noise * (self.random.random::<f64>() - 0.5)
+        }
+        fn initial_stiffness(&self) -> f64 {
+            K
+        }
+    }
+    for seed in 0..200 {
+        let mut random = Pcg64Mcg::seed_from_u64(seed);
+        let mut pick = |values: &[f64]| values[random.random_range(0..values.len())];
+        let mass = pick(&[0.01, 0.3, 1.0, 40.0]);
+        let law = restitution(pick(&[0.0, 0.2, 0.9, 0.99, 1.0]));
+        let input = ImpactInput {
+            damping: pick(&[0.0, 1.0, 40.0]),
+            gap: pick(&[0.0, 0.01]),
+            striker_velocity: pick(&[0.001, 0.1, 1.0]),
+            ..impact(mass, K, law, pick(&[1e-2, 1e-3, 1e-4]))
+        };
+        let mut specimen = Rattle { noise: pick(&[0.0, 1.0, 20.0]), drift: pick(&[-30.0, 0.0, 5.0]), random };
+        let run = run_while(&input, &mut specimen, |state| state.time < 1.0);
+        for state in &run.states {
+            let overlap = state.striker_displacement - state.displacement;
+            assert!(overlap < 1e-12, "seed {seed}, {input:?}: {overlap} m at {} s", state.time);
+            assert!(state.contact_force >= 0.0 && state.energies.contact_loss >= 0.0, "seed {seed}: {state:?}");
+            assert_eq!(state.state == StepState::Contact, state.contact_force > 0.0, "seed {seed}: {state:?}");
+        }
     }
 }
