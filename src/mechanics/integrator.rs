@@ -61,3 +61,52 @@ impl Motion {
         self.follow(balance.load / balance.inertia, stiffness, duration)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MASS: f64 = 1.0;
+    const STIFFNESS: f64 = 400.0;
+
+    /// Free vibration from X = 0 at 1 m/s: error of X against sin ωt / ω after `steps` steps to a fixed instant.
+    fn error(damping: f64, steps: u32) -> f64 {
+        let end = 0.37;
+        let duration = end / f64::from(steps);
+        let rate = damping / (2.0 * MASS);
+        let damped = (STIFFNESS / MASS - rate * rate).sqrt();
+        let mut motion = Motion { displacement: 0.0, velocity: 1.0, acceleration: -damping / MASS, restoring_force: 0.0 };
+        for _ in 0..steps {
+            motion = motion.free(MASS, damping, STIFFNESS, duration);
+        }
+        motion.displacement - (-rate * end).exp() * (damped * end).sin() / damped
+    }
+
+    #[test]
+    fn free_vibration_is_of_second_order() {
+        for damping in [0.0, 6.0] {
+            let order = (error(damping, 400) / error(damping, 800)).log2();
+            assert!((order - 2.0).abs() < 0.02, "C {damping}: order {order}");
+            assert!(error(damping, 800).abs() < 5e-6);
+        }
+    }
+
+    /// Constant average acceleration neither feeds nor drains a linear vibration, at any step.
+    #[test]
+    fn undamped_energy_stays() {
+        for duration in [1e-3, 0.1] {
+            let mut motion = Motion { displacement: 0.0, velocity: 1.0, acceleration: 0.0, restoring_force: 0.0 };
+            for _ in 0..1000 {
+                motion = motion.free(MASS, 0.0, STIFFNESS, duration);
+            }
+            let energy = MASS * motion.velocity.powi(2) + STIFFNESS * motion.displacement.powi(2);
+            assert!((energy - 1.0).abs() < 1e-11, "{energy}");
+        }
+    }
+
+    /// T = 2π√(1/400) s.
+    #[test]
+    fn critical_step_is_a_tenth_of_the_period() {
+        assert!((critical_time_step(MASS, STIFFNESS) - 0.031_415_926_535_897_93).abs() < 1e-16);
+    }
+}

@@ -99,3 +99,43 @@ impl RestoringForce for SpecimenModel {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// K 1000 N/m, F_y 10 N, K_p 100 N/m: yield at 10 mm, 20 N of elastic range, then the loop closes on itself.
+    #[test]
+    fn bilinear_corners_by_hand() {
+        let mut model = Bilinear::new(1000.0, 10.0, 0.1);
+        let corners = [
+            (0.010, 10.0),
+            (0.030, 12.0),
+            (0.010, -8.0),
+            (-0.010, -10.0),
+            (0.010, 10.0),
+            (0.030, 12.0),
+            (0.020, 2.0),
+            (0.030, 12.0),
+        ];
+        for (displacement, force) in corners {
+            let found = model.move_to(displacement);
+            assert!((found - force).abs() < 1e-12, "{displacement} m: {found} N is not {force} N");
+        }
+        assert_eq!(model.initial_stiffness(), 1000.0);
+    }
+
+    /// The path is exact: a corner reached in one move or in many.
+    #[test]
+    fn bilinear_does_not_depend_on_the_size_of_its_moves() {
+        let (mut once, mut often) = (Bilinear::new(1000.0, 10.0, 0.1), Bilinear::new(1000.0, 10.0, 0.1));
+        let mut from = 0.0;
+        for to in [0.030, -0.020, 0.005] {
+            for i in 1..=100 {
+                often.move_to(from + (to - from) * f64::from(i) / 100.0);
+            }
+            assert!((once.move_to(to) - often.move_to(to)).abs() < 1e-12);
+            from = to;
+        }
+    }
+}

@@ -1,1 +1,6 @@
-//! physics
+//! The numerics against closed forms, an independent event-driven solution and the reference results.
+
+mod contact;
+mod identification;
+mod reference;
+mod support;

@@ -135,7 +135,8 @@ impl HertzContact {
             striker_displacement: xs,
             striker_velocity: vs,
             state,
-            contact_force: impulse / time_step,
+            // A mean of forces up to the limit, and not above it by a rounding either.
+            contact_force: (impulse / time_step).min(self.force_limit),
             indentation,
             contact_loss,
             damping_work,

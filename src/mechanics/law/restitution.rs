@@ -10,8 +10,9 @@ use crate::mechanics::integrator::Motion;
 const SHORTEST_FLIGHT: f64 = 1e-3;
 /// Halvings of an interval of time: past the resolution of a double.
 const HALVINGS: u32 = 60;
-/// Bounces of one step; `SHORTEST_FLIGHT` ends them long before.
-const MOST_EVENTS: u32 = 4000;
+/// Impacts of one step that bounce. `SHORTEST_FLIGHT` lets no more into a step whose structure slows down steadily; past
+/// them the next impact is taken as the one with which the bounces die out.
+const MOST_BOUNCES: u32 = 2000;
 
 /// Separation speed = `coefficient` × closing speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +84,8 @@ fn locate(end: f64, mut reached: impl FnMut(f64) -> bool) -> f64 {
 
 impl RestitutionContact {
     /// Both bodies apart, to the next impact or to the end of the step. True if there was an impact.
-    fn fly(&mut self, bodies: &Bodies, tangent: f64, course: &mut Course) -> bool {
-        let Bodies { mass, damping, striker_mass, time_step } = *bodies;
+    fn fly(&mut self, bodies: &Bodies, tangent: f64, course: &mut Course, may_bounce: bool) -> bool {
+        let Bodies { mass, damping, .. } = *bodies;
         let from = course.structure;
         let (overlap, striker_velocity, left) = (course.overlap, course.striker_velocity, course.left);
         let free = |duration: f64| from.free(mass, damping, tangent, duration);
@@ -92,34 +93,42 @@ impl RestitutionContact {
         let closed =
             |duration: f64| overlap / duration + striker_velocity - 0.5 * (from.velocity + free(duration).velocity) > 0.0;
         let touching_and_closing = overlap == 0.0 && striker_velocity > from.velocity;
-        if !touching_and_closing && !closed(left) {
-            course.go(bodies, free(left), striker_velocity, left);
-            return false;
-        }
         if !touching_and_closing {
+            if !closed(left) {
+                course.go(bodies, free(left), striker_velocity, left);
+                return false;
+            }
             let instant = locate(left, closed);
             course.go(bodies, free(instant), striker_velocity, instant);
             course.overlap = 0.0;
         }
-        let closing = course.striker_velocity - course.structure.velocity;
-        if closing < 0.0 {
-            return true;
+        // The chord met the striker but the structure speeds away from it: they graze, and nothing passes.
+        if course.striker_velocity < course.structure.velocity {
+            return false;
         }
+        self.collide(bodies, course, may_bounce);
+        true
+    }
+
+    /// An impact: the bodies part with what restitution leaves them, or go on as one.
+    fn collide(&mut self, bodies: &Bodies, course: &mut Course, may_bounce: bool) {
+        let Bodies { mass, striker_mass, time_step, .. } = *bodies;
         let reduced_mass = mass * striker_mass / (mass + striker_mass);
+        let closing = course.striker_velocity - course.structure.velocity;
         course.strike(bodies, reduced_mass * (1.0 + self.coefficient) * closing);
         course.loss += 0.5 * reduced_mass * (1.0 - self.coefficient * self.coefficient) * closing * closing;
 
         // The striker flies straight: the structure's deceleration brings them together again.
         let separation = self.coefficient * closing;
         let deceleration = -course.structure.acceleration;
-        if 2.0 * separation <= deceleration * SHORTEST_FLIGHT * time_step {
+        let dies_out = 2.0 * separation <= deceleration * SHORTEST_FLIGHT * time_step;
+        if dies_out || !may_bounce {
             course.strike(bodies, -reduced_mass * separation);
             course.loss += 0.5 * reduced_mass * separation * separation;
             course.striker_velocity = course.structure.velocity;
             course.structure.acceleration *= mass / (mass + striker_mass);
             self.joined = true;
         }
-        true
     }
 
     /// Both bodies as one, to the end of the step or to the instant the contact would pull.
@@ -155,22 +164,16 @@ impl Law for RestitutionContact {
             loss: 0.0,
             damping_work: 0.0,
         };
-        let mut touched = false;
-        let mut events = 0;
+        let mut bounces = 0;
         while course.left > 0.0 {
-            events += 1;
             if self.joined {
-                touched = true;
                 self.ride(bodies, start.tangent_stiffness, &mut course);
-            } else if events > MOST_EVENTS {
-                let rest = course.left;
-                let to = course.structure.free(bodies.mass, bodies.damping, start.tangent_stiffness, rest);
-                let striker_velocity = course.striker_velocity;
-                course.go(bodies, to, striker_velocity, rest);
-            } else {
-                touched |= self.fly(bodies, start.tangent_stiffness, &mut course);
+            } else if self.fly(bodies, start.tangent_stiffness, &mut course, bounces < MOST_BOUNCES) {
+                bounces += 1;
             }
         }
+        // A pair that parts as the step begins has not touched in it.
+        let touched = self.joined || course.impulse > 0.0;
         Advance {
             structure: course.structure,
             striker_displacement: course.striker_displacement,

@@ -1,0 +1,70 @@
+//! Cost of a step: example 1 at 1 µs for 100,000 steps, bare, recorded, and step by step as a rig has it. Items are steps.
+
+use std::hint::black_box;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use psd::mechanics::contact::ContactLaw;
+use psd::mechanics::impact::{Columns, ImpactInput, ImpactSolver, simulate};
+use psd::mechanics::law::ImpulseContact;
+use psd::mechanics::specimen::{Elastic, RestoringForce};
+
+const STEPS: u64 = 100_000;
+const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
+
+fn main() {
+    divan::main();
+}
+
+fn example_1() -> ImpactInput {
+    black_box(ImpactInput {
+        mass: 1.0,
+        damping: 0.0,
+        stiffness: SPECIMEN.stiffness,
+        striker_mass: 10.0,
+        striker_velocity: 1.0,
+        gap: 0.0,
+        time_step: 1e-6,
+        max_tangent_ratio: 2.0,
+        law: ContactLaw::Rigid,
+        force_noise: 0.0,
+        resolution: 0.0,
+    })
+}
+
+#[divan::bench]
+fn bare(bencher: Bencher) {
+    let input = example_1();
+    bencher
+        .counter(ItemsCount::new(STEPS))
+        .bench_local(|| simulate(&input, ImpulseContact::rigid(), &mut { SPECIMEN }, STEPS, &mut ()));
+}
+
+/// Into columns used again: the price of memory is paid once, before the first measurement.
+#[divan::bench]
+fn recorded(bencher: Bencher) {
+    let input = example_1();
+    let rows = usize::try_from(STEPS).expect("fits");
+    let mut columns = Columns::default();
+    columns.prepare(rows);
+    simulate(&input, ImpulseContact::rigid(), &mut { SPECIMEN }, STEPS, &mut columns);
+    bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
+        columns.prepare(rows);
+        simulate(&input, ImpulseContact::rigid(), &mut { SPECIMEN }, STEPS, &mut columns)
+    });
+}
+
+/// The law chosen at every step, the reading handed over by the caller.
+#[divan::bench]
+fn interactive(bencher: Bencher) {
+    let input = example_1();
+    bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
+        let mut specimen = SPECIMEN;
+        let mut solver = ImpactSolver::new(&input, 0.0, specimen.move_to(0.0));
+        for _ in 0..STEPS {
+            let displacement = solver.predict();
+            solver.complete(displacement, specimen.move_to(displacement));
+        }
+        *solver.state()
+    });
+}
