@@ -3,7 +3,7 @@
 use crate::plan::Ends;
 
 /// Stiffness of a uniform beam at the struck section (tip of a cantilever, middle of the others), N/m. Partly built-in
-/// ends, with r = k_θ L / EI at each, run from simply supported (r = 0) to built-in (r = ∞).
+/// ends, with `r = k_θ L / EI` at each, run from simply supported (r = 0) to built-in (r = ∞).
 #[must_use]
 pub fn stiffness(length: f64, youngs_modulus: f64, second_moment: f64, ends: Ends) -> f64 {
     let bending = youngs_modulus * second_moment;

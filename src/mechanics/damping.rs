@@ -17,7 +17,7 @@ impl CellDamping {
         Self { viscous, coulomb, last_direction: 0.0 }
     }
 
-    /// Force at `velocity` (m/s), N: c·v + F_c·sign of the last motion.
+    /// Force at `velocity` (m/s), N: `c·v + F_c·sign` of the last motion.
     pub fn force(&mut self, velocity: f64) -> f64 {
         if velocity != 0.0 {
             self.last_direction = velocity.signum();

@@ -14,7 +14,7 @@ pub struct Energies {
     pub damping: f64,
     /// Σ F₁ ΔXs − ½(F₀ + F₁) ΔX, cumulated.
     pub contact_loss: f64,
-    /// F_lim Δδp, cumulated: an indicator, not a part of the sum.
+    /// `F_lim` Δδp, cumulated: an indicator, not a part of the sum.
     pub indentation: f64,
     /// What remains of the input: the integration error.
     pub error: f64,

@@ -43,7 +43,7 @@ pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
     })
 }
 
-/// F_d = c·v + F_c·sign v: slope c (N·s/m) and intercept F_c (N), fitted as F_d·sign v against |v|. Readings at rest say
+/// `F_d = c·v + F_c·sign v`: slope c (N·s/m) and intercept `F_c` (N), fitted as `F_d·sign v` against |v|. Readings at rest say
 /// nothing of it and are left out.
 #[must_use]
 pub fn fit_damping(velocities: &[f64], damping_forces: &[f64]) -> Option<LineFit> {

@@ -27,7 +27,7 @@ pub struct ImpactInput {
     pub gap: f64,
     /// Δt, s
     pub time_step: f64,
-    /// c of "K_t within [0, c·K0]"
+    /// c of `K_t within [0, c·K0]`
     pub max_tangent_ratio: f64,
     pub law: ContactLaw,
     /// Standard deviation of the load cell, N.

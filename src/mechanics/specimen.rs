@@ -26,7 +26,7 @@ impl RestoringForce for Elastic {
     }
 }
 
-/// Elastic–plastic with kinematic hardening: the force runs with stiffness K between two parallel lines of slope K_p,
+/// Elastic–plastic with kinematic hardening: the force runs with stiffness K between two parallel lines of slope `K_p`,
 /// `R = K_p X ± (1 − K_p/K) F_y`, and along the line it meets. The elastic trial cut to the band is the exact return map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bilinear {
@@ -38,7 +38,7 @@ pub struct Bilinear {
 }
 
 impl Bilinear {
-    /// `stiffness` K (N/m), `yield_force` (N), `hardening` K_p/K, 0 to 1.
+    /// `stiffness` K (N/m), `yield_force` (N), `hardening` `K_p/K`, 0 to 1.
     #[must_use]
     pub fn new(stiffness: f64, yield_force: f64, hardening: f64) -> Self {
         Self {
@@ -104,7 +104,7 @@ impl RestoringForce for SpecimenModel {
 mod tests {
     use super::*;
 
-    /// K 1000 N/m, F_y 10 N, K_p 100 N/m: yield at 10 mm, 20 N of elastic range, then the loop closes on itself.
+    /// K 1000 N/m, `F_y` 10 N, `K_p` 100 N/m: yield at 10 mm, 20 N of elastic range, then the loop closes on itself.
     #[test]
     fn bilinear_corners_by_hand() {
         let mut model = Bilinear::new(1000.0, 10.0, 0.1);

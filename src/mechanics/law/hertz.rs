@@ -26,7 +26,7 @@ pub struct HertzContact {
 }
 
 impl HertzContact {
-    /// Resolves the blow that `approach_velocity` makes between the free bodies (duration 2.943 δ_max/u).
+    /// Resolves the blow that `approach_velocity` makes between the free bodies (duration 2.943 `δ_max/u`).
     #[must_use]
     pub fn new(stiffness: f64, loss: f64, force_limit: Option<f64>, bodies: &Bodies, approach_velocity: f64) -> Self {
         let reduced_mass = bodies.mass * bodies.striker_mass / (bodies.mass + bodies.striker_mass);

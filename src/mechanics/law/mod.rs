@@ -32,7 +32,7 @@ pub struct Start {
     pub striker_velocity: f64,
     /// F of the step before, N.
     pub contact_force: f64,
-    /// K_t, N/m
+    /// `K_t`, N/m
     pub tangent_stiffness: f64,
     /// δp, m
     pub indentation: f64,
@@ -53,7 +53,7 @@ pub struct Advance {
     pub contact_loss: f64,
     /// ∫CẊ dX over this step, J.
     pub damping_work: f64,
-    /// F_lim Δδp, J.
+    /// `F_lim` Δδp, J.
     pub indentation_work: f64,
 }
 

@@ -186,7 +186,7 @@ fn a_yielding_specimen_stops_where_energy_says() {
 }
 
 /// Eq. (6) on ±5 N of noise: a secant counts only over 10·σ/K0 or more, so that 10 N of change is 20 % of K0 at most. At
-/// the fine step no change is large enough and K_t stays; at the coarse one it moves.
+/// the fine step no change is large enough and `K_t` stays; at the coarse one it moves.
 #[test]
 fn noise_does_not_become_a_stiffness() {
     struct Noisy {

@@ -70,7 +70,7 @@ fn converged() {
     near("contact loss", limited.last().energies.contact_loss, 0.4545, 0.003 * 0.4545);
 }
 
-/// Eq. (4) from rest: Ẋ₁ = ½MsV0 / (M + ½Ms + ¼Δt²K), which tends to Ms·V0/(2M + Ms), and the force of that one step is
+/// Eq. (4) from rest: `Ẋ₁ = ½MsV0 / (M + ½Ms + ¼Δt²K)`, which tends to Ms·V0/(2M + Ms), and the force of that one step is
 /// the impulse over Δt.
 #[test]
 fn rigid_force_grows_as_the_step_shrinks() {
