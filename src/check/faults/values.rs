@@ -1,15 +1,15 @@
 //! Faults of values: E4xx.
 
+use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Interval;
 use crate::quantity::Dimension;
-use crate::quantity::display::readable;
 use crate::schema::{Field, Range};
 use crate::source::Span;
 
 fn allowed(range: Range, dimension: Dimension) -> String {
     let show =
-        |value: f64| if dimension == Dimension::NUMBER || value == 0.0 { value.to_string() } else { readable(value, dimension) };
+        |value: f64| if dimension == Dimension::NUMBER || value == 0.0 { value.to_string() } else { shown(value, dimension) };
     match (range.low.is_finite(), range.above, range.high.is_finite()) {
         (true, true, false) => format!("greater than {}", show(range.low)),
         (true, false, false) => format!("at least {}", show(range.low)),
@@ -20,9 +20,11 @@ fn allowed(range: Range, dimension: Dimension) -> String {
 
 pub fn out_of_range(field: &Field, dimension: Dimension, value: f64, text: &str, span: Span) -> Diagnostic {
     let allowed = allowed(field.range, dimension);
-    let is = if dimension == Dimension::NUMBER { value.to_string() } else { readable(value, dimension) };
+    let is = if dimension == Dimension::NUMBER { value.to_string() } else { shown(value, dimension) };
+    // A literal is not said twice: "`-10 kg` is -10 kg".
+    let label = if is == text { "outside".to_owned() } else { format!("`{text}` is {is}") };
     Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name))
-        .at(span, format!("`{text}` is {is}"))
+        .at(span, label)
         .help(format!("give a value that is {allowed}"))
 }
 
@@ -47,7 +49,7 @@ pub fn bounds_reversed(span: Span, low: &str, high: &str) -> Diagnostic {
 }
 
 pub fn parameter_out_of_bounds(name: &str, text: &str, span: Span, bounds: Interval, dimension: Dimension) -> Diagnostic {
-    let (low, high) = (readable(bounds.low, dimension), readable(bounds.high, dimension));
+    let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
     Diagnostic::new(Code::OutOfRange, format!("`{name}` is outside its own range {low} .. {high}"))
         .at(span, format!("`{text}` is outside"))
         .help("widen the range or change the value")
@@ -61,7 +63,7 @@ pub fn setting_out_of_range(
     dimension: Dimension,
     bounds_at: Span,
 ) -> Diagnostic {
-    let (low, high) = (readable(bounds.low, dimension), readable(bounds.high, dimension));
+    let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
     Diagnostic::new(Code::SettingOutOfRange, format!("`--set {name}` is outside {low} .. {high}"))
         .at(span, format!("`{text}` is outside"))
         .at(bounds_at, "the range it must stay in")
@@ -105,7 +107,7 @@ pub fn step_leads_away(span: Span, text: &str) -> Diagnostic {
 pub fn step_does_not_divide(range: Span, step: Span, length: f64, count: f64, dimension: Dimension) -> Diagnostic {
     let show = |steps: f64| {
         let size = length / steps;
-        if dimension == Dimension::NUMBER { size.to_string() } else { readable(size, dimension) }
+        if dimension == Dimension::NUMBER { size.to_string() } else { shown(size, dimension) }
     };
     let (fewer, more) = (count.floor().max(1.0), count.floor().max(0.0) + 1.0);
     let nearest =

@@ -1,10 +1,9 @@
 //! Faults and warnings of the test as a whole: E6xx and W7xx.
 
-use super::{one_of, suggestion};
+use super::{one_of, shown, suggestion};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Interval;
 use crate::quantity::Dimension;
-use crate::quantity::display::readable;
 use crate::source::Span;
 
 pub fn several_specimens(head: Span, declared: &[(&str, Span)]) -> Diagnostic {
@@ -15,8 +14,8 @@ pub fn several_specimens(head: Span, declared: &[(&str, Span)]) -> Diagnostic {
 }
 
 pub fn beyond_limits(field: &str, value: f64, dimension: Dimension, span: Span, limit: Interval, limit_at: Span) -> Diagnostic {
-    let value = readable(value, dimension);
-    let (low, high) = (readable(limit.low, dimension), readable(limit.high, dimension));
+    let value = shown(value, dimension);
+    let (low, high) = (shown(limit.low, dimension), shown(limit.high, dimension));
     Diagnostic::new(Code::BeyondLimits, format!("`{field}` asks for {value}, outside the limits {low} .. {high}"))
         .at(span, format!("reaches {value}"))
         .at(limit_at, "the limit")
@@ -40,7 +39,7 @@ pub fn limits_wider(field: &str, plan: Span, plan_text: &str, rig: Span, rig_tex
 }
 
 fn time(value: f64) -> String {
-    readable(value, Dimension::TIME)
+    shown(value, Dimension::TIME)
 }
 
 pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
@@ -82,7 +81,7 @@ pub fn nothing_required(span: Span) -> Diagnostic {
 pub fn nothing_runs(span: Span) -> Diagnostic {
     Diagnostic::new(Code::NothingRuns, "the plan runs nothing")
         .at(span, "no procedure follows")
-        .help("add a procedure, such as `stiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }`")
+        .help("add a procedure, such as\nstiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }")
 }
 
 pub fn unused(keyword: &str, name: &str, span: Span) -> Diagnostic {
