@@ -1,7 +1,6 @@
 //! The wording of every diagnostic of the check, by what it is about. In: names, texts and places. Out: diagnostics.
 
-use crate::quantity::Dimension;
-use crate::quantity::display::readable;
+use crate::quantity::{Dimension, display};
 
 pub mod files;
 pub mod names;
@@ -11,11 +10,7 @@ pub mod whole;
 
 /// A value as a person writes it: `16 mm`, not `16.00 mm`.
 pub fn shown(value: f64, dimension: Dimension) -> String {
-    let text = readable(value, dimension);
-    let (number, unit) = text.split_once(' ').map_or((text.as_str(), ""), |(number, _)| (number, &text[number.len()..]));
-    let plain = number.contains('.') && !number.contains('e');
-    let number = if plain { number.trim_end_matches('0').trim_end_matches('.') } else { number };
-    format!("{number}{unit}")
+    display::plain(value, dimension, 4)
 }
 
 /// `a`, `b` or `c`
