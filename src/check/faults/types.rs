@@ -26,6 +26,20 @@ pub fn missing_unit(text: &str, span: Span, number: Option<&str>, wanted: Dimens
         .help(format!("write the unit, such as `{}`", example(number, wanted)))
 }
 
+/// `entries`: a list or range, whose unit stands once, at its end.
+pub fn missing_unit_of_entries(entries: &str, span: Span, wanted: Dimension, wanted_by: &str) -> Diagnostic {
+    let unit = wanted.usual_unit();
+    let fits = entries.len() <= 48 && !entries.contains('\n');
+    let help = if fits {
+        format!("write the unit after the last number or the `]`: `{entries} {unit}`")
+    } else {
+        format!("write the unit after the last number or the `]`, as in `[1, 2, 5] {unit}`")
+    };
+    Diagnostic::new(Code::MissingUnit, format!("`{wanted_by}` wants {}, found numbers without a unit", article(wanted)))
+        .at(span, "these have no unit")
+        .help(help)
+}
+
 pub fn wrong_dimension(
     text: &str,
     span: Span,

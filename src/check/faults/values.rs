@@ -21,11 +21,12 @@ fn allowed(range: Range, dimension: Dimension) -> String {
 pub fn out_of_range(field: &Field, dimension: Dimension, value: f64, text: &str, span: Span) -> Diagnostic {
     let allowed = allowed(field.range, dimension);
     let is = if dimension == Dimension::NUMBER { value.to_string() } else { shown(value, dimension) };
+    let mirrored = text.strip_prefix('-').map(str::trim_start).filter(|_| -value > field.range.low && -value <= field.range.high);
+    let help = mirrored.map_or_else(|| format!("give a value that is {allowed}"), |size| format!("write the size, `{size}`"));
     // A literal is not said twice: "`-10 kg` is -10 kg".
-    let label = if is == text { "outside".to_owned() } else { format!("`{text}` is {is}") };
-    Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name))
-        .at(span, label)
-        .help(format!("give a value that is {allowed}"))
+    let side = if value > field.range.high { "too large" } else { "too small" };
+    let label = if is == text { side.to_owned() } else { format!("`{text}` is {is}") };
+    Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name)).at(span, label).help(help)
 }
 
 pub fn not_whole(field: &str, span: Span, text: &str) -> Diagnostic {
