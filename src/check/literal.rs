@@ -132,7 +132,7 @@ impl<'a> Checker<'a> {
         let (Some(start), Some(end), Some(size)) = known else { return self.fail(values::range_not_constant(expr.span)) };
         let count = (end - start) / size;
         if size == 0.0 || count < 0.0 {
-            return self.fail(values::step_leads_away(step.span, self.text(step.span)));
+            return self.fail(values::step_leads_away(step.span, self.text(step.span), size == 0.0));
         }
         // The step must divide the range to 1e-9 of the number of steps.
         if (count - count.round()).abs() > 1e-9 * count.abs().max(1.0) {

@@ -7,9 +7,12 @@ use crate::quantity::Dimension;
 use crate::schema::{BlockKind, Kind, Variant};
 use crate::source::Span;
 
-/// "a length", "an energy".
+/// "a length", "an energy", "a value in kg/m"
 fn article(dimension: Dimension) -> String {
     let name = dimension.describe();
+    if dimension.name().is_none() {
+        return format!("a value in {name}");
+    }
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     format!("{article} {name}")
 }
@@ -48,14 +51,16 @@ pub fn wrong_dimension(
     wanted: Dimension,
     wanted_by: &str,
 ) -> Diagnostic {
+    let help = match (number, wanted) {
+        (Some(_), _) => format!("write {}, such as `{}`", article(wanted), example(number, wanted)),
+        (None, Dimension::NUMBER) => format!("divide `{text}` by {}, so that a number is left", article(found)),
+        (None, _) => {
+            format!("change `{text}` so that it gives {}, which has the unit `{}`", article(wanted), wanted.usual_unit())
+        }
+    };
     Diagnostic::new(Code::WrongDimension, format!("`{wanted_by}` wants {}, found {}", article(wanted), article(found)))
-        .at(span, format!("this is {} (`{text}`)", article(found)))
-        .help(format!(
-            "`{text}` is {}; `{wanted_by}` wants {}, such as `{}`",
-            article(found),
-            article(wanted),
-            example(number, wanted)
-        ))
+        .at(span, format!("this is {}", article(found)))
+        .help(help)
 }
 
 pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {

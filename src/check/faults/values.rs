@@ -3,7 +3,7 @@
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Interval;
-use crate::quantity::Dimension;
+use crate::quantity::{Dimension, display};
 use crate::schema::{Field, Range};
 use crate::source::Span;
 
@@ -99,20 +99,32 @@ pub fn range_not_constant(span: Span) -> Diagnostic {
         .help("write numbers, or a `let` or `param` of numbers")
 }
 
-pub fn step_leads_away(span: Span, text: &str) -> Diagnostic {
+pub fn step_leads_away(span: Span, text: &str, zero: bool) -> Diagnostic {
+    let help = match text.strip_prefix('-') {
+        _ if zero => "a step is not zero".to_owned(),
+        Some(size) => format!("this range rises: write `step {}`", size.trim_start()),
+        None => format!("this range falls: write `step -{text}`"),
+    };
     Diagnostic::new(Code::BadRange, "the step does not lead from the start to the end")
         .at(span, format!("`{text}` never arrives"))
-        .help("a step is not zero, and negative where the range falls")
+        .help(help)
 }
 
 pub fn step_does_not_divide(range: Span, step: Span, length: f64, count: f64, dimension: Dimension) -> Diagnostic {
-    let show = |steps: f64| {
+    // Only sizes that a person can write down in full: a third of 1 mm is none.
+    let size = |steps: &f64| {
         let size = length / steps;
-        if dimension == Dimension::NUMBER { size.to_string() } else { shown(size, dimension) }
+        let short = display::plain(size, dimension, 6);
+        (short == display::plain(size, dimension, 14)).then_some(short)
     };
-    let (fewer, more) = (count.floor().max(1.0), count.floor().max(0.0) + 1.0);
-    let nearest =
-        if fewer == more { format!("`{}` does", show(more)) } else { format!("`{}` and `{}` do", show(more), show(fewer)) };
+    let whole = |offset: u32| count.floor() + f64::from(offset);
+    let larger = (0..1000).map(|less| count.floor() - f64::from(less)).take_while(|steps| *steps >= 1.0).find_map(|it| size(&it));
+    let smaller = (1..1000).map(whole).find_map(|it| size(&it));
+    let nearest = match (smaller, larger) {
+        (Some(smaller), Some(larger)) => format!("`step {smaller}` and `step {larger}` do"),
+        (Some(one), None) | (None, Some(one)) => format!("`step {one}` does"),
+        (None, None) => "move an end of the range by the rest, or take another step".to_owned(),
+    };
     Diagnostic::new(Code::BadRange, "the step does not divide the range")
         .at(step, "leaves a rest at the end")
         .at(range, "both ends belong to the range")

@@ -9,8 +9,16 @@ use crate::source::Span;
 pub fn several_specimens(head: Span, declared: &[(&str, Span)]) -> Diagnostic {
     let fault = Diagnostic::new(Code::AmbiguousSpecimen, "several specimens are declared, and this procedure names none")
         .at(head, "on which specimen?");
-    let help = format!("add `specimen = …` with {}", one_of(declared.iter().map(|(name, _)| *name)));
+    let lines: Vec<String> = declared.iter().map(|(name, _)| format!("specimen = {name}")).collect();
+    let help = format!("add a line {}", one_of(lines.iter().map(String::as_str)));
     declared.iter().fold(fault, |fault, (name, span)| fault.at(*span, format!("`{name}` is one"))).help(help)
+}
+
+pub fn another_specimen(name: &str, span: Span, on_rig: &str, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::SeveralSpecimens, format!("the rig holds `{on_rig}`, and this procedure tests `{name}`"))
+        .at(span, format!("tests `{name}`"))
+        .at(first, format!("`{on_rig}` is on the rig from here"))
+        .help(format!("one run tests one specimen: write `specimen = {on_rig}`, or give `{name}` a plan of its own"))
 }
 
 pub fn beyond_limits(field: &str, value: f64, dimension: Dimension, span: Span, limit: Interval, limit_at: Span) -> Diagnostic {
