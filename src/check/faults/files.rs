@@ -6,7 +6,7 @@ use crate::source::Span;
 pub fn bad_path(path: &str, span: Span, reason: &str) -> Diagnostic {
     Diagnostic::new(Code::BadPath, format!("`{path}` cannot be used: {reason}"))
         .at(span, "not a path inside the plan's folder")
-        .help("put the file into the plan's folder, or a folder in it, and name it as in `use \"lib/frame.psd\"`")
+        .help("put the file into the plan's folder, or a folder in it: `use \"lib/frame.psd\"`")
 }
 
 pub fn not_found(path: &str, span: Span) -> Diagnostic {

@@ -277,10 +277,11 @@ pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Di
     Diagnostic::new(Code::BadArgument, message).at(span, "not an argument of it").help(help)
 }
 
-/// `within(displacement: 0.01 mm, force_rate: 5 N/s)`: every argument that must stand, by name where there are several.
-fn whole_call(variant: &Variant) -> String {
+/// How a missing argument is given: the whole call where it is short, `within(displacement: 0.01 mm, force_rate: 5 N/s)`,
+/// else the argument alone.
+fn argument_help(variant: &Variant, missing: &Field) -> String {
     let required: Vec<&Field> = variant.arguments.iter().filter(|argument| argument.need == Need::Required).collect();
-    let written = |argument: &&Field| {
+    let written = |argument: &Field| {
         let named = argument.example.starts_with(&format!("{}:", argument.name));
         if named || required.len() == 1 {
             argument.example.to_owned()
@@ -288,13 +289,17 @@ fn whole_call(variant: &Variant) -> String {
             format!("{}: {}", argument.name, argument.example)
         }
     };
-    format!("{}({})", variant.name, required.iter().map(written).collect::<Vec<_>>().join(", "))
+    if required.len() > 2 {
+        return format!("add it between the brackets, as in `{}`", written(missing));
+    }
+    let arguments: Vec<String> = required.iter().map(|argument| written(argument)).collect();
+    format!("write it as in `{}({})`", variant.name, arguments.join(", "))
 }
 
 pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnostic {
     Diagnostic::new(Code::BadArgument, format!("`{}` lacks its argument `{}`", variant.name, field.name))
         .at(span, format!("`{}` is missing", field.name))
-        .help(format!("write it as in `{}`", whole_call(variant)))
+        .help(argument_help(variant, field))
 }
 
 pub fn unknown_parameter(name: &str, known: &[&str]) -> Diagnostic {
