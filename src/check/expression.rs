@@ -137,7 +137,10 @@ impl<'a> Checker<'a> {
         let number = literal(written)
             .and_then(|expr| if let ExprKind::Number { text, .. } = &expr.kind { Some(text.as_str()) } else { None });
         let text = self.text(written.span);
-        let fault = if typed.bare && dimension != Dimension::NUMBER {
+        let entries = matches!(written.kind, ExprKind::List { .. } | ExprKind::Range { .. });
+        let fault = if typed.bare && entries && dimension != Dimension::NUMBER {
+            fault::missing_unit_of_entries(text, written.span, dimension, wanted_by)
+        } else if typed.bare && dimension != Dimension::NUMBER {
             fault::missing_unit(text, written.span, number, dimension, wanted_by)
         } else {
             fault::wrong_dimension(text, written.span, number, typed.dimension, dimension, wanted_by)

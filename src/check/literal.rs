@@ -26,22 +26,38 @@ impl<'a> Checker<'a> {
         let Some(token) = unit else {
             return Some(Typed { bare: true, ..Typed::number(Formula::Constant(value), Dimension::NUMBER, span) });
         };
-        let unit = self.unit(token)?;
+        let unit = self.unit(token, span)?;
         let formula = Formula::Constant(scaled(value, unit.factor));
         Some(Typed { percent: token.node == "%", ..Typed::number(formula, unit.dimension, span) })
     }
 
-    fn unit(&mut self, token: &UnitToken) -> Option<Unit> {
+    /// `number`: the number the unit belongs to, with the unit.
+    fn unit(&mut self, token: &UnitToken, number: Span) -> Option<Unit> {
         let at = |start: usize, length: usize| {
             let start = token.span.start as usize + start;
             Span::new(token.span.file, start, start + length)
         };
         match unit::parse(&token.node) {
             Ok(unit) => Some(unit),
+            // `2 kg*ratio`: the blanks around `*` are missing.
+            Err(UnitError::Unknown { name, start }) if start > 0 && self.is_named(&name) => {
+                let number = if number.start <= token.span.start { number } else { token.span };
+                let before = self.text(Span { end: token.span.end, ..number });
+                let (head, tail) = before.split_at(before.len() - (token.node.len() - start));
+                let (head, operator) = head.split_at(head.len() - 1);
+                let mended = format!("{head} {operator} {tail}");
+                self.fail(names::name_glued_to_unit(&name, at(start, name.len()), &mended))
+            }
             Err(UnitError::Unknown { name, start }) => self.fail(names::unknown_unit(&name, at(start, name.len()))),
             Err(UnitError::Exponent { text, start }) => self.fail(fault::unit_exponent(&text, at(start, text.len()))),
             Err(UnitError::TooLarge) => self.fail(fault::exponent_too_large(token.span)),
         }
+    }
+
+    /// Whether a value, a block or a field has this name.
+    fn is_named(&self, name: &str) -> bool {
+        let mut fields = self.scope.blocks.iter().flat_map(|declared| &declared.block.fields);
+        self.scope.meaning(name).is_some() || fields.any(|entry| entry.key.node == name)
     }
 
     /// A list, or a range with a step, written out.
@@ -54,7 +70,7 @@ impl<'a> Checker<'a> {
 
     fn entries(&mut self, items: &'a [Expr], unit: Option<&'a UnitToken>, span: Span, place: Place) -> Option<Typed> {
         if let Some(token) = unit {
-            self.unit(token)?;
+            self.unit(token, token.span)?;
         }
         let checked: Vec<Option<Typed>> = items
             .iter()
@@ -116,7 +132,7 @@ impl<'a> Checker<'a> {
         let (Some(start), Some(end), Some(size)) = known else { return self.fail(values::range_not_constant(expr.span)) };
         let count = (end - start) / size;
         if size == 0.0 || count < 0.0 {
-            return self.fail(values::step_leads_away(step.span, self.text(step.span)));
+            return self.fail(values::step_leads_away(step.span, self.text(step.span), size == 0.0));
         }
         // The step must divide the range to 1e-9 of the number of steps.
         if (count - count.round()).abs() > 1e-9 * count.abs().max(1.0) {

@@ -115,6 +115,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     let rig = rig::rig_of_run(checker, options.rig.as_deref());
     let limits = checker.limits(rig.as_ref().and_then(|rig| rig.limits));
     let procedures = procedures::procedures(checker);
+    procedures::hold_specimen(checker, &procedures);
     if let Some(limits) = &limits {
         limits::hold_targets(checker, limits);
     }

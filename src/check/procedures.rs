@@ -3,8 +3,9 @@
 use super::checker::Checker;
 use super::faults::{names, whole as fault};
 use super::{damping_sweep, impact, inspect, move_block, stiffness_ramp};
-use crate::plan::Procedure;
+use crate::plan::{Procedure, ProcedureKind};
 use crate::schema::{self, Kind};
+use crate::source::Span;
 
 /// Every procedure; None for those with a fault.
 pub fn procedures(checker: &mut Checker) -> Vec<(usize, Option<Procedure>)> {
@@ -22,6 +23,33 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
         _ => inspect::inspect(checker, block),
     };
     Some(Procedure { name: declared.name?.node.clone(), kind: kind? })
+}
+
+/// One rig holds one specimen: every procedure must test the one that the first of them tests.
+pub fn hold_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    let tested = |kind: &ProcedureKind| match kind {
+        ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
+        ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
+        ProcedureKind::Impact(impact) => Some(impact.specimen),
+        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
+    };
+    let mut on_rig: Option<(usize, Span)> = None;
+    for (block, procedure) in procedures {
+        // Without the first one's specimen nothing can be said of those after it.
+        let Some(procedure) = procedure else { return };
+        let Some(specimen) = tested(&procedure.kind) else { continue };
+        let head = checker.scope.blocks[*block].block.head;
+        let span = checker.given(*block, "specimen").map_or(head, |(_, entry)| entry.value.span);
+        let (first, first_span) = *on_rig.get_or_insert((specimen, span));
+        if specimen != first {
+            let name = |place| {
+                let named = checker.scope.of_kind(Kind::Specimen).nth(place).and_then(|(_, block)| block.name);
+                named.map_or("", |name| name.node.as_str())
+            };
+            let fault = fault::another_specimen(name(specimen), span, name(first), first_span);
+            checker.faults.push(fault);
+        }
+    }
 }
 
 impl Checker<'_> {

@@ -81,6 +81,7 @@ codes! {
     E602 BeyondLimits Error;
     E603 UnknownRig Error;
     E604 LimitsWider Error;
+    E605 SeveralSpecimens Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

@@ -55,6 +55,16 @@ pub fn readable(value: f64, dimension: Dimension) -> String {
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
+/// A value as a person writes it, without the zeros at its end: `16 mm`, not `16.00 mm`.
+#[must_use]
+pub fn plain(value: f64, dimension: Dimension, digits: usize) -> String {
+    let (unit, factor) = readable_unit(value, dimension);
+    let number = significant(value / factor, digits);
+    let decimals = number.contains('.') && !number.contains('e');
+    let number = if decimals { number.trim_end_matches('0').trim_end_matches('.') } else { &number };
+    if unit.is_empty() { number.to_owned() } else { format!("{number} {unit}") }
+}
+
 /// The SI unit of a dimension in the language's own syntax: `m`, `N/m`, `1`, `kg`.
 #[must_use]
 pub fn si_unit(dimension: Dimension) -> String {
@@ -78,6 +88,15 @@ mod tests {
         assert_eq!(readable(0.29, Dimension::TIME), "0.2900 s");
         assert_eq!(readable(0.0, Dimension::LENGTH), "0 mm");
         assert_eq!(readable(564e-6, Dimension::AREA), "564.0 mm^2");
+    }
+
+    #[test]
+    fn plain_values_end_with_a_digit_that_counts() {
+        assert_eq!(plain(0.016, Dimension::LENGTH, 4), "16 mm");
+        assert_eq!(plain(-20.410_256_768_931_806, Dimension::FORCE, 6), "-20.4103 N");
+        assert_eq!(plain(1500.0, Dimension::FORCE, 4), "1.5 kN");
+        assert_eq!(plain(100.0, Dimension::NUMBER, 3), "100");
+        assert_eq!(plain(1e9, Dimension::NUMBER, 3), "1.00e9");
     }
 
     #[test]

@@ -7,6 +7,8 @@ mod load_cell;
 mod settling;
 mod virtual_rig;
 
+use crate::quantity::{Dimension, display};
+
 pub use guard::{Guard, Traversed};
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
 
@@ -34,12 +36,18 @@ pub struct Reading {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RigFault {
     /// A target or reading lies outside a limit: the run is aborted.
-    #[error("{quantity} {value}{unit} is outside its limit {low} .. {high}{unit}", unit = quantity.unit())]
+    #[error("{}", breach(*.quantity, *.value, *.low, *.high))]
     LimitBreached { quantity: LimitedQuantity, value: f64, low: f64, high: f64 },
     #[error("the rig did not settle within {timeout} s")]
     NotSettled { timeout: f64 },
     #[error("{0}")]
     Device(String),
+}
+
+/// Six digits, since a value just beyond its limit must not read as the limit itself.
+fn breach(quantity: LimitedQuantity, value: f64, low: f64, high: f64) -> String {
+    let shown = |value| display::plain(value, quantity.dimension(), 6);
+    format!("{quantity} {} is outside its limit {} .. {}", shown(value), shown(low), shown(high))
 }
 
 /// What a limit bounds.
@@ -55,14 +63,14 @@ pub enum LimitedQuantity {
 }
 
 impl LimitedQuantity {
-    /// The SI unit as it follows a number; nothing for a fraction.
+    /// What kind of quantity it is; the energy error is a fraction.
     #[must_use]
-    pub const fn unit(self) -> &'static str {
+    pub const fn dimension(self) -> Dimension {
         match self {
-            Self::TargetDisplacement | Self::MeasuredDisplacement | Self::Increment | Self::TrackingError => " m",
-            Self::Force => " N",
-            Self::Speed => " m/s",
-            Self::EnergyError => "",
+            Self::TargetDisplacement | Self::MeasuredDisplacement | Self::Increment | Self::TrackingError => Dimension::LENGTH,
+            Self::Force => Dimension::FORCE,
+            Self::Speed => Dimension::VELOCITY,
+            Self::EnergyError => Dimension::NUMBER,
         }
     }
 }

@@ -36,6 +36,17 @@ pub fn field_outside(span: Span, key: &str) -> Diagnostic {
         .help(format!("move it into its block, or name a value with `let {key} = …`"))
 }
 
+/// A line of words that opens no block.
+pub fn stray_words(span: Span, words: &str) -> Diagnostic {
+    let mut short: String = words.chars().take(30).collect();
+    if short.len() < words.len() {
+        short.push('…');
+    }
+    Diagnostic::new(Code::Syntax, format!("`{short}` stands alone on its line and opens no block"))
+        .at(span, "neither a block nor an item")
+        .help("a block opens with `{` on this same line, as in `striker hammer { … }`; a remark stands behind `#`")
+}
+
 pub fn misplaced_block(span: Span) -> Diagnostic {
     Diagnostic::new(Code::Syntax, "found a block or item inside a block, expected `key = value` or `}`")
         .at(span, "expected a field")

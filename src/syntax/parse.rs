@@ -200,8 +200,8 @@ impl Pieces<'_> {
         if let Some(key) = key {
             self.faults.push(faults::field_outside(key.span, &key.node));
         } else if self.alone(statement, Rule::head_alone, Lowering::head).is_some() {
-            let (_, end) = self.bounds(statement);
-            self.faults.push(faults::unexpected(self.tokens.span(end, end), "the end of the line", "`{`"));
+            let (start, end) = self.bounds(statement);
+            self.faults.push(faults::stray_words(self.tokens.span(start, end), &self.tokens.text[start..end]));
         }
     }
 

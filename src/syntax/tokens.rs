@@ -231,7 +231,10 @@ impl<'a> Reader<'a> {
             let glued = after.find([' ', '\t', '\n', '\r', ',', ')', ']', '#']).unwrap_or(after.len());
             let span = self.span(length + glued);
             let whole = &self.rest()[..length + glued];
-            let mended = format!("{} {} {}", &whole[..operator], &whole[operator..=operator], whole[operator + 1..].trim());
+            let number = self.tokens.list.last().filter(|token| token.kind == Kind::Number).map_or(self.at, |token| token.start);
+            let number = &self.tokens.text[number..self.at];
+            let mended =
+                format!("{number}{} {} {}", &whole[..operator], &whole[operator..=operator], whole[operator + 1..].trim());
             self.fault(faults::unit_without_blank(span, mended.trim_end()));
         }
         self.push(Kind::Unit, length);

@@ -5,8 +5,8 @@ use crate::source::Span;
 
 pub fn bad_path(path: &str, span: Span, reason: &str) -> Diagnostic {
     Diagnostic::new(Code::BadPath, format!("`{path}` cannot be used: {reason}"))
-        .at(span, "not a path below the folder of this file")
-        .help("put the file beside or below this one and name it as in `use \"lib/frame.psd\"`")
+        .at(span, "not a path inside the plan's folder")
+        .help("put the file into the plan's folder, or a folder in it: `use \"lib/frame.psd\"`")
 }
 
 pub fn not_found(path: &str, span: Span) -> Diagnostic {

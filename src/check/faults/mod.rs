@@ -1,10 +1,17 @@
 //! The wording of every diagnostic of the check, by what it is about. In: names, texts and places. Out: diagnostics.
 
+use crate::quantity::{Dimension, display};
+
 pub mod files;
 pub mod names;
 pub mod types;
 pub mod values;
 pub mod whole;
+
+/// A value as a person writes it: `16 mm`, not `16.00 mm`.
+pub fn shown(value: f64, dimension: Dimension) -> String {
+    display::plain(value, dimension, 4)
+}
 
 /// `a`, `b` or `c`
 pub fn one_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {

@@ -3,7 +3,7 @@
 use super::{one_of, suggestion};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::quantity::unit::{PREFIXES, UNITS};
-use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Variant};
+use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Need, Variant};
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Block, Ident};
 
@@ -186,6 +186,12 @@ pub fn unknown_unit(name: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UnknownUnit, format!("no unit is called `{name}`")).at(span, "unknown unit").help(help)
 }
 
+pub fn name_glued_to_unit(name: &str, span: Span, mended: &str) -> Diagnostic {
+    Diagnostic::new(Code::UnknownUnit, format!("`{name}` is a name of the plan, not a unit"))
+        .at(span, "read as part of the unit")
+        .help(format!("put blanks around the operator: `{mended}`"))
+}
+
 pub fn unknown_variant(field: &str, name: &str, span: Span, variants: &[Variant]) -> Diagnostic {
     let known = variants.iter().filter(|variant| variant.available).map(|variant| variant.name);
     Diagnostic::new(Code::UnknownVariant, format!("`{field}` knows no `{name}`"))
@@ -271,10 +277,29 @@ pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Di
     Diagnostic::new(Code::BadArgument, message).at(span, "not an argument of it").help(help)
 }
 
+/// How a missing argument is given: the whole call where it is short, `within(displacement: 0.01 mm, force_rate: 5 N/s)`,
+/// else the argument alone.
+fn argument_help(variant: &Variant, missing: &Field) -> String {
+    let required: Vec<&Field> = variant.arguments.iter().filter(|argument| argument.need == Need::Required).collect();
+    let written = |argument: &Field| {
+        let named = argument.example.starts_with(&format!("{}:", argument.name));
+        if named || required.len() == 1 {
+            argument.example.to_owned()
+        } else {
+            format!("{}: {}", argument.name, argument.example)
+        }
+    };
+    if required.len() > 2 {
+        return format!("add it between the brackets, as in `{}`", written(missing));
+    }
+    let arguments: Vec<String> = required.iter().map(|argument| written(argument)).collect();
+    format!("write it as in `{}({})`", variant.name, arguments.join(", "))
+}
+
 pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnostic {
     Diagnostic::new(Code::BadArgument, format!("`{}` lacks its argument `{}`", variant.name, field.name))
         .at(span, format!("`{}` is missing", field.name))
-        .help(format!("write it as in `{}({})`", variant.name, field.example))
+        .help(argument_help(variant, field))
 }
 
 pub fn unknown_parameter(name: &str, known: &[&str]) -> Diagnostic {

@@ -7,9 +7,12 @@ use crate::quantity::Dimension;
 use crate::schema::{BlockKind, Kind, Variant};
 use crate::source::Span;
 
-/// "a length", "an energy".
+/// "a length", "an energy", "a value in kg/m"
 fn article(dimension: Dimension) -> String {
     let name = dimension.describe();
+    if dimension.name().is_none() {
+        return format!("a value in {name}");
+    }
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     format!("{article} {name}")
 }
@@ -26,6 +29,20 @@ pub fn missing_unit(text: &str, span: Span, number: Option<&str>, wanted: Dimens
         .help(format!("write the unit, such as `{}`", example(number, wanted)))
 }
 
+/// `entries`: a list or range, whose unit stands once, at its end.
+pub fn missing_unit_of_entries(entries: &str, span: Span, wanted: Dimension, wanted_by: &str) -> Diagnostic {
+    let unit = wanted.usual_unit();
+    let fits = entries.len() <= 48 && !entries.contains('\n');
+    let help = if fits {
+        format!("write the unit after the last number or the `]`: `{entries} {unit}`")
+    } else {
+        format!("write the unit after the last number or the `]`, as in `[1, 2, 5] {unit}`")
+    };
+    Diagnostic::new(Code::MissingUnit, format!("`{wanted_by}` wants {}, found numbers without a unit", article(wanted)))
+        .at(span, "these have no unit")
+        .help(help)
+}
+
 pub fn wrong_dimension(
     text: &str,
     span: Span,
@@ -34,14 +51,16 @@ pub fn wrong_dimension(
     wanted: Dimension,
     wanted_by: &str,
 ) -> Diagnostic {
+    let help = match (number, wanted) {
+        (Some(_), _) => format!("write {}, such as `{}`", article(wanted), example(number, wanted)),
+        (None, Dimension::NUMBER) => format!("divide `{text}` by {}, so that a number is left", article(found)),
+        (None, _) => {
+            format!("change `{text}` so that it gives {}, which has the unit `{}`", article(wanted), wanted.usual_unit())
+        }
+    };
     Diagnostic::new(Code::WrongDimension, format!("`{wanted_by}` wants {}, found {}", article(wanted), article(found)))
-        .at(span, format!("this is {} (`{text}`)", article(found)))
-        .help(format!(
-            "`{text}` is {}; `{wanted_by}` wants {}, such as `{}`",
-            article(found),
-            article(wanted),
-            example(number, wanted)
-        ))
+        .at(span, format!("this is {}", article(found)))
+        .help(help)
 }
 
 pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {

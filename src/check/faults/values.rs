@@ -1,15 +1,15 @@
 //! Faults of values: E4xx.
 
+use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Interval;
-use crate::quantity::Dimension;
-use crate::quantity::display::readable;
+use crate::quantity::{Dimension, display};
 use crate::schema::{Field, Range};
 use crate::source::Span;
 
 fn allowed(range: Range, dimension: Dimension) -> String {
     let show =
-        |value: f64| if dimension == Dimension::NUMBER || value == 0.0 { value.to_string() } else { readable(value, dimension) };
+        |value: f64| if dimension == Dimension::NUMBER || value == 0.0 { value.to_string() } else { shown(value, dimension) };
     match (range.low.is_finite(), range.above, range.high.is_finite()) {
         (true, true, false) => format!("greater than {}", show(range.low)),
         (true, false, false) => format!("at least {}", show(range.low)),
@@ -20,10 +20,13 @@ fn allowed(range: Range, dimension: Dimension) -> String {
 
 pub fn out_of_range(field: &Field, dimension: Dimension, value: f64, text: &str, span: Span) -> Diagnostic {
     let allowed = allowed(field.range, dimension);
-    let is = if dimension == Dimension::NUMBER { value.to_string() } else { readable(value, dimension) };
-    Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name))
-        .at(span, format!("`{text}` is {is}"))
-        .help(format!("give a value that is {allowed}"))
+    let is = if dimension == Dimension::NUMBER { value.to_string() } else { shown(value, dimension) };
+    let mirrored = text.strip_prefix('-').map(str::trim_start).filter(|_| -value > field.range.low && -value <= field.range.high);
+    let help = mirrored.map_or_else(|| format!("give a value that is {allowed}"), |size| format!("write the size, `{size}`"));
+    // A literal is not said twice: "`-10 kg` is -10 kg".
+    let side = if value > field.range.high { "too large" } else { "too small" };
+    let label = if is == text { side.to_owned() } else { format!("`{text}` is {is}") };
+    Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name)).at(span, label).help(help)
 }
 
 pub fn not_whole(field: &str, span: Span, text: &str) -> Diagnostic {
@@ -47,7 +50,7 @@ pub fn bounds_reversed(span: Span, low: &str, high: &str) -> Diagnostic {
 }
 
 pub fn parameter_out_of_bounds(name: &str, text: &str, span: Span, bounds: Interval, dimension: Dimension) -> Diagnostic {
-    let (low, high) = (readable(bounds.low, dimension), readable(bounds.high, dimension));
+    let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
     Diagnostic::new(Code::OutOfRange, format!("`{name}` is outside its own range {low} .. {high}"))
         .at(span, format!("`{text}` is outside"))
         .help("widen the range or change the value")
@@ -61,7 +64,7 @@ pub fn setting_out_of_range(
     dimension: Dimension,
     bounds_at: Span,
 ) -> Diagnostic {
-    let (low, high) = (readable(bounds.low, dimension), readable(bounds.high, dimension));
+    let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
     Diagnostic::new(Code::SettingOutOfRange, format!("`--set {name}` is outside {low} .. {high}"))
         .at(span, format!("`{text}` is outside"))
         .at(bounds_at, "the range it must stay in")
@@ -96,20 +99,32 @@ pub fn range_not_constant(span: Span) -> Diagnostic {
         .help("write numbers, or a `let` or `param` of numbers")
 }
 
-pub fn step_leads_away(span: Span, text: &str) -> Diagnostic {
+pub fn step_leads_away(span: Span, text: &str, zero: bool) -> Diagnostic {
+    let help = match text.strip_prefix('-') {
+        _ if zero => "a step is not zero".to_owned(),
+        Some(size) => format!("this range rises: write `step {}`", size.trim_start()),
+        None => format!("this range falls: write `step -{text}`"),
+    };
     Diagnostic::new(Code::BadRange, "the step does not lead from the start to the end")
         .at(span, format!("`{text}` never arrives"))
-        .help("a step is not zero, and negative where the range falls")
+        .help(help)
 }
 
 pub fn step_does_not_divide(range: Span, step: Span, length: f64, count: f64, dimension: Dimension) -> Diagnostic {
-    let show = |steps: f64| {
+    // Only sizes that a person can write down in full: a third of 1 mm is none.
+    let size = |steps: &f64| {
         let size = length / steps;
-        if dimension == Dimension::NUMBER { size.to_string() } else { readable(size, dimension) }
+        let short = display::plain(size, dimension, 6);
+        (short == display::plain(size, dimension, 14)).then_some(short)
     };
-    let (fewer, more) = (count.floor().max(1.0), count.floor().max(0.0) + 1.0);
-    let nearest =
-        if fewer == more { format!("`{}` does", show(more)) } else { format!("`{}` and `{}` do", show(more), show(fewer)) };
+    let whole = |offset: u32| count.floor() + f64::from(offset);
+    let larger = (0..1000).map(|less| count.floor() - f64::from(less)).take_while(|steps| *steps >= 1.0).find_map(|it| size(&it));
+    let smaller = (1..1000).map(whole).find_map(|it| size(&it));
+    let nearest = match (smaller, larger) {
+        (Some(smaller), Some(larger)) => format!("`step {smaller}` and `step {larger}` do"),
+        (Some(one), None) | (None, Some(one)) => format!("`step {one}` does"),
+        (None, None) => "move an end of the range by the rest, or take another step".to_owned(),
+    };
     Diagnostic::new(Code::BadRange, "the step does not divide the range")
         .at(step, "leaves a rest at the end")
         .at(range, "both ends belong to the range")

@@ -1,22 +1,29 @@
 //! Faults and warnings of the test as a whole: E6xx and W7xx.
 
-use super::{one_of, suggestion};
+use super::{one_of, shown, suggestion};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Interval;
 use crate::quantity::Dimension;
-use crate::quantity::display::readable;
 use crate::source::Span;
 
 pub fn several_specimens(head: Span, declared: &[(&str, Span)]) -> Diagnostic {
     let fault = Diagnostic::new(Code::AmbiguousSpecimen, "several specimens are declared, and this procedure names none")
         .at(head, "on which specimen?");
-    let help = format!("add `specimen = …` with {}", one_of(declared.iter().map(|(name, _)| *name)));
+    let lines: Vec<String> = declared.iter().map(|(name, _)| format!("specimen = {name}")).collect();
+    let help = format!("add a line {}", one_of(lines.iter().map(String::as_str)));
     declared.iter().fold(fault, |fault, (name, span)| fault.at(*span, format!("`{name}` is one"))).help(help)
 }
 
+pub fn another_specimen(name: &str, span: Span, on_rig: &str, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::SeveralSpecimens, format!("the rig holds `{on_rig}`, and this procedure tests `{name}`"))
+        .at(span, format!("tests `{name}`"))
+        .at(first, format!("`{on_rig}` is on the rig from here"))
+        .help(format!("one run tests one specimen: write `specimen = {on_rig}`, or give `{name}` a plan of its own"))
+}
+
 pub fn beyond_limits(field: &str, value: f64, dimension: Dimension, span: Span, limit: Interval, limit_at: Span) -> Diagnostic {
-    let value = readable(value, dimension);
-    let (low, high) = (readable(limit.low, dimension), readable(limit.high, dimension));
+    let value = shown(value, dimension);
+    let (low, high) = (shown(limit.low, dimension), shown(limit.high, dimension));
     Diagnostic::new(Code::BeyondLimits, format!("`{field}` asks for {value}, outside the limits {low} .. {high}"))
         .at(span, format!("reaches {value}"))
         .at(limit_at, "the limit")
@@ -40,7 +47,7 @@ pub fn limits_wider(field: &str, plan: Span, plan_text: &str, rig: Span, rig_tex
 }
 
 fn time(value: f64) -> String {
-    readable(value, Dimension::TIME)
+    shown(value, Dimension::TIME)
 }
 
 pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
@@ -82,7 +89,7 @@ pub fn nothing_required(span: Span) -> Diagnostic {
 pub fn nothing_runs(span: Span) -> Diagnostic {
     Diagnostic::new(Code::NothingRuns, "the plan runs nothing")
         .at(span, "no procedure follows")
-        .help("add a procedure, such as `stiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }`")
+        .help("add a procedure, such as\nstiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }")
 }
 
 pub fn unused(keyword: &str, name: &str, span: Span) -> Diagnostic {

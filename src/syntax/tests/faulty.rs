@@ -34,7 +34,7 @@ fn syntax_faults_say_what_was_found_and_expected() {
     one("a { x = 1 } let b = 2\n", Syntax, "let");
     one("a { x = 1 kg y = 2 }\n", Syntax, "y");
     one("x = 3\n", Syntax, "x");
-    one("striker pendulum\n", Syntax, "");
+    one("striker pendulum\n", Syntax, "striker pendulum");
     one("3\n", Syntax, "3");
     let (_, found, _) = read("b {\n  mass =\n}\n");
     assert_eq!(found[0].message, "found the end of the line, expected a value");
@@ -163,7 +163,10 @@ fn helps_are_written_for_the_fault() {
             "found `2`, expected a unit, an operator, `,` or `)` | write a unit, an operator, `,` or `)` here",
         ),
         ("b {\n  x = 1 kg y\n}", "found `y`, expected an operator or the end of the line | one field or item stands on one line"),
-        ("striker p\n", "found the end of the line, expected `{` | write `{` here"),
+        (
+            "striker p\n",
+            "`striker p` stands alone on its line and opens no block | a block opens with `{` on this same line, as in `striker hammer { … }`; a remark stands behind `#`",
+        ),
         ("plan \"a\" x {\n}\n", "found `x`, expected `{` | write `{` here"),
         (
             "foo = 3\n",
