@@ -129,7 +129,7 @@ pub(super) fn bound(condition: &ConditionOutcome) -> String {
     const DIGITS: usize = 5;
     let percent = in_percent(condition);
     let (scale, percent) = if percent { (100.0, "\u{a0}%") } else { (1.0, "") };
-    let digits = |value: f64, factor: f64| minus(&trimmed(&significant(scale * value / factor, DIGITS)));
+    let digits = |value: f64, factor: f64| minus(&trimmed(&rounded(scale * value / factor, DIGITS)));
     let number = |value: f64| {
         let (unit, factor) = unit(value, condition.dimension);
         join(&digits(value, factor), &unit) + percent
@@ -160,7 +160,12 @@ pub(super) fn margin(condition: &ConditionOutcome) -> Option<String> {
 
 /// Significant digits, a count as a whole number.
 fn rounded(value: f64, digits: usize) -> String {
-    if value.fract() == 0.0 && value.abs() < 1e9 { format!("{value:.0}") } else { significant(value, digits) }
+    match value.abs() {
+        size if value.fract() == 0.0 && size < 1e9 => format!("{value:.0}"),
+        // A row of zeros is counted by nobody.
+        size if size < 1e-3 => format!("{value:.*e}", digits.saturating_sub(1)),
+        _ => significant(value, digits),
+    }
 }
 
 /// Whether the plan spoke of a plain number as a percentage.

@@ -145,6 +145,9 @@ impl Sheet<'_, '_> {
             if (0.0..=1.0).contains(&place) {
                 self.canvas.polyline(&[(LEFT, y), (RIGHT, y)], Line { width: 1.3, dash: &[6.0, 4.0] }, LIMIT_INK)?;
             }
+            if reference.label.is_empty() {
+                continue;
+            }
             let style = Lettering { colour: LIMIT_INK, ..lettering(12.0, HPos::Left, VPos::Bottom) };
             let width = self.canvas.width(&label, &style)?;
             let above = y - 3.0;
