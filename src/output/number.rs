@@ -164,7 +164,8 @@ fn rounded(value: f64, digits: usize) -> String {
         size if value.fract() == 0.0 && size < 1e9 => format!("{value:.0}"),
         // A row of zeros is counted by nobody.
         size if size < 1e-3 => format!("{value:.*e}", digits.saturating_sub(1)),
-        _ => significant(value, digits),
+        // Rounded first: 0.009999999 is 0.0100, not 0.01000.
+        _ => significant(format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value), digits),
     }
 }
 
