@@ -29,10 +29,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
             let Some(deciding) = summary::governing(requirement) else {
                 return [requirement.verdict.name().to_owned(), name, String::new(), String::new(), String::new()];
             };
-            let value = deciding.value.map_or_else(
-                || "no value".to_owned(),
-                |value| number::with_uncertainty(value, deciding.uncertainty, deciding.dimension),
-            );
+            let value = number::value(deciding).unwrap_or_else(|| "no value".to_owned());
             let margin = number::margin(deciding)
                 .map_or_else(|| deciding.reason.clone().unwrap_or_default(), |margin| format!("margin {margin}"));
             [requirement.verdict.name().to_owned(), name, value, number::bound(deciding), printable(&margin)]

@@ -19,13 +19,14 @@ pub(super) fn stated(value: f64, dimension: Dimension) -> String {
 /// A stated value in the unit of `beside`, so that the two can be compared at sight.
 pub(super) fn stated_beside(value: f64, beside: f64, dimension: Dimension) -> String {
     let (unit, factor) = unit(beside, dimension);
-    let digits = significant(value / factor, 6);
-    let trimmed = match digits.split_once('.') {
-        Some((_, decimals)) if decimals.contains('e') => digits,
-        Some(_) => digits.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        None => digits,
-    };
-    join(&minus(&trimmed), &unit)
+    join(&minus(&trimmed(&significant(value / factor, 6))), &unit)
+}
+
+/// A number without zeros that say nothing: `8.50000` → `8.5`, `1.000e-6` → `1e-6`.
+fn trimmed(digits: &str) -> String {
+    let (lead, power) = digits.find('e').map_or((digits, ""), |at| digits.split_at(at));
+    let lead = if lead.contains('.') { lead.trim_end_matches('0').trim_end_matches('.') } else { lead };
+    format!("{lead}{power}")
 }
 
 /// A computed value in the unit of `beside`.
@@ -112,22 +113,66 @@ pub(super) fn typeset(unit: &str) -> String {
     if let Some(rest) = set.strip_prefix('u') { format!("µ{rest}") } else { set }
 }
 
-/// The bound of a condition as mathematics: `≤ 8.500 mm`, `10 J ± 1.5 J`.
+/// The value of a condition with its uncertainty, in percent where the plan wrote percent.
+pub(super) fn value(condition: &ConditionOutcome) -> Option<String> {
+    let value = condition.value?;
+    Some(if in_percent(condition) {
+        with_uncertainty(100.0 * value, condition.uncertainty.map(|u| 100.0 * u), condition.dimension) + "\u{a0}%"
+    } else {
+        with_uncertainty(value, condition.uncertainty, condition.dimension)
+    })
+}
+
+/// The bound of a condition as mathematics: `≤ 8.5 mm`, `10 ± 1.5 J`, `< 1 %`.
 pub(super) fn bound(condition: &ConditionOutcome) -> String {
-    let number = |value| stated(value, condition.dimension);
+    /// A bound that was computed has more digits than a reader needs.
+    const DIGITS: usize = 5;
+    let percent = in_percent(condition);
+    let (scale, percent) = if percent { (100.0, "\u{a0}%") } else { (1.0, "") };
+    let digits = |value: f64, factor: f64| minus(&trimmed(&rounded(scale * value / factor, DIGITS)));
+    let number = |value: f64| {
+        let (unit, factor) = unit(value, condition.dimension);
+        join(&digits(value, factor), &unit) + percent
+    };
     match condition.bound {
         None => "—".to_owned(),
         Some(Bound::Compare { comparison, limit }) => format!("{} {}", comparison_sign(comparison), number(limit)),
+        // Nearer than a thousandth, the tolerance is readable only in a unit of its own.
+        Some(Bound::Within { target, tolerance }) if tolerance >= 1e-3 * target.abs() && target != 0.0 => {
+            let (unit, factor) = unit(target, condition.dimension);
+            let pair = format!("{} ± {}", digits(target, factor), digits(tolerance, factor));
+            join(&pair, &unit) + percent
+        }
         Some(Bound::Within { target, tolerance }) => format!("{} ± {}", number(target), number(tolerance)),
     }
 }
 
-/// The margin of a condition in the unit of its bound; None where there is no margin.
+/// The margin of a condition in a unit of its own; None where there is no margin.
 pub(super) fn margin(condition: &ConditionOutcome) -> Option<String> {
-    let beside = match condition.bound? {
-        Bound::Compare { limit: at, .. } | Bound::Within { target: at, .. } => at,
-    };
-    condition.margin.map(|margin| text_beside(margin, if beside == 0.0 { margin } else { beside }, condition.dimension))
+    /// The distance to a limit is itself a difference: more digits would be the value's noise.
+    const DIGITS: usize = 3;
+    condition.bound?;
+    let margin = condition.margin?;
+    let (scale, percent) = if in_percent(condition) { (100.0, "\u{a0}%") } else { (1.0, "") };
+    let (unit, factor) = unit(margin, condition.dimension);
+    Some(join(&minus(&rounded(scale * margin / factor, DIGITS)), &unit) + percent)
+}
+
+/// Significant digits, a count as a whole number.
+fn rounded(value: f64, digits: usize) -> String {
+    match value.abs() {
+        size if value.fract() == 0.0 && size < 1e9 => format!("{value:.0}"),
+        // A row of zeros is counted by nobody.
+        size if size < 1e-3 => format!("{value:.*e}", digits.saturating_sub(1)),
+        // Rounded first: 0.009999999 is 0.0100, not 0.01000.
+        _ => significant(format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value), digits),
+    }
+}
+
+/// Whether the plan spoke of a plain number as a percentage.
+fn in_percent(condition: &ConditionOutcome) -> bool {
+    let tolerance_only = matches!(condition.bound, Some(Bound::Within { .. }));
+    condition.dimension == Dimension::NUMBER && condition.text.contains('%') && !tolerance_only
 }
 
 /// The comparison as print sets it.
@@ -178,6 +223,30 @@ mod tests {
         assert_eq!(stated(0.0085, Dimension::LENGTH), "8.5\u{a0}mm");
         assert_eq!(stated_beside(-0.01, 0.2, Dimension::LENGTH), "−0.01\u{a0}m");
         assert_eq!(stated(300_000.0, Dimension::STIFFNESS), "300\u{a0}kN/m");
+    }
+
+    #[test]
+    fn a_margin_has_its_own_unit_and_a_bound_no_empty_zeros() {
+        let condition = |text: &str, dimension, bound: Bound, value| ConditionOutcome {
+            text: text.to_owned(),
+            verdict: crate::verdict::Verdict::Pass,
+            dimension,
+            value: Some(value),
+            uncertainty: None,
+            bound: Some(bound),
+            margin: Some(bound.margin(value)),
+            reason: None,
+        };
+        let below = |limit| Bound::Compare { comparison: Comparison::Less, limit };
+        let travel = condition("x < 0.2 m", Dimension::LENGTH, below(0.2), 0.199_986_2);
+        assert_eq!(margin(&travel).unwrap(), "13.8\u{a0}µm");
+        let closes = condition("abs(e) < 1e-6", Dimension::NUMBER, below(1e-6), 0.0);
+        assert_eq!(bound(&closes), "< 1 × 10⁻⁶");
+        let percent = condition("abs(e) < 1 %", Dimension::NUMBER, below(0.01), 0.001_71);
+        assert_eq!((bound(&percent), value(&percent).unwrap()), ("< 1\u{a0}%".to_owned(), "0.1710\u{a0}%".to_owned()));
+        assert_eq!(margin(&percent).unwrap(), "0.829\u{a0}%");
+        let energy = Bound::Within { target: 9.48, tolerance: 0.948 };
+        assert_eq!(bound(&condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.0)), "9.48 ± 0.948\u{a0}J");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::super::{Run, deviations, number, summary};
 use super::title;
-use crate::record::EventKind;
+use crate::record::{EventKind, Outcome};
 use crate::verdict::{RequirementOutcome, Verdict};
 
 /// Title, run id, verdict and marks.
@@ -24,6 +24,7 @@ pub(super) fn title_and_verdict(run: &Run<'_>) -> Markup {
         section class={ "verdict " (verdict.name()) } {
             strong { (verdict.name().to_uppercase()) }
             (sentence(run))
+            @if let Outcome::Aborted { reason } | Outcome::Faulted { reason } = &run.record.outcome { " Reason: " (reason) "." }
         }
         @if run.record.rig.simulated {
             div.marks {
@@ -93,8 +94,8 @@ fn conditions(requirement: &RequirementOutcome) -> Markup {
                     @if let Some(reason) = &condition.reason { br; span.note { (reason) } }
                 }
                 td.number {
-                    @match condition.value {
-                        Some(value) => { (number::with_uncertainty(value, condition.uncertainty, condition.dimension)) }
+                    @match number::value(condition) {
+                        Some(value) => { (value) }
                         None => { span.missing { "no value" } }
                     }
                 }

@@ -133,6 +133,7 @@ impl Sheet<'_, '_> {
 
     /// Each line with its words where they cover the least data.
     fn references(&self, chart: &Chart) -> Result<(), String> {
+        let mut written: Vec<(Point, Point)> = Vec::new();
         for reference in &chart.references {
             let place = self.y.place(reference.y);
             let label = match place {
@@ -144,16 +145,30 @@ impl Sheet<'_, '_> {
             if (0.0..=1.0).contains(&place) {
                 self.canvas.polyline(&[(LEFT, y), (RIGHT, y)], Line { width: 1.3, dash: &[6.0, 4.0] }, LIMIT_INK)?;
             }
+            if reference.label.is_empty() {
+                continue;
+            }
             let style = Lettering { colour: LIMIT_INK, ..lettering(12.0, HPos::Left, VPos::Bottom) };
             let width = self.canvas.width(&label, &style)?;
-            let bottom = if y - 20.0 < self.top { y + 18.0 } else { y - 3.0 };
-            let covered = |left: &f64| {
-                let inside = |(x, y): Point| (*left..left + width).contains(&x) && (bottom - 16.0..bottom).contains(&y);
-                chart.series.iter().flat_map(|series| &series.points).filter(|point| inside(self.point(**point))).count()
+            let above = y - 3.0;
+            let below = y + 18.0;
+            let covered = |(left, bottom): &Point| {
+                let inside = |(x, y): Point| (*left..left + width).contains(&x) && (bottom - 16.0..*bottom).contains(&y);
+                let data =
+                    chart.series.iter().flat_map(|series| &series.points).filter(|point| inside(self.point(**point))).count();
+                // Words on words are worse than words on any curve; words on the line of another limit nearly so.
+                let (right, top) = (left + width, bottom - 16.0);
+                let words =
+                    written.iter().any(|(from, to)| *left < to.0 + 8.0 && right > from.0 - 8.0 && top < to.1 && *bottom > from.1);
+                let lines =
+                    chart.references.iter().filter(|other| (top..*bottom).contains(&self.point((0.0, other.y)).1)).count();
+                (words, lines, data)
             };
             let last = (RIGHT - width - 8.0).max(LEFT + 8.0);
-            let places = [last, 0.5 * (last + LEFT + 8.0), LEFT + 8.0];
-            let left = places.into_iter().min_by_key(covered).unwrap_or(last);
+            let places = [above, below].into_iter().filter(|bottom| bottom - 17.0 >= self.top && *bottom <= BOTTOM);
+            let places = places.flat_map(|bottom| [last, 0.5 * (last + LEFT + 8.0), LEFT + 8.0].map(|left| (left, bottom)));
+            let (left, bottom) = places.min_by_key(covered).unwrap_or((last, below));
+            written.push(((left, bottom - 16.0), (left + width, bottom)));
             self.canvas.text(&label, (left, bottom), &style)?;
         }
         Ok(())

@@ -89,22 +89,19 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
             if !condition.value.as_result().is_some_and(|r| r.procedure == procedure && r.name == result) {
                 continue;
             }
-            let mut add = |sign: &str, y: f64| {
-                if y.is_finite() {
-                    let label = format!("{}: {sign} {}", short(&requirement.label), number::stated(y, condition.dimension));
-                    lines.push(Reference { label, y });
-                }
-            };
+            // A band is two lines with one text, so that two texts never stand on each other.
+            let label = format!("{}: {}", short(&requirement.label), number::bound(held));
             match held.bound {
-                Some(Bound::Compare { comparison, limit }) => add(number::comparison_sign(comparison), limit),
+                Some(Bound::Compare { limit, .. }) => lines.push(Reference { label, y: limit }),
                 Some(Bound::Within { target, tolerance }) => {
-                    add("≥", target - tolerance);
-                    add("≤", target + tolerance);
+                    lines.push(Reference { label, y: target - tolerance });
+                    lines.push(Reference { label: String::new(), y: target + tolerance });
                 }
                 None => {}
             }
         }
     }
+    lines.retain(|line| line.y.is_finite());
     lines
 }
 
