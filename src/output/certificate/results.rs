@@ -105,6 +105,26 @@ fn force_note(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history:
                 "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the "
                 "blow, the peak is not. " (implied_restitution(run, procedure, impact))
             }
+            (damping_range(run, procedure, impact))
+        }
+    }
+}
+
+/// How far the damping of a sweep is carried beyond the velocities it was measured at: an extrapolation.
+fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> Markup {
+    let mut references = Vec::new();
+    impact.damping.collect_references(&mut references);
+    let swept = references.iter().filter_map(|reference| run.record.procedures.get(reference.procedure.0));
+    let number = |procedure: &ProcedureRecord| match procedure.result("max_velocity").map(|result| &result.value) {
+        Some(ResultValue::Number { value, .. }) => *value,
+        _ => None,
+    };
+    let ranges = swept.filter_map(|sweep| Some((&sweep.name, number(sweep)?, number(procedure)?)));
+    html! {
+        @for (name, measured, used) in ranges.filter(|(_, _, used)| *used > 0.0) {
+            " The damping of " code { (name) } " was measured up to " (number::text(measured, Dimension::VELOCITY)) ", "
+            (number::text(100.0 * measured / used, Dimension::NUMBER)) " % of the largest velocity of the structure here ("
+            (number::text(used, Dimension::VELOCITY)) ")" @if used > measured { ": it is an extrapolation." } @else { "." }
         }
     }
 }
