@@ -7,10 +7,8 @@ use super::fields::whole;
 use super::specimen;
 use crate::formula::{Formula, Operator};
 use crate::plan::{Contact, Impact, InspectTrigger, ProcedureKind, Until};
+use crate::run::MOST_STEPS;
 use crate::schema::Kind;
-
-/// Most steps of one impact.
-const MOST_STEPS: f64 = 1e7;
 
 pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let head = checker.scope.blocks[block].block.head;

@@ -9,9 +9,9 @@ use crate::syntax;
 use crate::syntax::ast::{Ast, ItemKind};
 
 /// How deep files may use files.
-const DEEPEST: usize = 8;
+pub const DEEPEST: usize = 8;
 /// Files of one plan, the plan included.
-const MOST_FILES: usize = 64;
+pub const MOST_FILES: usize = 64;
 
 /// All files of a plan.
 pub struct Imports {

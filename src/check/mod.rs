@@ -29,6 +29,10 @@ mod striker;
 mod tests;
 mod warnings;
 
+pub use imports::{DEEPEST, MOST_FILES};
+pub use literal::MOST_ENTRIES;
+pub use stiffness_ramp::MOST_READINGS;
+
 use crate::diagnostic::Diagnostic;
 use crate::plan::{Plan, PlanFile, Procedure, ProcedureKind};
 use crate::schema::Kind;

@@ -5,7 +5,7 @@ use super::faults::values;
 use crate::plan::{ProcedureKind, StiffnessRamp};
 
 /// Most readings of one ramp.
-const MOST_READINGS: f64 = 1e7;
+pub const MOST_READINGS: f64 = 1e7;
 
 pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let specimen = checker.specimen_of(block);

@@ -1,14 +1,16 @@
-//! `psd limits`: how large a plan may be.
+//! `psd limits`: how large a plan may be. Each bound is read from the one constant that holds it.
 
 use std::fmt::Write as _;
 
 use super::exit::{Exit, Failure};
 use super::output::give;
+use crate::diagnostic::render;
 use crate::syntax::limits as syntax;
+use crate::{check, run};
 
 /// Gives every bound of the language.
 pub fn limits() -> Result<Exit, Failure> {
-    let bounds = [
+    let counted = [
         (syntax::FILE_BYTES, "bytes of one file"),
         (syntax::LINE_BYTES, "bytes of one line"),
         (syntax::NAME_CHARS, "characters of one name"),
@@ -18,8 +20,19 @@ pub fn limits() -> Result<Exit, Failure> {
         (syntax::OPERATORS, "operators from the root of an expression to a leaf"),
         (syntax::TOKENS, "words, numbers, texts and signs of one file"),
         (syntax::FAULTS, "faults reported for one file"),
-    ];
-    give(&bounds.iter().fold(String::new(), |mut text, (bound, what)| {
+        (render::DRAWN, "faults drawn on a terminal, all with `--format json`"),
+        (check::MOST_FILES, "files of one plan, the plan included"),
+        (check::DEEPEST, "files that use files, one inside another"),
+        (check::MOST_ENTRIES, "entries of one list or range"),
+    ]
+    .map(|(bound, what)| (bound.to_string(), what));
+    let reckoned = [
+        (check::MOST_READINGS, "readings of one stiffness ramp"),
+        (run::MOST_SAMPLES, "readings of one stroke of a damping sweep"),
+        (run::MOST_STEPS, "steps of one impact"),
+    ]
+    .map(|(bound, what)| (format!("{bound:.0}"), what));
+    give(&counted.iter().chain(&reckoned).fold(String::new(), |mut text, (bound, what)| {
         let _ = writeln!(text, "{bound:>9}  {what}");
         text
     }))?;

@@ -29,7 +29,7 @@ const LAGS: f64 = 5.0;
 const STEADY_SAMPLES: f64 = 50.0;
 
 /// Readings of one traverse, at most.
-const MOST_SAMPLES: f64 = 1e6;
+pub const MOST_SAMPLES: f64 = 1e6;
 
 pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let Link::Virtual(link) = whole.rig.link;

@@ -17,7 +17,7 @@ use crate::quantity::Dimension;
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
 
 /// Steps of one impact, at most: a record of them takes some 2 GB.
-const MOST_STEPS: f64 = 1e7;
+pub const MOST_STEPS: f64 = 1e7;
 
 pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let (setting, stop) = match Setting::evaluate(plan, &whole.strikers[plan.striker], inputs, session) {

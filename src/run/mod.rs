@@ -19,6 +19,9 @@ pub(crate) mod testing;
 mod tests;
 mod triggers;
 
+pub use damping_sweep::MOST_SAMPLES;
+pub use impact::MOST_STEPS;
+
 use crate::plan::{Plan, Procedure, ProcedureKind};
 use crate::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;

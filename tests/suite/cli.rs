@@ -264,7 +264,19 @@ fn explain_gives_a_page_the_list_and_a_guess() {
     assert_eq!(all.lines().count(), psd::diagnostic::Code::ALL.len());
     assert!(all.lines().all(|line| line.len() > 8), "every page has a title:\n{all}");
     assert!(bench.psd(&["explain", "E22"]).with(2).stderr.contains("did you mean `E2"));
-    assert!(bench.psd(&["limits"]).with(0).stdout.contains("1048576"));
+}
+
+#[test]
+fn limits_lists_the_bounds_of_every_stage() {
+    let listed = Bench::new(&[]).psd(&["limits"]).with(0).stdout;
+    let has = |bound: String, of: &str| listed.lines().any(|line| line.trim().starts_with(&bound) && line.contains(of));
+    assert!(has(psd::syntax::limits::FILE_BYTES.to_string(), "one file"), "{listed}");
+    assert!(has(psd::check::MOST_FILES.to_string(), "files of one plan"), "{listed}");
+    assert!(has(psd::check::DEEPEST.to_string(), "use files"), "{listed}");
+    assert!(has(psd::check::MOST_ENTRIES.to_string(), "one list or range"), "{listed}");
+    assert!(has(format!("{:.0}", psd::check::MOST_READINGS), "stiffness ramp"), "{listed}");
+    assert!(has(format!("{:.0}", psd::run::MOST_SAMPLES), "damping sweep"), "{listed}");
+    assert!(has(format!("{:.0}", psd::run::MOST_STEPS), "one impact"), "{listed}");
 }
 
 #[test]
