@@ -269,6 +269,9 @@ pub struct DampingSweep {
     pub rate: Option<Formula>,
 }
 
+/// Steps of one impact, at most: a record of them takes some 2 GB. `check` counts them where it can, `run` where it must.
+pub const MOST_STEPS: f64 = 1e7;
+
 #[derive(Clone, Debug)]
 pub struct Impact {
     pub specimen: usize,

@@ -6,8 +6,7 @@ use super::faults::values;
 use super::fields::whole;
 use super::specimen;
 use crate::formula::{Formula, Operator};
-use crate::plan::{Contact, Impact, InspectTrigger, ProcedureKind, Until};
-use crate::run::MOST_STEPS;
+use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Until};
 use crate::schema::Kind;
 
 pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {

@@ -6,7 +6,7 @@ use super::exit::{Exit, Failure};
 use super::output::give;
 use crate::diagnostic::render;
 use crate::syntax::limits as syntax;
-use crate::{check, run};
+use crate::{check, plan, run};
 
 /// Gives every bound of the language.
 pub fn limits() -> Result<Exit, Failure> {
@@ -29,7 +29,7 @@ pub fn limits() -> Result<Exit, Failure> {
     let reckoned = [
         (check::MOST_READINGS, "readings of one stiffness ramp"),
         (run::MOST_SAMPLES, "readings of one stroke of a damping sweep"),
-        (run::MOST_STEPS, "steps of one impact"),
+        (plan::MOST_STEPS, "steps of one impact"),
     ]
     .map(|(bound, what)| (format!("{bound:.0}"), what));
     give(&counted.iter().chain(&reckoned).fold(String::new(), |mut text, (bound, what)| {

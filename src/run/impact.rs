@@ -12,12 +12,9 @@ use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::critical_time_step;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use crate::mechanics::summary::{ImpactSummary, SummaryBuilder};
-use crate::plan::{Contact, Impact, Plan, Striker, Until};
+use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until};
 use crate::quantity::Dimension;
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
-
-/// Steps of one impact, at most: a record of them takes some 2 GB.
-pub const MOST_STEPS: f64 = 1e7;
 
 pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let (setting, stop) = match Setting::evaluate(plan, &whole.strikers[plan.striker], inputs, session) {

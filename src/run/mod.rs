@@ -20,7 +20,6 @@ mod tests;
 mod triggers;
 
 pub use damping_sweep::MOST_SAMPLES;
-pub use impact::MOST_STEPS;
 
 use crate::plan::{Plan, Procedure, ProcedureKind};
 use crate::record::{History, NamedResult, Outcome, ProcedureRecord, Record};

@@ -276,7 +276,7 @@ fn limits_lists_the_bounds_of_every_stage() {
     assert!(has(psd::check::MOST_ENTRIES.to_string(), "one list or range"), "{listed}");
     assert!(has(format!("{:.0}", psd::check::MOST_READINGS), "stiffness ramp"), "{listed}");
     assert!(has(format!("{:.0}", psd::run::MOST_SAMPLES), "damping sweep"), "{listed}");
-    assert!(has(format!("{:.0}", psd::run::MOST_STEPS), "one impact"), "{listed}");
+    assert!(has(format!("{:.0}", psd::plan::MOST_STEPS), "one impact"), "{listed}");
 }
 
 #[test]
