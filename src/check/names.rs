@@ -7,7 +7,7 @@ use super::scope::Meaning;
 use super::{specimen, striker};
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::quantity::Dimension;
-use crate::schema::{FieldType, Kind};
+use crate::schema::Kind;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 
@@ -47,8 +47,7 @@ impl<'a> Checker<'a> {
     /// The entry `name` of a block, if it is one with a number and not the entry that asks.
     fn sibling(&self, block: usize, own: usize, name: &str) -> Option<usize> {
         let declared = &self.scope.blocks[block];
-        let is_number = |ty| matches!(ty, FieldType::Quantity(_) | FieldType::Quantities(_) | FieldType::Count);
-        declared.kind.field(name).filter(|field| is_number(field.ty))?;
+        declared.kind.field(name).filter(|field| field.ty.is_numeric())?;
         declared.block.fields.iter().position(|entry| entry.key.node == name).filter(|entry| *entry != own)
     }
 
@@ -109,8 +108,7 @@ impl<'a> Checker<'a> {
             };
             return Some(Typed::number(Formula::Constant(value), export.dimension, span));
         }
-        let is_number = |ty| matches!(ty, FieldType::Quantity(_) | FieldType::Quantities(_) | FieldType::Count);
-        if declared.kind.field(&name.node).is_some_and(|field| is_number(field.ty)) {
+        if declared.kind.field(&name.node).is_some_and(|field| field.ty.is_numeric()) {
             let Some(entry) = declared.block.fields.iter().position(|entry| entry.key.node == name.node) else {
                 return self.fail(fault::field_not_given(declared.kind, declared.name, &name.node, name.span));
             };

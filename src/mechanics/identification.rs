@@ -17,7 +17,7 @@ pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
     if x.len() != y.len() || x.len() < 3 {
         return None;
     }
-    #[allow(clippy::cast_precision_loss)] // no test has 2^53 readings
+    #[expect(clippy::cast_precision_loss, reason = "no test has 2^53 readings")]
     let count = x.len() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
     let (mean_x, mean_y) = (mean(x), mean(y));

@@ -168,7 +168,7 @@ impl<L: Law> Step<L> {
         energies.error = self.input_energy
             - (energies.striker + energies.structure + energies.restoring + energies.damping + energies.contact_loss);
         let step = before.step + 1;
-        #[allow(clippy::cast_precision_loss)] // no run has 2^53 steps
+        #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
         let time = step as f64 * self.bodies.time_step;
         self.state = ImpactState {
             step,

@@ -91,6 +91,14 @@ pub enum FieldType {
     Figures,
 }
 
+impl FieldType {
+    /// Whether its value can stand in a calculation: one number, or several.
+    #[must_use]
+    pub const fn is_numeric(self) -> bool {
+        matches!(self, Self::Quantity(_) | Self::Quantities(_) | Self::Count)
+    }
+}
+
 /// Whether a field must stand, and what holds where it does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Need {
