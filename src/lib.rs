@@ -24,6 +24,7 @@ pub mod check;
 pub mod mechanics;
 pub mod record;
 pub mod rig;
+pub mod simulator;
 
 pub mod run;
 

@@ -188,6 +188,7 @@ mod tests {
                 model: String::new(),
                 serial: String::new(),
                 firmware: String::new(),
+                boot: None,
                 simulated: true,
             },
             procedures: vec![ProcedureRecord {

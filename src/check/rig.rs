@@ -3,7 +3,7 @@
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::whole as fault;
-use crate::plan::{Link, RigPlan, Settle, VirtualLink};
+use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
 use crate::schema::Kind;
 use crate::source::FileId;
 
@@ -47,7 +47,7 @@ fn ideal() -> CheckedRig {
         link: Link::Virtual(VirtualLink::default()),
         settle: AT_ONCE,
         sign: 1.0,
-        calibration: None,
+        calibration: Calibration::default(),
     };
     CheckedRig { plan, limits: None }
 }
@@ -74,7 +74,13 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
         None => Some(None),
     };
     let name = checker.scope.blocks[block].name?.node.clone();
-    let plan = RigPlan { name, link: Link::Virtual(link?), settle: settle?, sign: sign?, calibration: calibration? };
+    let plan = RigPlan {
+        name,
+        link: Link::Virtual(link?),
+        settle: settle?,
+        sign: sign?,
+        calibration: Calibration { reference: calibration?, ..Calibration::default() },
+    };
     Some(CheckedRig { plan, limits: limits? })
 }
 

@@ -31,6 +31,17 @@ pub enum Command {
     },
     /// Lists the bounds of the language: sizes, nesting, steps
     Limits,
+    /// Talks to rigs by hand, or stands in for one
+    Rig {
+        #[command(subcommand)]
+        command: RigCommand,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+pub enum RigCommand {
+    /// Lists the serial ports of this machine
+    List,
 }
 
 #[derive(Debug, Args)]

@@ -6,8 +6,8 @@ use std::rc::Rc;
 
 use crate::plan::{Interval, Plan};
 use crate::record::Record;
-use crate::rig::{DeclaredNoise, Identity, OWN_SPEED, Reading, Rig, RigFault, VirtualRig};
-use crate::run::{self, Inspection, Observer};
+use crate::rig::{DeclaredNoise, EachReading, Identity, OWN_SPEED, Offer, Reading, Rig, RigFault, VirtualRig};
+use crate::run::{self, Inspection, Observer, StepReport};
 
 /// What one procedure asked of the rig, SI.
 #[derive(Clone, Debug)]
@@ -97,10 +97,10 @@ impl Rig for Watched {
         self.inner.time()
     }
 
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
-        self.inner.propose(targets, speed)?;
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        let offer = self.inner.propose(targets, speed)?;
         self.note_target(targets, speed.unwrap_or(OWN_SPEED));
-        Ok(())
+        Ok(offer)
     }
 
     fn execute(&mut self) -> Result<(), RigFault> {
@@ -121,13 +121,17 @@ impl Rig for Watched {
         Ok(reading)
     }
 
-    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Result<Vec<Reading>, RigFault> {
-        let readings = self.inner.traverse(targets, velocity, samples)?;
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         self.note_target(targets, velocity);
+        let mut readings = Vec::new();
+        let traversed = self.inner.traverse(targets, velocity, samples, &mut |reading| {
+            readings.push(reading.clone());
+            each(reading)
+        });
         for reading in &readings {
             self.note_reading(reading, false);
         }
-        Ok(readings)
+        traversed
     }
 
     fn hold(&mut self) {
@@ -163,7 +167,7 @@ impl Observer for Listener {
         });
     }
 
-    fn step_done(&mut self, step: u64, _: f64, _: f64, _: f64) {
+    fn step_done(&mut self, &StepReport { step, .. }: &StepReport) {
         if let Some(reach) = self.reaches.borrow_mut().last_mut() {
             reach.steps = reach.steps.max(step);
         }

@@ -26,8 +26,8 @@ pub struct DryRun<'a> {
 impl<'a> DryRun<'a> {
     pub fn of(plan: &'a Plan) -> Self {
         let mut ideal = plan.clone();
-        let Link::Virtual(link) = plan.rig.link;
-        ideal.rig.link = Link::Virtual(VirtualLink { seed: link.seed, ..VirtualLink::default() });
+        let seed = plan.rig.link.as_virtual().map_or(0, |link| link.seed);
+        ideal.rig.link = Link::Virtual(VirtualLink { seed, ..VirtualLink::default() });
         let (record, reaches) = Watched::run(&ideal);
         let assessment = verdict::assess(&ideal, &record);
         Self { plan, record, reaches, assessment }
@@ -217,7 +217,8 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen, Striker, Until,
+            Behaviour, Calibration, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
+            Striker, Until,
         };
         let specimen = Specimen {
             name: "beam".to_owned(),
@@ -251,7 +252,7 @@ mod tests {
                 link: Link::Virtual(VirtualLink { noise: 5.0, lag: 0.1, ..VirtualLink::default() }),
                 settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 10.0 },
                 sign: 1.0,
-                calibration: None,
+                calibration: Calibration::default(),
             },
             limits: Limits { displacement: Interval { low: -0.1, high: farthest }, ..Limits::NONE },
             procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],

@@ -16,6 +16,7 @@ mod output;
 mod plan_file;
 mod progress;
 mod provenance;
+mod rig;
 mod run;
 mod run_folder;
 mod settings;
@@ -45,6 +46,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
         args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),
         args::Command::Explain { code } => explain::explain(code.as_deref(), settings),
         args::Command::Limits => limits::limits(),
+        args::Command::Rig { command } => rig::rig(command, settings),
     };
     outcome.unwrap_or_else(|failure: Failure| {
         output::tell(&failure.report(settings));

@@ -14,7 +14,7 @@ use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
-use crate::run::{Inspection, Observer};
+use crate::run::{Inspection, Observer, StepReport};
 
 /// How often a question looks whether Ctrl-C was pressed.
 const LOOK: Duration = Duration::from_millis(50);
@@ -99,7 +99,7 @@ impl Observer for Watcher {
         self.bar = Some(bar);
     }
 
-    fn step_done(&mut self, step: u64, time: f64, displacement: f64, force: f64) {
+    fn step_done(&mut self, &StepReport { step, time, displacement, force, .. }: &StepReport) {
         let Some(bar) = &self.bar else { return };
         bar.set_position(step);
         // Most steps are never drawn: words are made for some only.

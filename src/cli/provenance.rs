@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use sha2::{Digest as _, Sha256};
 
 use crate::output::Provenance;
-use crate::plan::{Link, Plan};
+use crate::plan::Plan;
 
 /// The provenance of a run of `plan` by this version of the program.
 pub fn of(plan: &Plan) -> Provenance {
@@ -42,8 +42,7 @@ fn run_id(plan: &Plan, version: &str) -> String {
         part(value);
     }
     part(&plan.rig.name);
-    let Link::Virtual(link) = &plan.rig.link;
-    part(&link.seed.to_string());
+    part(&plan.rig.link.as_virtual().map_or(0, |link| link.seed).to_string());
     hex(&digest.finalize())[..16].to_owned()
 }
 
@@ -57,7 +56,7 @@ fn hex(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Limits, PlanFile, Report, RigPlan, Settle, VirtualLink};
+    use crate::plan::{Calibration, Limits, Link, PlanFile, Report, RigPlan, Settle, VirtualLink};
 
     fn plan(files: &[(&str, &str)], settings: &[(&str, &str)], seed: u64) -> Plan {
         let own = |(name, text): &(&str, &str)| (String::from(*name), String::from(*text));
@@ -69,7 +68,7 @@ mod tests {
             parameters: Vec::new(),
             specimens: Vec::new(),
             strikers: Vec::new(),
-            rig: RigPlan { name: "ideal".to_owned(), link, settle, sign: 1.0, calibration: None },
+            rig: RigPlan { name: "ideal".to_owned(), link, settle, sign: 1.0, calibration: Calibration::default() },
             limits: Limits::NONE,
             procedures: Vec::new(),
             requirements: Vec::new(),

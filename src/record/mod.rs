@@ -1,6 +1,8 @@
 //! The record of a run: everything that happened, typed, SI. `run` writes it; verdict, tables, figures and
 //! certificates are functions of it.
 
+pub mod journal;
+
 use crate::formula::{Estimate, ResultReference, ResultValue, Results};
 pub use crate::mechanics::contact::StepState;
 use crate::mechanics::energy::Energies;

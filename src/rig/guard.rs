@@ -66,7 +66,10 @@ impl<'rig> Guard<'rig> {
         }
         self.settled = false;
         let proposed = self.rig.propose(targets, speed);
-        self.or_hold(proposed)?;
+        let offer = self.or_hold(proposed)?;
+        // What the bytes say is what moves: they are held against the limits once more, as they will be sent.
+        self.check_targets(&offer.targets)?;
+        self.check(LimitedQuantity::Speed, self.limits.speed, offer.speed)?;
         let executed = self.rig.execute();
         self.or_hold(executed)?;
         self.commanded.copy_from_slice(targets);
@@ -131,20 +134,19 @@ impl<'rig> Guard<'rig> {
             return refused(fault);
         }
         self.settled = false;
-        let traversed = self.rig.traverse(targets, velocity, samples);
-        match self.or_hold(traversed) {
-            Err(fault) => refused(fault),
-            Ok(mut readings) => {
-                self.commanded.copy_from_slice(targets);
-                for index in 0..readings.len() {
-                    if let Err(fault) = self.check_reading(&readings[index]) {
-                        readings.truncate(index);
-                        return Traversed { readings, fault: Some(fault) };
-                    }
-                }
-                Traversed { readings, fault: None }
-            }
+        let limits = self.limits;
+        let mut readings = Vec::with_capacity(samples);
+        // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
+        let traversed = self.rig.traverse(targets, velocity, samples, &mut |reading| {
+            outside(&limits, &reading).map_or(Ok(()), Err)?;
+            readings.push(reading);
+            Ok(())
+        });
+        let fault = self.or_hold(traversed).err();
+        if fault.is_none() {
+            self.commanded.copy_from_slice(targets);
         }
+        Traversed { readings, fault }
     }
 
     /// Holds the rig if the energy error (a fraction of the input) lies outside its limit, where one is set.
@@ -174,19 +176,12 @@ impl<'rig> Guard<'rig> {
     }
 
     fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
-        let Limits { displacement, force, .. } = self.limits;
-        for value in &reading.displacement {
-            self.check(LimitedQuantity::MeasuredDisplacement, displacement, *value)?;
-        }
-        for value in &reading.force {
-            self.check(LimitedQuantity::Force, force, *value)?;
-        }
-        Ok(())
+        let judged = outside(&self.limits, reading).map_or(Ok(()), Err);
+        self.or_hold(judged)
     }
 
     fn check(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> Result<(), RigFault> {
-        // Infinity is inside "no limit", but no place for a rig.
-        if limit.contains(value) && value.is_finite() { Ok(()) } else { Err(self.breach(quantity, limit, value)) }
+        if inside(limit, value) { Ok(()) } else { Err(self.breach(quantity, limit, value)) }
     }
 
     fn breach(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> RigFault {
@@ -202,6 +197,21 @@ impl<'rig> Guard<'rig> {
     }
 }
 
+/// Infinity is inside "no limit", but no place for a rig.
+fn inside(limit: Interval, value: f64) -> bool {
+    limit.contains(value) && value.is_finite()
+}
+
+/// The first value of a reading that lies outside its limit.
+fn outside(limits: &Limits, reading: &Reading) -> Option<RigFault> {
+    let displacements = reading.displacement.iter().map(|x| (LimitedQuantity::MeasuredDisplacement, limits.displacement, *x));
+    let forces = reading.force.iter().map(|force| (LimitedQuantity::Force, limits.force, *force));
+    displacements
+        .chain(forces)
+        .find(|(_, limit, value)| !inside(*limit, *value))
+        .map(|(quantity, limit, value)| RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high })
+}
+
 /// Size of a change of target, m. The rounding of the subtraction is not held against the plan: 0.3 − 0.2 is not quite 0.1.
 fn increment(from: f64, to: f64) -> f64 {
     let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs());
@@ -211,7 +221,7 @@ fn increment(from: f64, to: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::Identity;
+    use crate::rig::{EachReading, Identity, Offer};
 
     /// Says what it is told to say, and remembers what it was asked.
     #[derive(Default)]
@@ -220,6 +230,8 @@ mod tests {
         /// Added to the displacement after a move.
         error: f64,
         force: f64,
+        /// Added to a target on its way into the bytes.
+        misspoken: f64,
         proposed: Vec<(f64, Option<f64>)>,
         held: bool,
     }
@@ -227,7 +239,7 @@ mod tests {
     impl Rig for Scripted {
         fn identity(&self) -> Identity {
             let nothing = String::new;
-            Identity { name: nothing(), model: nothing(), serial: nothing(), firmware: nothing(), simulated: true }
+            Identity { name: nothing(), model: nothing(), serial: nothing(), firmware: nothing(), boot: None, simulated: true }
         }
         fn degrees_of_freedom(&self) -> usize {
             1
@@ -235,9 +247,10 @@ mod tests {
         fn time(&self) -> f64 {
             0.0
         }
-        fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
             self.proposed.push((targets[0], speed));
-            Ok(())
+            let said = targets[0] + self.misspoken;
+            Ok(Offer { targets: vec![said], speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None })
         }
         fn execute(&mut self) -> Result<(), RigFault> {
             self.displacement = self.proposed.last().unwrap().0 + self.error;
@@ -247,12 +260,12 @@ mod tests {
             Ok(())
         }
         fn read(&mut self) -> Result<Reading, RigFault> {
-            Ok(Reading { time: 0.0, displacement: vec![self.displacement], force: vec![self.force] })
+            Ok(Reading { time: 0.0, displacement: vec![self.displacement], force: vec![self.force], raw: Vec::new() })
         }
-        fn traverse(&mut self, _: &[f64], _: f64, samples: usize) -> Result<Vec<Reading>, RigFault> {
+        fn traverse(&mut self, _: &[f64], _: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
             let force = |sample: usize| if sample < 2 { self.force } else { f64::NAN };
-            let reading = |sample| Reading { time: 0.0, displacement: vec![0.0], force: vec![force(sample)] };
-            Ok((0..samples).map(reading).collect())
+            let reading = |sample| Reading { time: 0.0, displacement: vec![0.0], force: vec![force(sample)], raw: Vec::new() };
+            (0..samples).map(reading).try_for_each(each)
         }
         fn hold(&mut self) {
             self.held = true;
@@ -294,6 +307,15 @@ mod tests {
         assert_eq!(refused(0.0015, None), LimitedQuantity::Increment);
         assert_eq!(refused(0.001, Some(0.02)), LimitedQuantity::Speed);
         assert_eq!(refused(0.001, Some(f64::NAN)), LimitedQuantity::Speed);
+    }
+
+    #[test]
+    fn what_the_bytes_say_is_held_against_the_limits_too() {
+        // 25 mm is allowed; rounded into the bytes it would be more.
+        let mut rig = Scripted { displacement: 0.0248, misspoken: 3e-4, ..Scripted::default() };
+        let fault = Guard::new(&mut rig, LIMITS).unwrap().move_to(&[0.0249], None).unwrap_err();
+        assert_eq!(quantity(fault), LimitedQuantity::TargetDisplacement);
+        assert!(rig.held && rig.displacement == 0.0248, "not carried out");
     }
 
     #[test]

@@ -2,8 +2,11 @@
 //! degree of freedom. A virtual rig and a real one are the same to `run`, which drives them only through the guard.
 
 mod actuator;
+pub mod device;
+pub mod failpoint;
 mod guard;
 mod load_cell;
+pub mod port;
 mod settling;
 mod virtual_rig;
 
@@ -19,6 +22,8 @@ pub struct Identity {
     pub model: String,
     pub serial: String,
     pub firmware: String,
+    /// Random word of this power-up, where the rig has one: another word means that its position is not to be trusted.
+    pub boot: Option<String>,
     /// Nothing real moved.
     pub simulated: bool,
 }
@@ -30,6 +35,40 @@ pub struct Reading {
     pub time: f64,
     pub displacement: Vec<f64>,
     pub force: Vec<f64>,
+    /// The bytes it was made of, one entry a reply; none on a virtual rig.
+    pub raw: Vec<Vec<u8>>,
+}
+
+/// A move as it would be sent. Nothing has left the program yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Offer {
+    /// Absolute targets, m, read back from the bytes: what the limits are held against.
+    pub targets: Vec<f64>,
+    /// m/s, read back from the bytes where they carry one.
+    pub speed: f64,
+    /// The bytes that carry the target; empty on a virtual rig.
+    pub wire: Vec<u8>,
+    /// Number of the move, where the rig remembers the last one it was given.
+    pub move_id: Option<u64>,
+}
+
+/// The last move a rig remembers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LastMove {
+    pub id: u64,
+    /// m
+    pub target: f64,
+}
+
+/// What went wrong on the line and was mended without harm: for the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Tally {
+    /// Frames sent again for want of an answer.
+    pub resent: u64,
+    /// Replies thrown away: broken, late, doubled or not asked for.
+    pub ignored: u64,
+    /// Readings taken again because one was not usable.
+    pub reread: u64,
 }
 
 /// Why a rig could not do what was asked. The rig holds its position in every case.
@@ -40,6 +79,9 @@ pub enum RigFault {
     LimitBreached { quantity: LimitedQuantity, value: f64, low: f64, high: f64 },
     #[error("the rig did not settle within {timeout} s")]
     NotSettled { timeout: f64 },
+    /// A person wants the rig held now, not at the end of the step.
+    #[error("held on request in the middle of a step")]
+    Interrupted,
     #[error("{0}")]
     Device(String),
 }
@@ -99,11 +141,12 @@ pub trait Rig {
     /// Rig time, s since the run began.
     fn time(&self) -> f64;
 
-    /// Offers absolute targets (m) at a speed (m/s; None: the rig's own). Nothing moves yet.
+    /// Makes the bytes of a move to absolute targets (m) at a speed (m/s; None: the rig's own), and gives what they say.
+    /// Nothing leaves the program and nothing moves yet.
     ///
     /// # Errors
-    /// The rig refuses the target.
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault>;
+    /// The rig has no way to say it.
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault>;
 
     /// Carries out the proposed move, and waits until in position and settled.
     ///
@@ -124,18 +167,32 @@ pub trait Rig {
     fn read(&mut self) -> Result<Reading, RigFault>;
 
     /// Moves at constant velocity (m/s, signed towards the target) to absolute targets, and reads `samples` times at equal times on the way,
-    /// the last at the end of the motion; no settling in between. Readings come back in order.
+    /// the last at the end of the motion; no settling in between. Each reading is given to `each` as it is made; where
+    /// `each` refuses, the rig holds at once and the refusal is the error.
     ///
     /// # Errors
-    /// As `execute` and `read`.
-    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Result<Vec<Reading>, RigFault>;
+    /// As `execute`, `read` and `each`.
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault>;
 
     /// Stops all motion and keeps the load.
     fn hold(&mut self);
 
     /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent stiffness.
     fn declared_noise(&self) -> DeclaredNoise;
+
+    /// The last move the rig remembers, as it said when it was opened.
+    fn last_move(&self) -> Option<LastMove> {
+        None
+    }
+
+    /// What was mended on the line so far.
+    fn tally(&self) -> Tally {
+        Tally::default()
+    }
 }
+
+/// Takes the readings of a traverse as they come.
+pub type EachReading<'a> = &'a mut dyn FnMut(Reading) -> Result<(), RigFault>;
 
 /// What the rig declares of its readings.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -4,10 +4,10 @@
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, settling_time};
-use super::{DeclaredNoise, Identity, Reading, Rig, RigFault};
+use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Settle, Specimen, VirtualLink};
+use crate::plan::{Behaviour, Plan, ProcedureKind, Settle, Specimen, VirtualLink};
 
 /// Speed of a move for which none is asked, m/s: that of a slow quasi-static test.
 pub const OWN_SPEED: f64 = 1e-3;
@@ -60,10 +60,11 @@ impl VirtualRig {
         }
     }
 
-    /// The plan's rig with the plan's specimen on it: the one that the first procedure names.
+    /// The plan's rig with the plan's specimen on it: the one that the first procedure names. In place of a real rig an
+    /// ideal virtual one.
     #[must_use]
     pub fn of_plan(plan: &Plan) -> Self {
-        let Link::Virtual(link) = plan.rig.link;
+        let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
         let named = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
             ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
             ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
@@ -106,6 +107,7 @@ impl VirtualRig {
             time: self.time,
             displacement: vec![self.sign * to_quantum(self.bent, self.link.resolution)],
             force: vec![self.sign * self.cell.read(force, self.time)],
+            raw: Vec::new(),
         }
     }
 }
@@ -117,6 +119,7 @@ impl Rig for VirtualRig {
             model: "virtual rig".to_owned(),
             serial: String::new(),
             firmware: env!("CARGO_PKG_VERSION").to_owned(),
+            boot: None,
             simulated: true,
         }
     }
@@ -129,14 +132,14 @@ impl Rig for VirtualRig {
         self.time
     }
 
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
         let target = self.at_rig(targets)?;
         let speed = speed.unwrap_or(OWN_SPEED);
         if !(speed > 0.0 && speed.is_finite()) {
             return Err(RigFault::Device(format!("a move at {speed} m/s never arrives")));
         }
         self.proposed = Some((target, speed));
-        Ok(())
+        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None })
     }
 
     fn execute(&mut self) -> Result<(), RigFault> {
@@ -175,7 +178,7 @@ impl Rig for VirtualRig {
         Ok(self.reading())
     }
 
-    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Result<Vec<Reading>, RigFault> {
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         let aim = self.actuator.aim(self.at_rig(targets)?);
         let from = self.actuator.reference();
         let seconds = (aim - from) / (self.sign * velocity);
@@ -183,7 +186,6 @@ impl Rig for VirtualRig {
             return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
         }
         let began = self.time;
-        let mut readings = Vec::with_capacity(samples);
         #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
         for sample in 1..=samples {
             let fraction = sample as f64 / samples as f64;
@@ -191,10 +193,14 @@ impl Rig for VirtualRig {
             self.actuator.advance(to, seconds / samples as f64);
             self.time = began + seconds * fraction;
             self.follow();
-            readings.push(self.reading());
+            let reading = self.reading();
+            if let Err(refused) = each(reading) {
+                self.hold();
+                return Err(refused);
+            }
         }
         self.actuator.stop();
-        Ok(readings)
+        Ok(())
     }
 
     fn hold(&mut self) {
@@ -287,7 +293,12 @@ mod tests {
     fn damping_shows_while_moving_and_friction_stays_through_a_pause() {
         let mut rig = VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
         assert_eq!(rig.read().unwrap().force, [0.0]);
-        let readings = rig.traverse(&[0.002], 0.01, 4).unwrap();
+        let mut readings = Vec::new();
+        rig.traverse(&[0.002], 0.01, 4, &mut |reading| {
+            readings.push(reading);
+            Ok(())
+        })
+        .unwrap();
         let forces: Vec<f64> = readings.iter().map(|reading| reading.force[0]).collect();
         for (force, by_hand) in forces.iter().zip([0.5, 1.0, 1.5, 2.0]) {
             assert!((force - (by_hand + 50.0 * 0.01 + 0.25)).abs() < 1e-12, "{forces:?}");
@@ -296,7 +307,7 @@ mod tests {
         rig.pause(5.0).unwrap();
         assert!((rig.read().unwrap().force[0] - 2.25).abs() < 1e-12);
         assert!((go(&mut rig, 0.001).2 - 0.75).abs() < 1e-12);
-        assert!(rig.traverse(&[0.002], -0.01, 4).is_err(), "away from the target");
+        assert!(rig.traverse(&[0.002], -0.01, 4, &mut |_| Ok(())).is_err(), "away from the target");
     }
 
     #[test]

@@ -14,7 +14,7 @@ use super::session::{Session, first};
 use super::stop::Stop;
 use crate::formula::Estimate;
 use crate::mechanics::identification::{damping_ratio, fit_damping};
-use crate::plan::{DampingSweep, Link, Plan};
+use crate::plan::{DampingSweep, Plan};
 use crate::quantity::Dimension;
 use crate::record::{EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep};
 
@@ -32,8 +32,9 @@ const STEADY_SAMPLES: f64 = 50.0;
 pub const MOST_SAMPLES: f64 = 1e6;
 
 pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
-    let Link::Virtual(link) = whole.rig.link;
-    let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag: link.lag };
+    // A real actuator ends each stroke at the velocity asked for, or its own firmware says so: its lag is not known here.
+    let lag = whole.rig.link.as_virtual().map_or(0.0, |link| link.lag);
+    let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag };
     let stop = sweep.run(plan, inputs, session).err();
     let fit = sweep.fit();
     if fit.is_none() && stop.is_none() {
@@ -134,7 +135,7 @@ impl Sweep {
                 damping_force: restoring_force - stiffness * displacement,
                 steady: steady_from <= passed && passed <= 1.0 - END,
             });
-            session.step_done(step, reading.time, displacement, restoring_force)?;
+            session.measured(step, reading.time, displacement, restoring_force)?;
         }
         traversed.fault.map_or(Ok(began..self.steps.len()), |fault| Err(fault.into()))
     }

@@ -2,12 +2,12 @@
 //! step: predict, command, settle, pause, read, feed back. In: masses, stiffness, law, time step. Out: every step and
 //! what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
 
-use super::Performed;
 use super::inputs::Inputs;
 use super::results::result;
 use super::session::Session;
 use super::stop::Stop;
 use super::triggers::Triggers;
+use super::{Performed, StepReport};
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::critical_time_step;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
@@ -144,7 +144,16 @@ impl Strike {
             let state = *solver.complete(measured, restoring_force);
             self.take(&state, session);
             session.guard.check_energy_error(error_fraction(&state, &input))?;
-            session.step_done(state.step, state.time, measured, restoring_force)?;
+            session.step_done(&StepReport {
+                step: state.step,
+                time: state.time,
+                command: target,
+                displacement: measured,
+                velocity: Some(state.velocity),
+                acceleration: Some(state.acceleration),
+                force: restoring_force,
+                energy_error: Some(error_fraction(&state, &input)),
+            })?;
             if plan.until == Until::StrikerStop && solver.finished() {
                 break;
             }

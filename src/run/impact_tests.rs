@@ -1,7 +1,7 @@
 //! Impacts on plans built by hand: the paper's first example, remarks, limits, inspections, resolution of the rig.
 
 use super::testing::{elastic_plan, number, result_of, run_unwatched};
-use super::{Inspection, Observer, run};
+use super::{Inspection, Observer, StepReport, run};
 use crate::formula::Formula;
 use crate::mechanics::contact::StepState;
 use crate::plan::{Contact, Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Until, VirtualLink};
@@ -150,7 +150,7 @@ struct Onlooker(Vec<String>);
 
 impl Observer for Onlooker {
     fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: u64, _: f64, _: f64, _: f64) {}
+    fn step_done(&mut self, _: &StepReport) {}
     fn procedure_finished(&mut self, _: &str) {}
     fn stop_requested(&self) -> bool {
         false

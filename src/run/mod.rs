@@ -32,13 +32,33 @@ use stop::Stop;
 pub trait Observer {
     /// A procedure begins; `steps` is an upper bound of its steps where one is known.
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
-    /// One step is done: its number, virtual or rig time (s), displacement (m), force (N).
-    fn step_done(&mut self, step: u64, time: f64, displacement: f64, force: f64);
+    fn step_done(&mut self, report: &StepReport);
     fn procedure_finished(&mut self, name: &str);
     /// Asked after every step: true stops the run after holding the rig.
     fn stop_requested(&self) -> bool;
     /// A person is to look at the specimen; the answer says whether to go on.
     fn inspect(&mut self, note: &str) -> Inspection;
+}
+
+/// The end of a step, for who watches and for the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepReport {
+    /// Number within its procedure, from 1.
+    pub step: u64,
+    /// Virtual time of an impact, else rig time, s.
+    pub time: f64,
+    /// Target of the step, m.
+    pub command: f64,
+    /// Measured, m.
+    pub displacement: f64,
+    /// Computed, m/s; only of procedures that integrate.
+    pub velocity: Option<f64>,
+    /// Computed, m/s²; only of procedures that integrate.
+    pub acceleration: Option<f64>,
+    /// Measured restoring force, N.
+    pub force: f64,
+    /// Energy error over the input energy; only of procedures that integrate.
+    pub energy_error: Option<f64>,
 }
 
 /// What the person said.
@@ -53,7 +73,7 @@ pub struct Unwatched;
 
 impl Observer for Unwatched {
     fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: u64, _: f64, _: f64, _: f64) {}
+    fn step_done(&mut self, _: &StepReport) {}
     fn procedure_finished(&mut self, _: &str) {}
     fn stop_requested(&self) -> bool {
         false

@@ -33,7 +33,7 @@ fn go(plan: &Move, inputs: &mut Inputs<'_>, session: &mut Session<'_>, steps: &m
             tangent_stiffness: tangent(steps.last(), displacement, restoring_force),
             returning: false,
         });
-        session.step_done(step, wall_time, displacement, restoring_force)?;
+        session.measured(step, wall_time, displacement, restoring_force)?;
     }
     Ok(())
 }

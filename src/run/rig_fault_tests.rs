@@ -4,7 +4,7 @@ use super::testing::{elastic_plan, number, ramp};
 use super::{Unwatched, run};
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::{DeclaredNoise, Identity, Reading, Rig, RigFault, VirtualRig};
+use crate::rig::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault, VirtualRig};
 
 /// What comes after some good readings.
 #[derive(Clone, Copy)]
@@ -32,7 +32,7 @@ impl Rig for Failing {
     fn time(&self) -> f64 {
         self.rig.time()
     }
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
         self.moves_after_hold = self.moves_after_hold.map(|moves| moves + 1);
         self.rig.propose(targets, speed)
     }
@@ -53,8 +53,8 @@ impl Rig for Failing {
             Then::Lost => Err(RigFault::Device("the line is dead".to_owned())),
         }
     }
-    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Result<Vec<Reading>, RigFault> {
-        self.rig.traverse(targets, velocity, samples)
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.rig.traverse(targets, velocity, samples, each)
     }
     fn hold(&mut self) {
         self.moves_after_hold.get_or_insert(0);

@@ -2,7 +2,7 @@
 //! It knows no procedure's physics.
 
 use super::stop::Stop;
-use super::{Inspection, Observer};
+use super::{Inspection, Observer, StepReport};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
 use crate::plan::{Plan, Procedure, ProcedureKind};
@@ -72,9 +72,9 @@ impl<'run> Session<'run> {
     }
 
     /// Tells who watches that a step is done, and asks whether to go on.
-    pub(super) fn step_done(&mut self, step: u64, time: f64, displacement: f64, force: f64) -> Result<(), Stop> {
-        self.step = Some(step);
-        self.observer.step_done(step, time, displacement, force);
+    pub(super) fn step_done(&mut self, report: &StepReport) -> Result<(), Stop> {
+        self.step = Some(report.step);
+        self.observer.step_done(report);
         if self.observer.stop_requested() {
             self.guard.hold();
             return Err(Stop::Person { reason: "stopped on request".to_owned() });
@@ -96,6 +96,22 @@ impl<'run> Session<'run> {
                 Err(Stop::Person { reason })
             }
         }
+    }
+
+    /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
+    pub(super) fn measured(&mut self, step: u64, time: f64, displacement: f64, force: f64) -> Result<(), Stop> {
+        let command = self.commanded();
+        let nothing = None;
+        self.step_done(&StepReport {
+            step,
+            time,
+            command,
+            displacement,
+            velocity: nothing,
+            acceleration: nothing,
+            force,
+            energy_error: nothing,
+        })
     }
 
     /// Where the last target was, m.

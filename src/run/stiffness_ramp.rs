@@ -91,7 +91,7 @@ impl Ramp {
             tangent_stiffness: before.and_then(|before| secant(before, (displacement, restoring_force))),
             returning,
         });
-        session.step_done(step, wall_time, displacement, restoring_force)?;
+        session.measured(step, wall_time, displacement, restoring_force)?;
         Ok((displacement, restoring_force))
     }
 

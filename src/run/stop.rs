@@ -30,9 +30,8 @@ impl Stop {
     pub(super) fn outcome(&self) -> Outcome {
         let reason = self.to_string();
         match self {
-            Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. }) | Self::Person { .. } => {
-                Outcome::Aborted { reason }
-            }
+            Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
+            | Self::Person { .. } => Outcome::Aborted { reason },
             Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Faulted { reason },
         }
     }
@@ -40,7 +39,7 @@ impl Stop {
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
-            Self::Rig(RigFault::NotSettled { .. }) | Self::Person { .. } => EventKind::Hold,
+            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
             Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => EventKind::Fault,
         }
     }

@@ -2,8 +2,8 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen, StiffnessRamp, Striker,
-    VirtualLink,
+    Behaviour, Calibration, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen, StiffnessRamp,
+    Striker, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -21,7 +21,7 @@ pub(crate) fn empty_plan() -> Plan {
             link: Link::Virtual(VirtualLink::default()),
             settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 },
             sign: 1.0,
-            calibration: None,
+            calibration: Calibration::default(),
         },
         limits: Limits::NONE,
         procedures: Vec::new(),

@@ -1,7 +1,7 @@
 //! Whole runs on plans built by hand: what is identified, what a breach leaves, what a seed repeats.
 
 use super::testing::{elastic_plan, number, ramp, result_of, run_unwatched};
-use super::{Inspection, Observer, Unwatched, run};
+use super::{Inspection, Observer, StepReport, Unwatched, run};
 use crate::formula::Formula;
 use crate::plan::{DampingSweep, Interval, Link, Move, Plan, ProcedureKind, StiffnessRamp, VirtualLink};
 use crate::record::{EventKind, History, Outcome, RampStep, SweepStep};
@@ -240,7 +240,7 @@ struct Person {
 
 impl Observer for Person {
     fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: u64, _: f64, _: f64, _: f64) {
+    fn step_done(&mut self, _: &StepReport) {
         self.steps_left -= 1;
     }
     fn procedure_finished(&mut self, _: &str) {}

@@ -12,7 +12,7 @@ const PURE: &[&str] = &[
     "check",
     "mechanics",
     "output",
-    "plan.rs",
+    "plan",
     "formula.rs",
     "verdict.rs",
     "source.rs",
@@ -43,9 +43,10 @@ const IMPURE: &[&str] = &[
 const KNOWS: &[(&[&str], &[&str])] = &[
     (&["pest", "pest_derive"], &["syntax"]),
     (&["polars", "plotters", "png", "maud"], &["output"]),
-    (&["clap", "indicatif", "signal_hook"], &["cli"]),
+    (&["clap", "indicatif", "signal_hook", "ratatui"], &["cli"]),
+    (&["serialport"], &["rig", "simulator", "cli"]),
     (&["miette"], &["diagnostic"]),
-    (&["rand", "rand_pcg", "rand_distr"], &["rig"]),
+    (&["rand", "rand_pcg", "rand_distr"], &["rig", "simulator"]),
 ];
 
 struct SourceText {

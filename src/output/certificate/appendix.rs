@@ -4,7 +4,6 @@ use maud::{Markup, html};
 
 use super::super::Run;
 use super::pairs;
-use crate::plan::Link;
 
 /// Plan, provenance, signatures, end.
 pub(super) fn all(run: &Run<'_>) -> Markup {
@@ -41,7 +40,7 @@ pub(super) fn all(run: &Run<'_>) -> Markup {
 }
 
 fn provenance(run: &Run<'_>) -> Markup {
-    let Link::Virtual(link) = &run.plan.rig.link;
+    let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
     let settings: Vec<String> = run.plan.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let settings = if settings.is_empty() { "none".to_owned() } else { settings.join("; ") };
     let mut rows = vec![

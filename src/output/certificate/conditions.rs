@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::super::{Run, number};
 use super::results::described;
 use super::{given, pairs, words};
-use crate::plan::{Behaviour, Ends, Interval, Limits, Link, Settle, Specimen, Striker};
+use crate::plan::{Behaviour, Ends, Interval, Limits, Settle, Specimen, Striker};
 use crate::quantity::Dimension;
 
 /// Particulars of a report after clause 7.8.2 that the `plan` block may give.
@@ -131,9 +131,9 @@ fn rig(run: &Run<'_>) -> Markup {
         ("Model".to_owned(), given(Some(&identity.model))),
         ("Serial number".to_owned(), given(Some(&identity.serial))),
         ("Firmware".to_owned(), given(Some(&identity.firmware))),
-        ("Calibration".to_owned(), given(run.plan.rig.calibration.as_deref())),
+        ("Calibration".to_owned(), given(run.plan.rig.calibration.reference.as_deref())),
     ];
-    let Link::Virtual(link) = &run.plan.rig.link;
+    let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
     if identity.simulated {
         let terms = [
             ("load-cell noise", link.noise, Dimension::FORCE),

@@ -6,7 +6,6 @@ use super::{
     RequirementSummary, RigSummary, SCHEMA, Summary, Value,
 };
 use crate::formula::{Estimate, ResultValue};
-use crate::plan::Link;
 use crate::quantity::Dimension;
 use crate::quantity::display::si_unit;
 use crate::record::{EventKind, Outcome, ProcedureRecord};
@@ -17,7 +16,7 @@ impl Summary {
     #[must_use]
     pub fn of(run: &Run<'_>) -> Self {
         let Run { plan, record, assessment, provenance } = run;
-        let Link::Virtual(link) = &plan.rig.link;
+        let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
         let (kind, reason) = match &record.outcome {
             Outcome::Completed => ("completed", None),
             Outcome::Aborted { reason } => ("aborted", Some(reason.clone())),

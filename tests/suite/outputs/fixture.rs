@@ -7,9 +7,9 @@ use psd::mechanics::energy::Energies;
 use psd::mechanics::identification::LineFit;
 use psd::output::{Provenance, Run};
 use psd::plan::{
-    Behaviour, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Interval, Limits, Link,
-    Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen, StiffnessRamp, Striker,
-    Test, Until, VirtualLink,
+    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Interval,
+    Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
+    StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
 use psd::record::{
@@ -99,6 +99,7 @@ pub fn finished() -> Finished {
                 model: "virtual".into(),
                 serial: String::new(),
                 firmware: "0.1.0".into(),
+                boot: None,
                 simulated: true,
             },
             procedures: vec![ramp, sweep, hit],
@@ -315,7 +316,7 @@ fn plan() -> Plan {
             link: Link::Virtual(VirtualLink { noise: 0.1, resolution: 1e-6, lag: 0.002, seed: 7, ..VirtualLink::default() }),
             settle: Settle { band: 1e-5, force_rate: 5.0, dwell: 0.3, timeout: 10.0 },
             sign: 1.0,
-            calibration: None,
+            calibration: Calibration::default(),
         },
         limits: Limits {
             displacement: Interval { low: -0.01, high: 0.2 },

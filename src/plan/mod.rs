@@ -1,8 +1,15 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod rig;
+
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
+
+pub use rig::{
+    Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
+    Settle, VirtualLink,
+};
 
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -152,54 +159,6 @@ impl Limits {
         tracking_error: Interval::ALL,
         energy_error: Interval::ALL,
     };
-}
-
-#[derive(Clone, Debug)]
-pub struct RigPlan {
-    /// `ideal` where the plan declares none.
-    pub name: String,
-    pub link: Link,
-    pub settle: Settle,
-    /// Factor on displacement and force signs: +1 or −1.
-    pub sign: f64,
-    /// Text of the calibration reference, if given.
-    pub calibration: Option<String>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum Link {
-    Virtual(VirtualLink),
-}
-
-/// What a virtual rig adds to its specimen. All zero: an ideal rig.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct VirtualLink {
-    /// Standard deviation of the load cell, N.
-    pub noise: f64,
-    /// Quantum of the displacement reading, m.
-    pub resolution: f64,
-    /// Quantum of the force reading, N.
-    pub force_resolution: f64,
-    /// First-order time constant of the actuator, s.
-    pub lag: f64,
-    /// Fraction of each increment not reached.
-    pub tracking: f64,
-    /// Drift of the load cell, N/s of rig time.
-    pub drift: f64,
-    pub seed: u64,
-}
-
-/// When a reading counts. A zero band is "at once".
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settle {
-    /// Displacement stays within this of the target, m.
-    pub band: f64,
-    /// |dF/dt| stays under this, N/s.
-    pub force_rate: f64,
-    /// … for this long, s.
-    pub dwell: f64,
-    /// Longest wait, s; past it the rig holds and the run is aborted.
-    pub timeout: f64,
 }
 
 #[derive(Clone, Debug)]

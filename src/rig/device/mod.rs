@@ -1,0 +1,148 @@
+//! What a real rig is made of: devices on ports, each speaking a dialect. A [`Device`] turns SI into bytes and back, and
+//! does nothing else: settling, limits, medians and the record are not its business.
+
+use crate::plan::Limits;
+
+use super::{LastMove, Tally};
+
+/// Who a device says it is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DeviceIdentity {
+    pub model: String,
+    pub serial: String,
+    pub firmware: String,
+    /// Random word of this power-up.
+    pub boot: Option<String>,
+    /// It says itself that it is a stand-in.
+    pub simulated: bool,
+}
+
+/// A move in the device's own words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Move {
+    /// What is sent, in this order; each waits for its answer.
+    pub frames: Vec<Vec<u8>>,
+    /// m, read back from the bytes.
+    pub target: f64,
+    /// m/s, read back from the bytes, or as asked where they carry none.
+    pub speed: f64,
+    /// Where the device remembers it.
+    pub id: Option<u64>,
+}
+
+/// One answer to "where are you and what do you feel": what a device does not know is None.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// The device's own clock, s.
+    pub time: Option<f64>,
+    /// m
+    pub displacement: Option<f64>,
+    pub force: Option<Force>,
+    /// Whether it says it is still moving.
+    pub moving: Option<bool>,
+    pub flags: Flags,
+    /// The bytes of the answer, one entry a reply.
+    pub raw: Vec<Vec<u8>>,
+}
+
+/// Force as the device gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Force {
+    Newtons(f64),
+    /// Raw counts, with the lowest and highest the converter knows.
+    Counts {
+        count: i64,
+        low: i64,
+        high: i64,
+    },
+}
+
+/// What a device says of itself beside its reading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a bit of a status word of its own")]
+pub struct Flags {
+    pub saturated: bool,
+    pub stale: bool,
+    pub limit_high: bool,
+    pub limit_low: bool,
+    pub emergency_stop: bool,
+    pub unreferenced: bool,
+    /// The device itself says its reading has not settled.
+    pub unsettled: bool,
+    pub watchdog_tripped: bool,
+}
+
+/// Why a device did not do what it was asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DeviceFault {
+    /// The same frame was sent again and again, and nothing usable came.
+    #[error("no usable answer within {seconds} s")]
+    Silent { seconds: f64 },
+    #[error("the line is gone: {reason}")]
+    Lost { reason: String },
+    /// The device said no.
+    #[error("refused: {reason}")]
+    Refused { reason: String },
+    /// It started anew, so that its position is not to be trusted.
+    #[error("the device started anew ({was} became {is}): its position is not to be trusted")]
+    Rebooted { was: String, is: String },
+    /// An answer came that is no reading: not to be used, may be asked again.
+    #[error("`{}` is no reading: {reason}", raw.escape_ascii())]
+    NoReading { raw: Vec<u8>, reason: String },
+    /// The device is not set up as it must be, or cannot do this.
+    #[error("{0}")]
+    Unfit(String),
+    /// A person wants the rig held now.
+    #[error("held on request")]
+    Interrupted,
+}
+
+/// One device on one port. All calls end within a bounded time.
+pub trait Device: Send {
+    /// Opens the conversation: asks who it is, checks that it is set up as it must be. Moves nothing.
+    ///
+    /// # Errors
+    /// It does not answer, or is not fit.
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault>;
+
+    /// The bytes of a move to `target` (m, absolute) at `speed` (m/s), and what they say when read back. Sends nothing.
+    ///
+    /// # Errors
+    /// The device cannot move, or cannot say this.
+    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault>;
+
+    /// Sends a move and gives back once it is accepted, not when it is done.
+    ///
+    /// # Errors
+    /// It was refused or not heard.
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault>;
+
+    /// Asks once for a reading; a reply that is none is [`DeviceFault::NoReading`].
+    ///
+    /// # Errors
+    /// As every call.
+    fn sample(&mut self) -> Result<Sample, DeviceFault>;
+
+    /// Stops and keeps the load, as soon as it can be said.
+    ///
+    /// # Errors
+    /// It could not be said; the caller has [`Device::emergency`] left.
+    fn hold(&mut self) -> Result<(), DeviceFault>;
+
+    /// Bytes that stop the device whatever it is doing, sent without waiting for an answer. Empty: there are none.
+    fn emergency(&self) -> Vec<u8>;
+
+    /// Tells the device the limits of this run, where it can hold them too. It may only narrow its own.
+    ///
+    /// # Errors
+    /// It refuses them.
+    fn narrow_limits(&mut self, limits: &Limits) -> Result<(), DeviceFault>;
+
+    /// The last move it remembers, from `identify`.
+    fn last_move(&self) -> Option<LastMove> {
+        None
+    }
+
+    /// What was mended on the line so far.
+    fn tally(&self) -> Tally;
+}

@@ -1,0 +1,67 @@
+//! Failpoints: every guard can be switched off by a test of its own, and only by a test, so that each is shown to be
+//! the one that catches its fault. In the program a guard is always on: [`on`] is then the constant true.
+
+/// A guard of a real rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Guarding {
+    TargetLimits,
+    ReadingLimits,
+    WireNumber,
+    Following,
+    Settling,
+    Invalid,
+    Saturation,
+    Frozen,
+    Median,
+    Reboot,
+    Sequence,
+    Checksum,
+    Resend,
+    Away,
+    GateZero,
+    GateSign,
+    GateStiffness,
+    IntentDurable,
+    SampleDurable,
+    FailedSync,
+    Lock,
+}
+
+/// Whether the guard is on.
+#[cfg(not(test))]
+#[must_use]
+pub const fn on(_: Guarding) -> bool {
+    true
+}
+
+#[cfg(test)]
+pub use switch::{on, without};
+
+#[cfg(test)]
+mod switch {
+    use std::cell::Cell;
+
+    use super::Guarding;
+
+    thread_local! {
+        static OFF: Cell<Option<Guarding>> = const { Cell::new(None) };
+    }
+
+    /// Whether the guard is on in this thread.
+    #[must_use]
+    pub fn on(guard: Guarding) -> bool {
+        OFF.get() != Some(guard)
+    }
+
+    /// Does `what` with one guard off in this thread.
+    pub fn without<T>(guard: Guarding, what: impl FnOnce() -> T) -> T {
+        struct Restore(Option<Guarding>);
+        impl Drop for Restore {
+            fn drop(&mut self) {
+                OFF.set(self.0);
+            }
+        }
+        let _restore = Restore(OFF.replace(Some(guard)));
+        what()
+    }
+}

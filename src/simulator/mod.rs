@@ -1,0 +1,18 @@
+//! Stand-ins for rigs: what a controller does with the bytes it gets, and a specimen that answers. In: bytes and time.
+//! Out: bytes. It shares no parsing code with the drivers in `rig`, so that one cannot hide a mistake of the other.
+
+mod bench;
+
+pub use bench::{Bench, BenchSettings};
+
+/// What a controller's firmware does. It owns its dialect; the [`Bench`] owns motion, specimen and sensors.
+pub trait Firmware: Send {
+    /// Bytes came from the host, in pieces of any size. The bench's time has been brought up to now.
+    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8>;
+
+    /// Time has passed: what the controller says or does by itself (streams, watchdogs).
+    fn tick(&mut self, bench: &mut Bench) -> Vec<u8>;
+
+    /// Power was cycled: everything it remembered is gone.
+    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8>;
+}
