@@ -23,6 +23,8 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
             EventKind::LimitBreach => "Limit reached",
             EventKind::Hold => "Hold",
             EventKind::Fault => "Rig fault",
+            EventKind::Resume => "Interruption",
+            EventKind::Amendment => "Amendment",
             EventKind::Note | EventKind::Inspection | EventKind::Remark => continue,
         };
         found.push(format!("{what}{}: {}.", place(event.procedure.as_deref(), event.step), event.text.trim_end_matches('.')));

@@ -3,6 +3,8 @@
 
 pub mod journal;
 
+use serde::{Deserialize, Serialize};
+
 use crate::formula::{Estimate, ResultReference, ResultValue, Results};
 pub use crate::mechanics::contact::StepState;
 use crate::mechanics::energy::Energies;
@@ -34,7 +36,7 @@ pub enum Outcome {
 }
 
 /// Something worth a line in the report.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// Rig time, s.
     pub time: f64,
@@ -44,7 +46,8 @@ pub struct Event {
     pub text: String,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum EventKind {
     Note,
     Inspection,
@@ -53,6 +56,10 @@ pub enum EventKind {
     Fault,
     /// A numerical remark: the last blow is cut, the peak is not a peak, …
     Remark,
+    /// The run goes on after it was cut off or stopped.
+    Resume,
+    /// The plan, the program or a limit is no longer what the run began with.
+    Amendment,
 }
 
 #[derive(Clone, Debug)]

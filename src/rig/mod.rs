@@ -10,13 +10,15 @@ pub mod port;
 mod settling;
 mod virtual_rig;
 
+use serde::{Deserialize, Serialize};
+
 use crate::quantity::{Dimension, display};
 
 pub use guard::{Guard, Traversed};
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
 
 /// Who the rig says it is.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     pub name: String,
     pub model: String,
@@ -53,7 +55,7 @@ pub struct Offer {
 }
 
 /// The last move a rig remembers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastMove {
     pub id: u64,
     /// m
@@ -72,7 +74,8 @@ pub struct Tally {
 }
 
 /// Why a rig could not do what was asked. The rig holds its position in every case.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum RigFault {
     /// A target or reading lies outside a limit: the run is aborted.
     #[error("{}", breach(*.quantity, *.value, *.low, *.high))]
@@ -93,7 +96,8 @@ fn breach(quantity: LimitedQuantity, value: f64, low: f64, high: f64) -> String 
 }
 
 /// What a limit bounds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LimitedQuantity {
     TargetDisplacement,
     MeasuredDisplacement,
@@ -195,7 +199,7 @@ pub trait Rig {
 pub type EachReading<'a> = &'a mut dyn FnMut(Reading) -> Result<(), RigFault>;
 
 /// What the rig declares of its readings.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct DeclaredNoise {
     /// N
     pub force: f64,

@@ -1,6 +1,7 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
 mod damping_sweep;
+mod gate;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
@@ -13,6 +14,7 @@ mod rig_fault_tests;
 mod session;
 mod stiffness_ramp;
 mod stop;
+pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
 #[cfg(test)]
@@ -21,8 +23,10 @@ mod triggers;
 
 pub use damping_sweep::MOST_SAMPLES;
 
-use crate::plan::{Plan, Procedure, ProcedureKind};
-use crate::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
+use serde::{Deserialize, Serialize};
+
+use crate::plan::{Plan, Procedure, ProcedureKind, SafeState};
+use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
 use inputs::Inputs;
 use session::Session;
@@ -34,6 +38,8 @@ pub trait Observer {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
     fn step_done(&mut self, report: &StepReport);
     fn procedure_finished(&mut self, name: &str);
+    /// Something worth a line in the report has happened.
+    fn event(&mut self, _: &Event) {}
     /// Asked after every step: true stops the run after holding the rig.
     fn stop_requested(&self) -> bool;
     /// A person is to look at the specimen; the answer says whether to go on.
@@ -41,7 +47,7 @@ pub trait Observer {
 }
 
 /// The end of a step, for who watches and for the record.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepReport {
     /// Number within its procedure, from 1.
     pub step: u64,
@@ -62,11 +68,15 @@ pub struct StepReport {
 }
 
 /// What the person said.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Inspection {
     GoOn { note: Option<String> },
     Stop { reason: String },
 }
+
+/// Said in the record before a stopped run takes the load off.
+pub(crate) const UNLOADING: &str = "unloading to where the run began";
 
 /// Watches nothing, goes on at every inspection.
 pub struct Unwatched;
@@ -103,6 +113,12 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
             return Record { events: vec![event], outcome: stop.outcome(), ..record };
         }
     };
+    if let Some(link) = plan.rig.link.as_real()
+        && let Err(stop) = gate::pass(plan, link, &mut session)
+    {
+        session.end(&stop);
+        return Record { events: session.into_events(), outcome: stop.outcome(), ..record };
+    }
     for procedure in &plan.procedures {
         session.enter(procedure);
         let mut inputs = Inputs::new(&record);
@@ -118,6 +134,10 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         });
         if let Some(stop) = stop {
             session.end(&stop);
+            let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
+            if unload && stop.leaves_the_rig_sound() {
+                session.unload();
+            }
             record.outcome = stop.outcome();
             break;
         }

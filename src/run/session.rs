@@ -2,7 +2,7 @@
 //! It knows no procedure's physics.
 
 use super::stop::Stop;
-use super::{Inspection, Observer, StepReport};
+use super::{Inspection, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
 use crate::plan::{Plan, Procedure, ProcedureKind};
@@ -16,6 +16,8 @@ pub(super) struct Session<'run> {
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
     step: Option<u64>,
+    /// Where the rig was found, m.
+    home: f64,
 }
 
 impl<'run> Session<'run> {
@@ -34,10 +36,14 @@ impl<'run> Session<'run> {
             Err(RigFault::Device(format!("these procedures move one degree of freedom, and the rig has {axes}")))
         };
         match guard {
-            Ok(guard) => Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None }),
+            Ok(guard) => {
+                let home = guard.commanded()[0];
+                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home })
+            }
             Err(fault) => {
                 let stop = Stop::Rig(fault);
                 let event = Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() };
+                observer.event(&event);
                 Err(Box::new((event, stop)))
             }
         }
@@ -66,8 +72,18 @@ impl<'run> Session<'run> {
         self.leave();
     }
 
+    /// Takes the load off after a stop, inside the same limits; what stands in the way is one more event.
+    pub(super) fn unload(&mut self) {
+        self.event(EventKind::Hold, UNLOADING.to_owned());
+        let unloaded = self.go_to(self.home, None).and_then(|()| self.read());
+        if let Err(stop) = unloaded {
+            self.event(stop.event_kind(), format!("not unloaded: {stop}"));
+        }
+    }
+
     pub(super) fn event(&mut self, kind: EventKind, text: String) {
         let event = Event { time: self.guard.time(), procedure: self.procedure.clone(), step: self.step, kind, text };
+        self.observer.event(&event);
         self.events.push(event);
     }
 

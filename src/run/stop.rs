@@ -12,6 +12,10 @@ pub(super) enum Stop {
     Person {
         reason: String,
     },
+    /// A real rig did not prove itself before the first step.
+    Gate {
+        reason: String,
+    },
     /// An input of a procedure has no value, for it reads a result that does not exist.
     NoInput {
         field: &'static str,
@@ -32,15 +36,22 @@ impl Stop {
         match self {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
             | Self::Person { .. } => Outcome::Aborted { reason },
-            Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Faulted { reason },
+            Self::Rig(RigFault::Device(_)) | Self::Gate { .. } | Self::NoInput { .. } | Self::BadInput { .. } => {
+                Outcome::Faulted { reason }
+            }
         }
+    }
+
+    /// Whether rig and readings are still to be trusted with another move.
+    pub(super) const fn leaves_the_rig_sound(&self) -> bool {
+        !matches!(self, Self::Rig(RigFault::Device(_) | RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Gate { .. })
     }
 
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
             Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
-            Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => EventKind::Fault,
+            Self::Rig(RigFault::Device(_)) | Self::Gate { .. } | Self::NoInput { .. } | Self::BadInput { .. } => EventKind::Fault,
         }
     }
 }
@@ -50,6 +61,7 @@ impl std::fmt::Display for Stop {
         match self {
             Self::Rig(fault) => write!(f, "{fault}"),
             Self::Person { reason } => f.write_str(reason),
+            Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
             Self::BadInput { field, value, wanted } => {
                 write!(f, "`{field}` came out as {value} in SI units, but must be {wanted}")

@@ -73,6 +73,8 @@ pub(in crate::output) const fn event_kind(kind: EventKind) -> &'static str {
         EventKind::Hold => "hold",
         EventKind::Fault => "fault",
         EventKind::Remark => "remark",
+        EventKind::Resume => "resume",
+        EventKind::Amendment => "amendment",
     }
 }
 

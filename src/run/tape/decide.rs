@@ -1,0 +1,214 @@
+//! Where a cut-off run stands, before it may go on. In: its record, and what the rig says now without having moved. Out:
+//! from which record on it is done again, or why it must not be. A target is sent again only if it never arrived.
+
+use super::entry::{Doubt, IntentBody, OperatorBody, RigBody, SampleBody};
+use super::played::{Played, Unplayable, body};
+use crate::record::journal::{EntryKind, Line};
+use crate::record::{Event, EventKind};
+use crate::rig::{Identity, Reading};
+use crate::run::Inspection;
+
+/// How near the rig must stand to where the record left it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bands {
+    /// m
+    pub displacement: f64,
+    /// N, for the relaxation since.
+    pub force: f64,
+}
+
+/// The record goes on from here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// Records from this one on no longer count.
+    pub from: u64,
+    pub doubt: Doubt,
+    /// The last reading that counts: m, N.
+    pub recorded: Option<(Vec<f64>, Vec<f64>)>,
+}
+
+/// Why a run must not go on by itself.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    #[error("the run came to its end: there is nothing to go on with")]
+    Ended,
+    #[error("nothing was recorded of the rig: start the run anew")]
+    NothingRecorded,
+    #[error("the specimen was unloaded when the run stopped: its history cannot be continued")]
+    Unloaded,
+    #[error("this is another rig: {found} answered, the record is of {recorded}")]
+    OtherRig { recorded: String, found: String },
+    #[error("the rig started anew since ({recorded} became {found}): reference it, then say so with --re-referenced")]
+    Rebooted { recorded: String, found: String },
+    #[error(
+        "the rig stands at {found} m; the record left it at {recorded} m, {band} m is allowed: bring it back by hand, then resume"
+    )]
+    Elsewhere { recorded: f64, found: f64, band: f64 },
+    #[error("the rig stands at {found} m, between nothing the record knows: from {from} m to {to} m it was to go")]
+    Lost { from: f64, to: f64, found: f64 },
+    #[error("the force is {found} N, the record left it at {recorded} N, {band} N is allowed: look at the specimen, then say so with --accept-relaxation")]
+    Relaxed { recorded: f64, found: f64, band: f64 },
+    #[error(transparent)]
+    Unplayable(#[from] Unplayable),
+}
+
+/// Whether the rig that answers is the one of the record, and has not started anew.
+///
+/// # Errors
+/// It is not; `re_referenced` accepts a new start.
+pub fn same_rig(recorded: &Identity, found: &Identity, re_referenced: bool) -> Result<(), Refusal> {
+    let named = |identity: &Identity| format!("{} {}", identity.model, identity.serial);
+    if (&recorded.model, &recorded.serial) != (&found.model, &found.serial) {
+        return Err(Refusal::OtherRig { recorded: named(recorded), found: named(found) });
+    }
+    if recorded.boot != found.boot && !re_referenced {
+        let boot = |identity: &Identity| identity.boot.clone().unwrap_or_else(|| "none".to_owned());
+        return Err(Refusal::Rebooted { recorded: boot(recorded), found: boot(found) });
+    }
+    Ok(())
+}
+
+/// Decides from the record, the rig's own memory and one reading.
+///
+/// # Errors
+/// The rig is not where the record can leave it.
+pub fn decide(
+    played: &Played,
+    rig: &RigBody,
+    found: &Reading,
+    bands: Bands,
+    accept_relaxation: bool,
+) -> Result<Decision, Refusal> {
+    if played.ended {
+        return Err(Refusal::Ended);
+    }
+    let lines = without_the_end(played)?;
+    let Some(last) = lines.last() else { return Err(Refusal::NothingRecorded) };
+    let place = Place { position: found.displacement[0], band: bands.displacement };
+    let recorded = last_reading(&lines)?;
+    let last_intent = lines.iter().rposition(|line| line.kind == EntryKind::Intent);
+    let decision = |from, doubt| Decision { from, doubt, recorded: recorded.clone() };
+
+    let Some(at) = last_intent else {
+        // Nothing was ever sent: only readings at rest.
+        let start = recorded.as_ref().map_or(0.0, |(x, _)| x[0]);
+        place.expect(start)?;
+        relaxed(recorded.as_ref(), found, bands, accept_relaxation)?;
+        return Ok(decision(last.seq + 1, Doubt::None));
+    };
+    let intent: IntentBody = body(&lines[at])?;
+    let before = place_before(&lines[..at])?;
+    let target = intent.to[0];
+    if let Some(samples) = intent.samples {
+        let read = lines[at..].iter().filter(|line| line.kind == EntryKind::Sample).count();
+        if read < samples {
+            return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before }));
+        }
+    }
+    if at + 1 < lines.len() {
+        place.expect(target)?;
+        relaxed(recorded.as_ref(), found, bands, accept_relaxation)?;
+        return Ok(decision(last.seq + 1, Doubt::None));
+    }
+    if let Some(Doubt::Stroke { .. }) = played.doubt {
+        return Ok(decision(last.seq + 1, played.doubt.unwrap_or(Doubt::None)));
+    }
+    let doubt = match (rig.last_move, intent.id) {
+        (Some(moved), Some(id)) if moved.id >= id && place.is(moved.target) && place.is(target) => Doubt::Executed,
+        (Some(moved), Some(id)) if moved.id < id => {
+            place.expect(before)?;
+            Doubt::NotExecuted
+        }
+        (Some(_), Some(_)) => place.on_the_way(before, target)?,
+        // Without a memory of moves the place alone tells; where both are as near, the same place is asked for again.
+        _ if place.is(before) => Doubt::NotExecuted,
+        _ if place.is(target) => Doubt::Executed,
+        _ => place.on_the_way(before, target)?,
+    };
+    Ok(decision(last.seq + 1, doubt))
+}
+
+/// The records without what only says that the run stopped: those are said anew, or no more.
+fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
+    let mut lines: Vec<Line> = played.lines.iter().cloned().collect();
+    while let Some(last) = lines.last() {
+        match last.kind {
+            EntryKind::Fault => {}
+            EntryKind::Event => {
+                let event: Event = body(last)?;
+                if event.kind == EventKind::Hold && event.text == super::super::UNLOADING {
+                    return Err(Refusal::Unloaded);
+                }
+            }
+            EntryKind::Operator => match body(last)? {
+                OperatorBody::AskedToStop | OperatorBody::Answered { answer: Inspection::Stop { .. }, .. } => {}
+                OperatorBody::Answered { .. } => break,
+            },
+            _ => break,
+        }
+        lines.pop();
+    }
+    let unloading = |line: &Line| {
+        line.kind == EntryKind::Event && line.body.get("text").and_then(|text| text.as_str()) == Some(super::super::UNLOADING)
+    };
+    if lines.iter().any(unloading) { Err(Refusal::Unloaded) } else { Ok(lines) }
+}
+
+fn last_reading(lines: &[Line]) -> Result<Option<(Vec<f64>, Vec<f64>)>, Unplayable> {
+    let last = lines.iter().rev().find(|line| line.kind == EntryKind::Sample);
+    last.map(|line| body::<SampleBody>(line).map(|sample| (sample.x, sample.r))).transpose()
+}
+
+/// Where the rig stood before an intent: at the target before, or where it was first read.
+fn place_before(lines: &[Line]) -> Result<f64, Unplayable> {
+    if let Some(line) = lines.iter().rev().find(|line| line.kind == EntryKind::Intent) {
+        return body::<IntentBody>(line).map(|intent| intent.to[0]);
+    }
+    let first = lines.iter().find(|line| line.kind == EntryKind::Sample);
+    first.map_or(Ok(0.0), |line| body::<SampleBody>(line).map(|sample| sample.x[0]))
+}
+
+/// A relaxation beyond its band is for a person to accept.
+fn relaxed(
+    recorded: Option<&(Vec<f64>, Vec<f64>)>,
+    found: &Reading,
+    bands: Bands,
+    accept: bool,
+) -> Result<(), Refusal> {
+    let Some((_, recorded)) = recorded else { return Ok(()) };
+    let inside = (found.force[0] - recorded[0]).abs() <= bands.force;
+    if inside || accept {
+        return Ok(());
+    }
+    Err(Refusal::Relaxed { recorded: recorded[0], found: found.force[0], band: bands.force })
+}
+
+#[derive(Clone, Copy)]
+struct Place {
+    /// m
+    position: f64,
+    band: f64,
+}
+
+impl Place {
+    fn is(self, place: f64) -> bool {
+        (self.position - place).abs() <= self.band
+    }
+
+    fn expect(self, recorded: f64) -> Result<(), Refusal> {
+        if self.is(recorded) {
+            Ok(())
+        } else {
+            Err(Refusal::Elsewhere { recorded, found: self.position, band: self.band })
+        }
+    }
+
+    fn on_the_way(self, from: f64, to: f64) -> Result<Doubt, Refusal> {
+        let (low, high) = (from.min(to) - self.band, from.max(to) + self.band);
+        if low <= self.position && self.position <= high {
+            Ok(Doubt::HeldOnTheWay)
+        } else {
+            Err(Refusal::Lost { from, to, found: self.position })
+        }
+    }
+}

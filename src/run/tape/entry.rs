@@ -1,0 +1,194 @@
+//! What each record of a journal says, typed. In: what happened. Out: JSON bodies, and back. Numbers are SI; a float is
+//! written as the shortest decimal that reads back to the same bits, so that nothing is lost. It knows no file.
+
+use serde::{Deserialize, Serialize};
+
+use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
+use crate::run::Inspection;
+
+/// HEADER: all a run starts from. Enough to check the plan again, on any machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    pub run_id: String,
+    pub psd: String,
+    /// Digest of the program's sources.
+    pub build: String,
+    /// The plan first, then what it used: name, SHA-256, text.
+    pub files: Vec<HeaderFile>,
+    /// `--set` values as given.
+    pub settings: Vec<(String, String)>,
+    /// Name of the rig, as `--rig` would say it; None: the default of the plan.
+    pub rig: Option<String>,
+    /// As `--date` gave it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+    /// Of a real rig: who stands by, on which machine, when it began.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operator: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub host: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub began: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HeaderFile {
+    pub name: String,
+    pub sha256: String,
+    pub text: String,
+}
+
+/// RIG: who answered, when the run began and at every resumption.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RigBody {
+    /// Rig time, s.
+    pub t: f64,
+    pub identity: Identity,
+    pub axes: usize,
+    pub noise: DeclaredNoise,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last_move: Option<LastMove>,
+}
+
+/// INTENT: a target about to leave.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct IntentBody {
+    /// Number of the target in this run, from 1.
+    pub n: u64,
+    /// Rig time of the record before, s.
+    pub t: f64,
+    /// As computed, m.
+    pub to: Vec<f64>,
+    /// As asked, m/s; of a stroke signed.
+    pub speed: Option<f64>,
+    /// As the bytes say, m and m/s, where they differ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub said: Option<Vec<f64>>,
+    pub rate: f64,
+    /// The bytes that carry the target, escaped.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wire: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<u64>,
+    /// Of a stroke read on the way: how many readings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall: Option<String>,
+}
+
+/// SAMPLE: a reading.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SampleBody {
+    /// Rig time, s.
+    pub t: f64,
+    /// m
+    pub x: Vec<f64>,
+    /// N
+    pub r: Vec<f64>,
+    /// The replies it was made of, escaped.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub raw: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall: Option<String>,
+}
+
+/// STEP: the end of a step, as computed; in a replay it must come out the same, bit for bit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepBody {
+    pub step: u64,
+    /// Virtual time of an impact, else rig time, s.
+    pub time: f64,
+    /// Target, m.
+    pub u: f64,
+    /// Measured, m.
+    pub x: f64,
+    /// m/s
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub v: Option<f64>,
+    /// m/s²
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub a: Option<f64>,
+    /// N
+    pub r: f64,
+    /// Energy error over the input; none where it is not finite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub e: Option<f64>,
+}
+
+/// OPERATOR: what a person answered, or asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "what")]
+pub enum OperatorBody {
+    Answered { note: String, answer: Inspection },
+    AskedToStop,
+}
+
+/// FAULT: a call on the rig that failed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FaultBody {
+    pub t: f64,
+    pub call: Call,
+    pub fault: RigFault,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Call {
+    Propose,
+    Execute,
+    Pause,
+    Read,
+    Traverse,
+}
+
+/// AMEND: plan or program are no longer those of the header, or of the amendment before.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AmendBody {
+    pub by: String,
+    pub reason: String,
+    /// What differs, in words.
+    pub differences: Vec<String>,
+    /// What holds from here on.
+    pub header: Header,
+}
+
+/// RESUME: the run goes on. Records from `from` on, up to this one, no longer count; they stay as evidence.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResumeBody {
+    pub from: u64,
+    pub by: String,
+    pub reason: String,
+    pub doubt: Doubt,
+    /// Found before anything moved: m, N.
+    pub found: (Vec<f64>, Vec<f64>),
+    /// As recorded last: m, N.
+    pub recorded: Option<(Vec<f64>, Vec<f64>)>,
+    /// Rig time at which the record goes on, s.
+    pub t: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall: Option<String>,
+}
+
+/// What became of a target that was recorded and perhaps sent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "target")]
+pub enum Doubt {
+    /// The record ended at rest: nothing was in doubt.
+    None,
+    /// It was carried out; its reading is late.
+    Executed,
+    /// It never arrived: it is sent now.
+    NotExecuted,
+    /// It was held on the way: the same absolute target is sent anew.
+    HeldOnTheWay,
+    /// A stroke was cut off: the rig goes back to where it began (m), and the stroke begins anew.
+    Stroke { back_to: f64 },
+}
+
+/// The bytes of a frame as text that any log can hold.
+pub fn escaped(bytes: &[u8]) -> String {
+    bytes.escape_ascii().to_string()
+}

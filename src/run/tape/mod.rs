@@ -1,0 +1,114 @@
+//! The tape: a run is a function of its plan and of what rig and people answer, so that a record of the answers is the
+//! run. In: calls of a run on its rig and its observer. Out: the same calls, passed on and recorded, or answered from
+//! the record. The same code records, verifies, reports and resumes: a resumed run is the recorded one, played back to its
+//! end, and then alive.
+//!
+//! Order of a step on a real rig: INTENT durable → target sent → SAMPLE durable → integrated → STEP.
+
+mod decide;
+mod entry;
+mod observer;
+mod played;
+mod rig;
+mod state;
+#[cfg(test)]
+mod tests;
+
+pub use decide::{Bands, Decision, Refusal, decide, same_rig};
+pub use entry::{AmendBody, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody};
+pub use observer::TapedObserver;
+pub use played::{Mismatch, Played, Unplayable};
+pub use rig::TapedRig;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use crate::plan::Plan;
+use crate::record::journal::{EntryKind, Journal, JournalFault};
+use crate::record::{Event, Outcome, Record};
+use crate::rig::Rig;
+use state::State;
+
+use super::{Observer, Unwatched, run};
+
+/// Gives the wall clock, as text; a virtual run has none.
+pub type Wall = Box<dyn Fn() -> Option<String>>;
+
+/// Runs the plan on a rig and records every answer. The header stands in the journal already.
+///
+/// # Errors
+/// The journal cannot be ended; the record is complete all the same.
+pub fn record(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer, journal: Journal, wall: Wall) -> Recorded {
+    let state = State::recording(journal, wall);
+    perform(plan, Some(rig), observer, state)
+}
+
+/// Plays a record back: no rig, nobody asked. What the journal holds is all that is known.
+#[must_use]
+pub fn replay(plan: &Plan, played: Played) -> Replayed {
+    let state = State::replaying(played);
+    let Recorded { record, mismatch, .. } = perform(plan, None, &mut Unwatched, state);
+    Replayed { record, mismatch }
+}
+
+/// Plays a record back and goes on with it on the rig. RESUME stands in the journal already and is the last of `played`.
+pub fn resume(
+    plan: &Plan,
+    played: Played,
+    rig: &mut dyn Rig,
+    observer: &mut dyn Observer,
+    journal: Journal,
+    wall: Wall,
+) -> Recorded {
+    let state = State::resuming(played, journal, wall);
+    perform(plan, Some(rig), observer, state)
+}
+
+/// A run, and what became of its journal.
+pub struct Recorded {
+    pub record: Record,
+    /// The record says one thing and the plan another.
+    pub mismatch: Option<Mismatch>,
+    /// Why the journal could not be kept; the run was held there.
+    pub fault: Option<JournalFault>,
+    /// Records in the journal, and the chain at its head.
+    pub sealed: Option<(u64, String)>,
+}
+
+/// A run as its record tells it.
+pub struct Replayed {
+    pub record: Record,
+    pub mismatch: Option<Mismatch>,
+}
+
+fn perform(plan: &Plan, rig: Option<&mut dyn Rig>, observer: &mut dyn Observer, state: State) -> Recorded {
+    let state = Rc::new(RefCell::new(state));
+    let mut rig = TapedRig::new(rig, Rc::clone(&state));
+    let mut observer = TapedObserver::new(observer, Rc::clone(&state));
+    let mut record = run(plan, &mut rig, &mut observer);
+    let mut state = state.borrow_mut();
+    add_interruptions(&mut record, state.take_interruptions());
+    if state.mismatch().is_none() && record.outcome == Outcome::Completed {
+        state.end();
+    } else {
+        state.close();
+    }
+    Recorded { record, mismatch: state.take_mismatch(), fault: state.take_fault(), sealed: state.sealed() }
+}
+
+/// Resumptions and amendments are events of the record, each where it happened.
+fn add_interruptions(record: &mut Record, interruptions: Vec<Event>) {
+    for event in interruptions {
+        let at = record.events.iter().position(|other| other.time > event.time).unwrap_or(record.events.len());
+        record.events.insert(at, event);
+    }
+}
+
+/// Writes the first record of a journal.
+///
+/// # Errors
+/// It cannot be written.
+pub fn begin(journal: &mut Journal, header: &Header) -> Result<(), JournalFault> {
+    journal.append(EntryKind::Header, header)?;
+    journal.promise()
+}

@@ -1,0 +1,139 @@
+//! The taped observer: steps are held against the record while there is any, and recorded after it; what a person
+//! answered is answered from the record, and nobody is asked twice.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use super::entry::{OperatorBody, StepBody};
+use super::state::State;
+use crate::record::Event;
+use crate::record::journal::EntryKind;
+use crate::run::{Inspection, Observer, StepReport};
+
+/// Who watches a run, with every word on record.
+pub struct TapedObserver<'run> {
+    inner: &'run mut dyn Observer,
+    state: Rc<RefCell<State>>,
+}
+
+impl<'run> TapedObserver<'run> {
+    pub(super) fn new(inner: &'run mut dyn Observer, state: Rc<RefCell<State>>) -> Self {
+        Self { inner, state }
+    }
+
+    /// Appends, where the run is alive. A record that fails stops the run at the next call on the rig.
+    fn append(&self, kind: EntryKind, body: &impl serde::Serialize) {
+        let mut state = self.state.borrow_mut();
+        if state.goes_on() {
+            let _ = state.append(kind, body);
+        }
+    }
+}
+
+impl Observer for TapedObserver<'_> {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.inner.procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        let step = StepBody::of(report);
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            if let Ok(recorded) = state.peek::<StepBody>(EntryKind::Step, "the end of a step") {
+                if recorded.same(&step) {
+                    state.consume();
+                } else {
+                    let called = serde_json::to_string(&step).unwrap_or_default();
+                    state.disagrees(called);
+                }
+            }
+        } else {
+            self.append(EntryKind::Step, &step);
+        }
+        self.inner.step_done(report);
+    }
+
+    fn procedure_finished(&mut self, name: &str) {
+        self.inner.procedure_finished(name);
+    }
+
+    fn event(&mut self, event: &Event) {
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            if let Ok(recorded) = state.peek::<Event>(EntryKind::Event, &event.text) {
+                if recorded == *event {
+                    state.consume();
+                } else {
+                    state.disagrees(event.text.clone());
+                }
+            }
+        } else {
+            self.append(EntryKind::Event, event);
+        }
+        self.inner.event(event);
+    }
+
+    fn stop_requested(&self) -> bool {
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            let asked = state.next_kind() == Some(EntryKind::Operator)
+                && matches!(state.peek(EntryKind::Operator, "a request to stop"), Ok(OperatorBody::AskedToStop));
+            if asked {
+                state.consume();
+            }
+            return asked;
+        }
+        let asked = self.inner.stop_requested();
+        if asked {
+            self.append(EntryKind::Operator, &OperatorBody::AskedToStop);
+        }
+        asked
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            return match state.peek(EntryKind::Operator, "an answer") {
+                Ok(OperatorBody::Answered { note: asked, answer }) if asked == note => {
+                    state.consume();
+                    answer
+                }
+                Ok(_) => Inspection::Stop { reason: state.disagrees(format!("an answer to `{note}`")).to_string() },
+                Err(fault) => Inspection::Stop { reason: fault.to_string() },
+            };
+        }
+        if !self.state.borrow().goes_on() {
+            return Inspection::Stop { reason: super::state::ended().to_string() };
+        }
+        let answer = self.inner.inspect(note);
+        self.append(EntryKind::Operator, &OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });
+        answer
+    }
+}
+
+impl StepBody {
+    fn of(report: &StepReport) -> Self {
+        Self {
+            step: report.step,
+            time: report.time,
+            u: report.command,
+            x: report.displacement,
+            v: report.velocity,
+            a: report.acceleration,
+            r: report.force,
+            e: report.energy_error.filter(|error| error.is_finite()),
+        }
+    }
+
+    /// Bit for bit.
+    fn same(&self, other: &Self) -> bool {
+        let numbers = |body: &Self| {
+            [Some(body.time), Some(body.u), Some(body.x), body.v, body.a, Some(body.r), body.e].map(|value| value.map(f64::to_bits))
+        };
+        self.step == other.step && numbers(self) == numbers(other)
+    }
+}

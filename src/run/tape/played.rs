@@ -1,0 +1,135 @@
+//! A journal's records as they count: what a resumption has set aside is left out, and what must be told of it is kept.
+//! In: lines. Out: what a replay answers from. It judges no physics.
+
+use std::collections::VecDeque;
+
+use serde::de::DeserializeOwned;
+
+use super::entry::{AmendBody, Doubt, Header, ResumeBody, RigBody};
+use crate::record::journal::{EntryKind, Line, Recovered};
+use crate::record::{Event, EventKind};
+
+/// What a journal says of its run.
+#[derive(Clone, Debug)]
+pub struct Played {
+    /// What holds at the end: that of the last amendment, else of the first record.
+    pub header: Header,
+    /// The rig as it was when the run began.
+    pub rig: Option<RigBody>,
+    /// The rig as it answered last.
+    pub last_rig: Option<RigBody>,
+    /// Records that count, in order: targets, readings, steps, answers, faults, events.
+    pub lines: VecDeque<Line>,
+    /// Resumptions and amendments, as events of the run.
+    pub interruptions: Vec<Event>,
+    /// What the last resumption found of a target in doubt, as long as nothing followed it.
+    pub doubt: Option<Doubt>,
+    /// Rig time of the last record, s.
+    pub time: f64,
+    /// Whether the run came to its own end.
+    pub ended: bool,
+}
+
+/// The file is whole, but is no record of a run.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unplayable {
+    #[error("record {seq} is no {kind:?} that this version can read: {reason}")]
+    Body { seq: u64, kind: EntryKind, reason: String },
+    #[error("it has no header")]
+    NoHeader,
+}
+
+/// The run, done again from the record, came out otherwise.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("record {seq}: the run calls for {called}, but the record has {found}")]
+pub struct Mismatch {
+    pub seq: u64,
+    pub called: String,
+    pub found: String,
+}
+
+impl Played {
+    /// Sorts the records of a journal.
+    ///
+    /// # Errors
+    /// A record cannot be read.
+    pub fn of(recovered: &Recovered) -> Result<Self, Unplayable> {
+        let mut lines = recovered.lines.iter();
+        let first = lines.next().filter(|line| line.kind == EntryKind::Header).ok_or(Unplayable::NoHeader)?;
+        let mut played = Self {
+            header: body(first)?,
+            rig: None,
+            last_rig: None,
+            lines: VecDeque::with_capacity(recovered.lines.len()),
+            interruptions: Vec::new(),
+            doubt: None,
+            time: 0.0,
+            ended: recovered.ended,
+        };
+        for line in lines {
+            played.take(line)?;
+        }
+        Ok(played)
+    }
+
+    fn take(&mut self, line: &Line) -> Result<(), Unplayable> {
+        if let Some(time) = line.body.get("t").and_then(serde_json::Value::as_f64) {
+            self.time = time;
+        }
+        match line.kind {
+            EntryKind::Rig => {
+                let rig: RigBody = body(line)?;
+                self.rig.get_or_insert_with(|| rig.clone());
+                self.last_rig = Some(rig);
+            }
+            EntryKind::Amend => {
+                let amend: AmendBody = body(line)?;
+                let text = format!("{} ({}): {}", amend.differences.join("; "), amend.by, amend.reason);
+                self.interrupted(EventKind::Amendment, text);
+                self.header = amend.header;
+            }
+            EntryKind::Resume => {
+                let resume: ResumeBody = body(line)?;
+                while self.lines.back().is_some_and(|last| last.seq >= resume.from) {
+                    self.lines.pop_back();
+                }
+                self.interrupted(EventKind::Resume, told(&resume));
+                self.doubt = Some(resume.doubt);
+            }
+            EntryKind::Recover => self.interrupted(EventKind::Resume, "a torn end of the record was put aside".to_owned()),
+            EntryKind::Header | EntryKind::End => {}
+            EntryKind::Intent | EntryKind::Sample | EntryKind::Step | EntryKind::Operator | EntryKind::Event | EntryKind::Fault => {
+                self.doubt = None;
+                self.lines.push_back(line.clone());
+            }
+        }
+        Ok(())
+    }
+
+    fn interrupted(&mut self, kind: EventKind, text: String) {
+        self.interruptions.push(Event { time: self.time, procedure: None, step: None, kind, text });
+    }
+}
+
+/// A resumption, told in one sentence.
+fn told(resume: &ResumeBody) -> String {
+    let target = match resume.doubt {
+        Doubt::None => "no target was in doubt",
+        Doubt::Executed => "the last target had been carried out, its reading is late",
+        Doubt::NotExecuted => "the last target had not arrived and was sent",
+        Doubt::HeldOnTheWay => "the last target had been held on the way and was sent anew",
+        Doubt::Stroke { .. } => "a stroke had been cut off and was begun anew",
+    };
+    let relaxed = match (&resume.recorded, resume.found.1.as_slice()) {
+        (Some((_, recorded)), [found]) if recorded.len() == 1 => {
+            format!("; the force had changed by {:.3} N", found - recorded[0])
+        }
+        _ => String::new(),
+    };
+    format!("resumed by {}: {}; {target}{relaxed}", resume.by, resume.reason)
+}
+
+/// A record's body, typed.
+pub(super) fn body<T: DeserializeOwned>(line: &Line) -> Result<T, Unplayable> {
+    T::deserialize(&line.body).map_err(|error| Unplayable::Body { seq: line.seq, kind: line.kind, reason: error.to_string() })
+}

@@ -1,0 +1,343 @@
+//! The taped rig: between the guard and the rig, it answers from the record while there is any, and after it passes
+//! calls on and records what comes back. INTENT is durable before a target leaves, SAMPLE before a reading is used.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use super::entry::{Call, Doubt, FaultBody, IntentBody, RigBody, SampleBody, escaped};
+use super::state::{State, ended};
+use crate::record::journal::EntryKind;
+use crate::rig::failpoint::{self, Guarding};
+use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally};
+
+/// A rig whose every answer is on record.
+pub struct TapedRig<'rig> {
+    /// None while a record is only played back.
+    live: Option<&'rig mut dyn Rig>,
+    state: Rc<RefCell<State>>,
+    about: RigBody,
+    /// Proposed, and not carried out: targets as asked, speed as asked, and what the rig made of them.
+    pending: Option<(Vec<f64>, Option<f64>, Offer)>,
+    /// Rig time of the record less the rig's own, s.
+    offset: Option<f64>,
+}
+
+impl<'rig> TapedRig<'rig> {
+    pub(super) fn new(live: Option<&'rig mut dyn Rig>, state: Rc<RefCell<State>>) -> Self {
+        let known = state.borrow().rig.clone();
+        let about = known.unwrap_or_else(|| {
+            let about = live.as_deref().map_or_else(nobody, RigBody::of);
+            let mut state = state.borrow_mut();
+            // A journal that fails here says so at the first call.
+            if state.append(EntryKind::Rig, &about).and_then(|()| state.promise()).is_ok() {
+                state.time = about.t;
+            }
+            about
+        });
+        Self { live, state, about, pending: None, offset: None }
+    }
+
+    /// The rig itself, once the record is played.
+    fn rig(&mut self) -> Result<&mut (dyn Rig + 'rig), RigFault> {
+        self.state.borrow().healthy()?;
+        let rig = self.live.as_deref_mut().ok_or_else(ended)?;
+        if self.offset.is_none() {
+            self.offset = Some(self.state.borrow().time - rig.time());
+        }
+        Ok(rig)
+    }
+
+    /// Rig time of the record, s.
+    fn now(&self) -> f64 {
+        let state = self.state.borrow();
+        match (&self.live, self.offset) {
+            (Some(rig), Some(offset)) => offset + rig.time(),
+            _ => state.time,
+        }
+    }
+
+    /// Records that a call failed, and gives its fault on.
+    fn failed<T>(&mut self, call: Call, fault: RigFault) -> Result<T, RigFault> {
+        let t = self.now();
+        let mut state = self.state.borrow_mut();
+        state.time = t;
+        let wall = state.wall();
+        // If the record fails too, the fault of the rig is still what ended the run.
+        let _ = state.append(EntryKind::Fault, &FaultBody { t, call, fault: fault.clone(), wall }).and_then(|()| state.promise());
+        Err(fault)
+    }
+
+    fn record_intent(&mut self, intent: &mut IntentBody) -> Result<(), RigFault> {
+        let mut state = self.state.borrow_mut();
+        intent.n = state.next_target();
+        intent.t = state.time;
+        intent.wall = state.wall();
+        state.append(EntryKind::Intent, intent)?;
+        if failpoint::on(Guarding::IntentDurable) { state.promise() } else { Ok(()) }
+    }
+
+    /// Sends a target that the record has already.
+    fn send_again(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        let rig = self.rig()?;
+        let sent = rig.propose(targets, speed).and_then(|_| rig.execute());
+        sent.or_else(|fault| self.failed(Call::Execute, fault))
+    }
+
+    /// The intent at the front of the record, if it is of these targets.
+    fn played_intent(&self, targets: &[f64], speed: Option<f64>, stroke: Option<usize>) -> Result<IntentBody, RigFault> {
+        let mut state = self.state.borrow_mut();
+        let intent: IntentBody = state.peek(EntryKind::Intent, "a target")?;
+        let same = bits(&intent.to) == bits(targets)
+            && intent.speed.map(f64::to_bits) == speed.map(f64::to_bits)
+            && intent.samples == stroke;
+        if same {
+            return Ok(intent);
+        }
+        Err(state.disagrees(format!("a target of {targets:?} m at {speed:?} m/s")))
+    }
+
+    fn played_reading(&self) -> Result<Reading, RigFault> {
+        let mut state = self.state.borrow_mut();
+        if let Some(fault) = state.played_fault(Call::Read) {
+            return Err(fault);
+        }
+        let sample: SampleBody = state.peek(EntryKind::Sample, "a reading")?;
+        state.consume();
+        Ok(Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() })
+    }
+}
+
+impl Rig for TapedRig<'_> {
+    fn identity(&self) -> Identity {
+        self.about.identity.clone()
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.about.axes
+    }
+
+    fn time(&self) -> f64 {
+        self.state.borrow().time
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        if self.state.borrow().playing() {
+            if let Some(fault) = self.state.borrow_mut().played_fault(Call::Propose) {
+                return Err(fault);
+            }
+            let intent = self.played_intent(targets, speed, None)?;
+            let offer = Offer {
+                targets: intent.said.clone().unwrap_or_else(|| intent.to.clone()),
+                speed: intent.rate,
+                wire: Vec::new(),
+                move_id: intent.id,
+            };
+            self.pending = Some((targets.to_vec(), speed, offer.clone()));
+            return Ok(offer);
+        }
+        match self.rig()?.propose(targets, speed) {
+            Ok(offer) => {
+                self.pending = Some((targets.to_vec(), speed, offer.clone()));
+                Ok(offer)
+            }
+            Err(fault) => self.failed(Call::Propose, fault),
+        }
+    }
+
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let (targets, speed, offer) =
+            self.pending.take().ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            state.consume();
+            if let Some(fault) = state.played_fault(Call::Execute) {
+                return Err(fault);
+            }
+            if state.playing() {
+                return Ok(());
+            }
+            if !state.goes_on() {
+                return Err(ended());
+            }
+            let doubt = state.take_doubt();
+            drop(state);
+            return match doubt {
+                Some(Doubt::Executed) => Ok(()),
+                _ => self.send_again(&targets, speed),
+            };
+        }
+        self.rig()?;
+        self.record_intent(&mut intent(&targets, speed, &offer, None))?;
+        match self.rig()?.execute() {
+            Ok(()) => Ok(()),
+            Err(fault) => self.failed(Call::Execute, fault),
+        }
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        if self.state.borrow().playing() {
+            return self.state.borrow_mut().played_fault(Call::Pause).map_or(Ok(()), Err);
+        }
+        let paused = self.rig()?.pause(seconds);
+        paused.or_else(|fault| self.failed(Call::Pause, fault))
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        if self.state.borrow().playing() {
+            return self.played_reading();
+        }
+        let read = self.rig()?.read();
+        let offset = self.offset.unwrap_or(0.0);
+        let checked = read.and_then(|reading| finite(Reading { time: reading.time + offset, ..reading }));
+        let reading = checked.or_else(|fault| self.failed(Call::Read, fault))?;
+        append_sample(&mut self.state.borrow_mut(), &reading)?;
+        if failpoint::on(Guarding::SampleDurable) {
+            self.state.borrow_mut().promise()?;
+        }
+        Ok(reading)
+    }
+
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        if self.state.borrow().playing() {
+            self.played_intent(targets, Some(velocity), Some(samples))?;
+            self.state.borrow_mut().consume();
+            for _ in 0..samples {
+                if let Some(fault) = self.state.borrow_mut().played_fault(Call::Traverse) {
+                    return Err(fault);
+                }
+                if !self.state.borrow().playing() {
+                    return Err(ended());
+                }
+                each(self.played_reading()?)?;
+            }
+            return self.state.borrow_mut().played_fault(Call::Traverse).map_or(Ok(()), Err);
+        }
+        self.rig()?;
+        let doubt = self.state.borrow_mut().take_doubt();
+        if let Some(Doubt::Stroke { back_to }) = doubt {
+            self.send_again(&[back_to], None)?;
+        }
+        let offer = Offer { targets: targets.to_vec(), speed: velocity, wire: Vec::new(), move_id: None };
+        self.record_intent(&mut intent(targets, Some(velocity), &offer, Some(samples)))?;
+        self.rig()?;
+        let (offset, state) = (self.offset.unwrap_or(0.0), Rc::clone(&self.state));
+        let Some(rig) = self.live.as_deref_mut() else { return Err(ended()) };
+        // A refusal of the guard, or of the record, is not the rig's fault, and comes out again when the record is played.
+        let mut refused = false;
+        let traversed = rig.traverse(targets, velocity, samples, &mut |reading| {
+            let taken = finite(Reading { time: reading.time + offset, ..reading }).and_then(|reading| {
+                append_sample(&mut state.borrow_mut(), &reading)?;
+                Ok(reading)
+            });
+            taken.and_then(|reading| {
+                refused = true;
+                each(reading)?;
+                refused = false;
+                Ok(())
+            })
+        });
+        match traversed {
+            Err(fault) if !refused => self.failed(Call::Traverse, fault),
+            other => {
+                self.state.borrow_mut().promise()?;
+                other
+            }
+        }
+    }
+
+    fn hold(&mut self) {
+        // What the guard would not have is on record too, so that the run can be played back to here.
+        if let Some((targets, speed, offer)) = self.pending.take() {
+            let playing = self.state.borrow().playing();
+            if playing {
+                self.state.borrow_mut().consume();
+            } else {
+                let _ = self.record_intent(&mut intent(&targets, speed, &offer, None));
+            }
+        }
+        if let Some(rig) = self.live.as_deref_mut() {
+            rig.hold();
+        }
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        self.about.noise
+    }
+
+    fn last_move(&self) -> Option<LastMove> {
+        self.live.as_deref().and_then(Rig::last_move)
+    }
+
+    fn tally(&self) -> Tally {
+        self.live.as_deref().map_or_else(Tally::default, Rig::tally)
+    }
+}
+
+impl RigBody {
+    /// What a rig says of itself.
+    #[must_use]
+    pub fn of(rig: &dyn Rig) -> Self {
+        Self {
+            t: rig.time(),
+            identity: rig.identity(),
+            axes: rig.degrees_of_freedom(),
+            noise: rig.declared_noise(),
+            last_move: rig.last_move(),
+        }
+    }
+}
+
+/// A record that was cut off before its rig answered.
+fn nobody() -> RigBody {
+    let unknown = String::new;
+    let identity = Identity {
+        name: unknown(),
+        model: unknown(),
+        serial: unknown(),
+        firmware: unknown(),
+        boot: None,
+        simulated: true,
+    };
+    RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), last_move: None }
+}
+
+fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<usize>) -> IntentBody {
+    IntentBody {
+        n: 0,
+        t: 0.0,
+        to: targets.to_vec(),
+        speed,
+        said: (bits(&offer.targets) != bits(targets)).then(|| offer.targets.clone()),
+        rate: offer.speed,
+        wire: (!offer.wire.is_empty()).then(|| escaped(&offer.wire)),
+        id: offer.move_id,
+        samples,
+        wall: None,
+    }
+}
+
+fn append_sample(state: &mut State, reading: &Reading) -> Result<(), RigFault> {
+    state.time = reading.time;
+    let sample = SampleBody {
+        t: reading.time,
+        x: reading.displacement.clone(),
+        r: reading.force.clone(),
+        raw: reading.raw.iter().map(|raw| escaped(raw)).collect(),
+        wall: state.wall(),
+    };
+    state.append(EntryKind::Sample, &sample)
+}
+
+/// A reading that is no number is a fault of the rig, with the numbers as they came.
+fn finite(reading: Reading) -> Result<Reading, RigFault> {
+    let numbers = || reading.displacement.iter().chain(&reading.force);
+    if numbers().all(|value| value.is_finite()) {
+        return Ok(reading);
+    }
+    Err(RigFault::Device(format!("a reading is no number: {:?}", numbers().collect::<Vec<_>>())))
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}

@@ -1,0 +1,226 @@
+//! What the taped rig and the taped observer share: the records still to be played, the journal that is written, the
+//! time of the last record. In: bodies to append, kinds to expect. Out: bodies played.
+
+use std::collections::VecDeque;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::Wall;
+use super::entry::{Doubt, FaultBody, RigBody};
+use super::played::{Mismatch, Played, body};
+use crate::record::Event;
+use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
+use crate::rig::RigFault;
+
+pub(super) struct State {
+    lines: VecDeque<Line>,
+    pub(super) rig: Option<RigBody>,
+    journal: Option<Journal>,
+    /// What the resumption found of the target at the end of what is played.
+    doubt: Option<Doubt>,
+    /// Rig time of the last record, s.
+    pub(super) time: f64,
+    /// Targets recorded so far.
+    targets: u64,
+    interruptions: Vec<Event>,
+    mismatch: Option<Mismatch>,
+    fault: Option<JournalFault>,
+    wall: Wall,
+}
+
+impl State {
+    pub(super) fn recording(journal: Journal, wall: Wall) -> Self {
+        Self { journal: Some(journal), wall, ..Self::empty() }
+    }
+
+    pub(super) fn replaying(played: Played) -> Self {
+        Self { lines: played.lines, rig: played.rig, interruptions: played.interruptions, ..Self::empty() }
+    }
+
+    pub(super) fn resuming(played: Played, journal: Journal, wall: Wall) -> Self {
+        Self { journal: Some(journal), wall, doubt: played.doubt, ..Self::replaying(played) }
+    }
+
+    fn empty() -> Self {
+        Self {
+            lines: VecDeque::new(),
+            rig: None,
+            journal: None,
+            doubt: None,
+            time: 0.0,
+            targets: 0,
+            interruptions: Vec::new(),
+            mismatch: None,
+            fault: None,
+            wall: Box::new(|| None),
+        }
+    }
+
+    /// Whether answers still come from the record.
+    pub(super) fn playing(&self) -> bool {
+        !self.lines.is_empty() || self.mismatch.is_some()
+    }
+
+    /// Whether there is a journal to write to, so that a rig may move once the record is played.
+    pub(super) const fn goes_on(&self) -> bool {
+        self.journal.is_some()
+    }
+
+    pub(super) const fn take_doubt(&mut self) -> Option<Doubt> {
+        self.doubt.take()
+    }
+
+    pub(super) fn wall(&self) -> Option<String> {
+        (self.wall)()
+    }
+
+    pub(super) const fn next_target(&mut self) -> u64 {
+        self.targets += 1;
+        self.targets
+    }
+
+    /// Kind of the next record to be played.
+    pub(super) fn next_kind(&self) -> Option<EntryKind> {
+        self.lines.front().map(|line| line.kind)
+    }
+
+    /// The next record, left where it is.
+    pub(super) fn peek<T: DeserializeOwned>(&mut self, kind: EntryKind, called: &str) -> Result<T, RigFault> {
+        let found = match (&self.mismatch, self.lines.front()) {
+            (None, Some(line)) if line.kind == kind => body(line),
+            (Some(mismatch), _) => return Err(RigFault::Device(mismatch.to_string())),
+            (None, front) => {
+                let found = front.map_or("its end".to_owned(), |line| format!("{:?} {}", line.kind, line.body));
+                let seq = front.map_or(0, |line| line.seq);
+                return Err(self.differs(Mismatch { seq, called: called.to_owned(), found }));
+            }
+        };
+        let seq = self.lines.front().map_or(0, |line| line.seq);
+        found.map_err(|error| self.differs(Mismatch { seq, called: called.to_owned(), found: error.to_string() }))
+    }
+
+    /// The next record has been played.
+    pub(super) fn consume(&mut self) {
+        if let Some(line) = self.lines.pop_front() {
+            if let Some(time) = line.body.get("t").and_then(serde_json::Value::as_f64) {
+                self.time = time;
+            }
+            if line.kind == EntryKind::Intent {
+                self.targets += 1;
+            }
+        }
+    }
+
+    /// The next record says that this call failed.
+    pub(super) fn played_fault(&mut self, call: super::Call) -> Option<RigFault> {
+        if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Fault) {
+            return None;
+        }
+        match self.peek::<FaultBody>(EntryKind::Fault, "a fault") {
+            Ok(fault) if fault.call == call => {
+                self.consume();
+                Some(fault.fault)
+            }
+            Ok(_) => None,
+            Err(fault) => Some(fault),
+        }
+    }
+
+    /// The run and the record part ways here.
+    pub(super) fn differs(&mut self, mismatch: Mismatch) -> RigFault {
+        let fault = RigFault::Device(mismatch.to_string());
+        self.mismatch.get_or_insert(mismatch);
+        fault
+    }
+
+    /// The run calls for something that the next record does not say.
+    pub(super) fn disagrees(&mut self, called: String) -> RigFault {
+        let front = self.lines.front();
+        let (seq, found) = front.map_or((0, "its end".to_owned()), |line| (line.seq, format!("{:?} {}", line.kind, line.body)));
+        self.differs(Mismatch { seq, called, found })
+    }
+
+    /// Appends a record; a fault is kept, and is final.
+    pub(super) fn append(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), RigFault> {
+        self.healthy()?;
+        let Some(journal) = &mut self.journal else { return Err(ended()) };
+        match journal.append(kind, body) {
+            Ok(()) => Ok(()),
+            Err(fault) => Err(self.broken(fault)),
+        }
+    }
+
+    /// What was appended survives a loss of power from here on.
+    pub(super) fn promise(&mut self) -> Result<(), RigFault> {
+        self.healthy()?;
+        let Some(journal) = &mut self.journal else { return Err(ended()) };
+        match journal.promise() {
+            Ok(()) => Ok(()),
+            Err(fault) => Err(self.broken(fault)),
+        }
+    }
+
+    /// A record that cannot be kept ends the run: nothing moves that is not recorded.
+    pub(super) fn healthy(&self) -> Result<(), RigFault> {
+        self.fault.as_ref().map_or(Ok(()), |fault| Err(unkept(fault)))
+    }
+
+    fn broken(&mut self, fault: JournalFault) -> RigFault {
+        let told = unkept(&fault);
+        if let Some(journal) = &mut self.journal {
+            let words = FaultBody { t: self.time, call: super::Call::Execute, fault: told.clone(), wall: (self.wall)() };
+            journal.last_words(EntryKind::Fault, &words);
+        }
+        self.fault = Some(fault);
+        told
+    }
+
+    /// The run came to its own end.
+    pub(super) fn end(&mut self) {
+        if self.fault.is_none()
+            && let Some(journal) = &mut self.journal
+        {
+            let ended = journal.end(&serde_json::json!({ "outcome": "completed" }));
+            self.fault = ended.err();
+        }
+    }
+
+    /// The run ended early; its record can be gone on with.
+    pub(super) fn close(&mut self) {
+        if self.fault.is_none()
+            && let Some(journal) = &mut self.journal
+        {
+            self.fault = journal.sync().err();
+        }
+    }
+
+    pub(super) fn sealed(&self) -> Option<(u64, String)> {
+        self.journal.as_ref().map(|journal| (journal.count(), journal.head().to_owned()))
+    }
+
+    pub(super) const fn mismatch(&self) -> Option<&Mismatch> {
+        self.mismatch.as_ref()
+    }
+
+    pub(super) const fn take_mismatch(&mut self) -> Option<Mismatch> {
+        self.mismatch.take()
+    }
+
+    pub(super) const fn take_fault(&mut self) -> Option<JournalFault> {
+        self.fault.take()
+    }
+
+    pub(super) fn take_interruptions(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.interruptions)
+    }
+}
+
+/// Of a record without an end, when it has been played.
+pub(super) fn ended() -> RigFault {
+    RigFault::Device("the record ends here: the run was cut off".to_owned())
+}
+
+fn unkept(fault: &JournalFault) -> RigFault {
+    RigFault::Device(format!("the record cannot be kept: {fault}"))
+}
