@@ -22,7 +22,7 @@ mod triggers;
 pub use damping_sweep::MOST_SAMPLES;
 
 use crate::plan::{Plan, Procedure, ProcedureKind};
-use crate::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
+use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
 use inputs::Inputs;
 use session::Session;
@@ -36,8 +36,25 @@ pub trait Observer {
     fn procedure_finished(&mut self, name: &str);
     /// Asked after every step: true stops the run after holding the rig.
     fn stop_requested(&self) -> bool;
-    /// A person is to look at the specimen; the answer says whether to go on.
+    /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
+    /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
+    /// What a person wants between two steps. Asked until it is [`Next::GoOn`].
+    fn next(&mut self) -> Next {
+        Next::GoOn
+    }
+    /// Something worth a line happened; the record has it.
+    fn event(&mut self, _: &Event) {}
+}
+
+/// What comes after a step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Next {
+    GoOn,
+    /// The run is paused: ask again in a moment.
+    Wait,
+    /// Something a person did or saw, for the record.
+    Record(String),
 }
 
 /// The end of a step, for who watches and for the record.
@@ -64,8 +81,26 @@ pub struct StepReport {
 /// What the person said.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Inspection {
-    GoOn { note: Option<String> },
-    Stop { reason: String },
+    GoOn {
+        note: Option<String>,
+        /// Who says so, where it is known.
+        by: Option<String>,
+    },
+    Stop {
+        reason: String,
+        /// Who says so, where it is known.
+        by: Option<String>,
+    },
+    /// No answer yet: ask again in a moment.
+    Wait,
+}
+
+impl Inspection {
+    /// Goes on with nothing to say.
+    #[must_use]
+    pub const fn go_on() -> Self {
+        Self::GoOn { note: None, by: None }
+    }
 }
 
 /// Watches nothing, goes on at every inspection.
@@ -79,7 +114,7 @@ impl Observer for Unwatched {
         false
     }
     fn inspect(&mut self, _: &str) -> Inspection {
-        Inspection::GoOn { note: None }
+        Inspection::go_on()
     }
 }
 

@@ -2,12 +2,16 @@
 //! It knows no procedure's physics.
 
 use super::stop::Stop;
-use super::{Inspection, Observer, StepReport};
+use super::{Inspection, Next, Observer, StepReport};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
 use crate::plan::{Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault};
+
+/// How long a real rig stays where it is between two looks at whether the person has decided, s of rig time: it takes a
+/// sign of life at least this often.
+const BREATH: f64 = 0.01;
 
 pub(super) struct Session<'run> {
     pub(super) guard: Guard<'run>,
@@ -16,6 +20,8 @@ pub(super) struct Session<'run> {
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
     step: Option<u64>,
+    /// Whether rig time is only reckoned, and must not pass while a person thinks.
+    simulated: bool,
 }
 
 impl<'run> Session<'run> {
@@ -27,6 +33,7 @@ impl<'run> Session<'run> {
     ) -> Result<Self, Box<(Event, Stop)>> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
+        let simulated = rig.identity().simulated;
         let guard = if axes == 1 {
             Guard::new(rig, plan.limits)
         } else {
@@ -34,7 +41,7 @@ impl<'run> Session<'run> {
             Err(RigFault::Device(format!("these procedures move one degree of freedom, and the rig has {axes}")))
         };
         match guard {
-            Ok(guard) => Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None }),
+            Ok(guard) => Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, simulated }),
             Err(fault) => {
                 let stop = Stop::Rig(fault);
                 let event = Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() };
@@ -54,6 +61,10 @@ impl<'run> Session<'run> {
     }
 
     pub(super) fn leave(&mut self) {
+        // What was said during the last step is not lost.
+        while let Next::Record(text) = self.observer.next() {
+            self.event(EventKind::Note, text);
+        }
         if let Some(name) = self.procedure.take() {
             self.observer.procedure_finished(&name);
         }
@@ -68,6 +79,7 @@ impl<'run> Session<'run> {
 
     pub(super) fn event(&mut self, kind: EventKind, text: String) {
         let event = Event { time: self.guard.time(), procedure: self.procedure.clone(), step: self.step, kind, text };
+        self.observer.event(&event);
         self.events.push(event);
     }
 
@@ -75,6 +87,39 @@ impl<'run> Session<'run> {
     pub(super) fn step_done(&mut self, report: &StepReport) -> Result<(), Stop> {
         self.step = Some(report.step);
         self.observer.step_done(report);
+        loop {
+            self.stop_if_requested()?;
+            match self.observer.next() {
+                Next::GoOn => return Ok(()),
+                Next::Wait => self.breathe()?,
+                Next::Record(text) => self.event(EventKind::Note, text),
+            }
+        }
+    }
+
+    /// Lets a person look at the specimen; what was said, and by whom, is an event.
+    pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+        loop {
+            match self.observer.inspect(note) {
+                Inspection::GoOn { note: said, by } => {
+                    let said = said.map_or_else(String::new, |said| format!(": {said}"));
+                    self.event(EventKind::Inspection, format!("{note}{said}{}", signed(by.as_deref())));
+                    return Ok(());
+                }
+                Inspection::Stop { reason, by } => {
+                    self.guard.hold();
+                    self.event(EventKind::Inspection, format!("{note}: {reason}{}", signed(by.as_deref())));
+                    return Err(Stop::Person { reason });
+                }
+                Inspection::Wait => {
+                    self.stop_if_requested()?;
+                    self.breathe()?;
+                }
+            }
+        }
+    }
+
+    fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
             return Err(Stop::Person { reason: "stopped on request".to_owned() });
@@ -82,20 +127,12 @@ impl<'run> Session<'run> {
         Ok(())
     }
 
-    /// Lets a person look at the specimen; what was said is an event.
-    pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
-        match self.observer.inspect(note) {
-            Inspection::GoOn { note: said } => {
-                let text = said.map_or_else(|| note.to_owned(), |said| format!("{note}: {said}"));
-                self.event(EventKind::Inspection, text);
-                Ok(())
-            }
-            Inspection::Stop { reason } => {
-                self.guard.hold();
-                self.event(EventKind::Inspection, format!("{note}: {reason}"));
-                Err(Stop::Person { reason })
-            }
+    /// A moment of a person's time. A real rig spends it where it is, and is heard from.
+    fn breathe(&mut self) -> Result<(), Stop> {
+        if !self.simulated {
+            self.guard.pause(BREATH)?;
         }
+        Ok(())
     }
 
     /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
@@ -131,6 +168,10 @@ impl<'run> Session<'run> {
         }
         Ok(())
     }
+}
+
+fn signed(by: Option<&str>) -> String {
+    by.map_or_else(String::new, |name| format!(" ({name})"))
 }
 
 /// Displacement (m) and force (N) of the one degree of freedom.
