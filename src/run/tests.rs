@@ -1,10 +1,10 @@
 //! Whole runs on plans built by hand: what is identified, what a breach leaves, what a seed repeats.
 
 use super::testing::{elastic_plan, number, ramp, result_of, run_unwatched};
-use super::{Inspection, Observer, StepReport, Unwatched, run};
+use super::{Inspection, Next, Observer, StepReport, Unwatched, run};
 use crate::formula::Formula;
 use crate::plan::{DampingSweep, Interval, Link, Move, Plan, ProcedureKind, StiffnessRamp, VirtualLink};
-use crate::record::{EventKind, History, Outcome, RampStep, SweepStep};
+use crate::record::{Event, EventKind, History, Outcome, RampStep, SweepStep};
 use crate::rig::{LimitedQuantity, Rig, RigFault, VirtualRig};
 
 fn constant(value: f64) -> Formula {
