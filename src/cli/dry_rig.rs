@@ -180,6 +180,6 @@ impl Observer for Listener {
     }
 
     fn inspect(&mut self, _: &str) -> Inspection {
-        Inspection::GoOn { note: None }
+        Inspection::go_on()
     }
 }

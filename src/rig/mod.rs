@@ -9,6 +9,7 @@ mod load_cell;
 pub mod port;
 mod settling;
 mod virtual_rig;
+mod wish;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,7 @@ use crate::quantity::{Dimension, display};
 
 pub use guard::{Guard, Traversed};
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
+pub use wish::Wish;
 
 /// Who the rig says it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

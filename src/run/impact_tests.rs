@@ -157,7 +157,7 @@ impl Observer for Onlooker {
     }
     fn inspect(&mut self, note: &str) -> Inspection {
         self.0.push(note.to_owned());
-        Inspection::GoOn { note: None }
+        Inspection::go_on()
     }
 }
 

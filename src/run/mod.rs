@@ -38,12 +38,27 @@ pub trait Observer {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
     fn step_done(&mut self, report: &StepReport);
     fn procedure_finished(&mut self, name: &str);
-    /// Something worth a line in the report has happened.
-    fn event(&mut self, _: &Event) {}
     /// Asked after every step: true stops the run after holding the rig.
     fn stop_requested(&self) -> bool;
-    /// A person is to look at the specimen; the answer says whether to go on.
+    /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
+    /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
+    /// What a person wants between two steps. Asked until it is [`Next::GoOn`].
+    fn next(&mut self) -> Next {
+        Next::GoOn
+    }
+    /// Something worth a line happened; the record has it.
+    fn event(&mut self, _: &Event) {}
+}
+
+/// What comes after a step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Next {
+    GoOn,
+    /// The run is paused: ask again in a moment.
+    Wait,
+    /// Something a person did or saw, for the record.
+    Record(String),
 }
 
 /// The end of a step, for who watches and for the record.
@@ -71,8 +86,26 @@ pub struct StepReport {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Inspection {
-    GoOn { note: Option<String> },
-    Stop { reason: String },
+    GoOn {
+        note: Option<String>,
+        /// Who says so, where it is known.
+        by: Option<String>,
+    },
+    Stop {
+        reason: String,
+        /// Who says so, where it is known.
+        by: Option<String>,
+    },
+    /// No answer yet: ask again in a moment.
+    Wait,
+}
+
+impl Inspection {
+    /// Goes on with nothing to say.
+    #[must_use]
+    pub const fn go_on() -> Self {
+        Self::GoOn { note: None, by: None }
+    }
 }
 
 /// Said in the record before a stopped run takes the load off.
@@ -89,7 +122,7 @@ impl Observer for Unwatched {
         false
     }
     fn inspect(&mut self, _: &str) -> Inspection {
-        Inspection::GoOn { note: None }
+        Inspection::go_on()
     }
 }
 

@@ -2,12 +2,16 @@
 //! It knows no procedure's physics.
 
 use super::stop::Stop;
-use super::{Inspection, Observer, StepReport, UNLOADING};
+use super::{Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
 use crate::plan::{Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault};
+
+/// How long a real rig stays where it is between two looks at whether the person has decided, s of rig time: it takes a
+/// sign of life at least this often.
+const BREATH: f64 = 0.01;
 
 pub(super) struct Session<'run> {
     pub(super) guard: Guard<'run>,
@@ -18,6 +22,8 @@ pub(super) struct Session<'run> {
     step: Option<u64>,
     /// Where the rig was found, m.
     home: f64,
+    /// Whether rig time is only reckoned, and must not pass while a person thinks.
+    simulated: bool,
 }
 
 impl<'run> Session<'run> {
@@ -29,6 +35,7 @@ impl<'run> Session<'run> {
     ) -> Result<Self, Box<(Event, Stop)>> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
+        let simulated = rig.identity().simulated;
         let guard = if axes == 1 {
             Guard::new(rig, plan.limits)
         } else {
@@ -38,7 +45,7 @@ impl<'run> Session<'run> {
         match guard {
             Ok(guard) => {
                 let home = guard.commanded()[0];
-                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home })
+                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home, simulated })
             }
             Err(fault) => {
                 let stop = Stop::Rig(fault);
@@ -60,6 +67,10 @@ impl<'run> Session<'run> {
     }
 
     pub(super) fn leave(&mut self) {
+        // What was said during the last step is not lost.
+        while let Next::Record(text) = self.observer.next() {
+            self.event(EventKind::Note, text);
+        }
         if let Some(name) = self.procedure.take() {
             self.observer.procedure_finished(&name);
         }
@@ -91,6 +102,39 @@ impl<'run> Session<'run> {
     pub(super) fn step_done(&mut self, report: &StepReport) -> Result<(), Stop> {
         self.step = Some(report.step);
         self.observer.step_done(report);
+        loop {
+            self.stop_if_requested()?;
+            match self.observer.next() {
+                Next::GoOn => return Ok(()),
+                Next::Wait => self.breathe()?,
+                Next::Record(text) => self.event(EventKind::Note, text),
+            }
+        }
+    }
+
+    /// Lets a person look at the specimen; what was said, and by whom, is an event.
+    pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+        loop {
+            match self.observer.inspect(note) {
+                Inspection::GoOn { note: said, by } => {
+                    let said = said.map_or_else(String::new, |said| format!(": {said}"));
+                    self.event(EventKind::Inspection, format!("{note}{said}{}", signed(by.as_deref())));
+                    return Ok(());
+                }
+                Inspection::Stop { reason, by } => {
+                    self.guard.hold();
+                    self.event(EventKind::Inspection, format!("{note}: {reason}{}", signed(by.as_deref())));
+                    return Err(Stop::Person { reason });
+                }
+                Inspection::Wait => {
+                    self.stop_if_requested()?;
+                    self.breathe()?;
+                }
+            }
+        }
+    }
+
+    fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
             return Err(Stop::Person { reason: "stopped on request".to_owned() });
@@ -98,20 +142,12 @@ impl<'run> Session<'run> {
         Ok(())
     }
 
-    /// Lets a person look at the specimen; what was said is an event.
-    pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
-        match self.observer.inspect(note) {
-            Inspection::GoOn { note: said } => {
-                let text = said.map_or_else(|| note.to_owned(), |said| format!("{note}: {said}"));
-                self.event(EventKind::Inspection, text);
-                Ok(())
-            }
-            Inspection::Stop { reason } => {
-                self.guard.hold();
-                self.event(EventKind::Inspection, format!("{note}: {reason}"));
-                Err(Stop::Person { reason })
-            }
+    /// A moment of a person's time. A real rig spends it where it is, and is heard from.
+    fn breathe(&mut self) -> Result<(), Stop> {
+        if !self.simulated {
+            self.guard.pause(BREATH)?;
         }
+        Ok(())
     }
 
     /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
@@ -147,6 +183,10 @@ impl<'run> Session<'run> {
         }
         Ok(())
     }
+}
+
+fn signed(by: Option<&str>) -> String {
+    by.map_or_else(String::new, |name| format!(" ({name})"))
 }
 
 /// Displacement (m) and force (N) of the one degree of freedom.

@@ -1,10 +1,10 @@
 //! Whole runs on plans built by hand: what is identified, what a breach leaves, what a seed repeats.
 
 use super::testing::{elastic_plan, number, ramp, result_of, run_unwatched};
-use super::{Inspection, Observer, StepReport, Unwatched, run};
+use super::{Inspection, Next, Observer, StepReport, Unwatched, run};
 use crate::formula::Formula;
 use crate::plan::{DampingSweep, Interval, Link, Move, Plan, ProcedureKind, StiffnessRamp, VirtualLink};
-use crate::record::{EventKind, History, Outcome, RampStep, SweepStep};
+use crate::record::{Event, EventKind, History, Outcome, RampStep, SweepStep};
 use crate::rig::{LimitedQuantity, Rig, RigFault, VirtualRig};
 
 fn constant(value: f64) -> Formula {
@@ -249,9 +249,9 @@ impl Observer for Person {
     }
     fn inspect(&mut self, _: &str) -> Inspection {
         if self.stops_at_inspection {
-            Inspection::Stop { reason: "a crack".to_owned() }
+            Inspection::Stop { reason: "a crack".to_owned(), by: None }
         } else {
-            Inspection::GoOn { note: Some("nothing to see".to_owned()) }
+            Inspection::GoOn { note: Some("nothing to see".to_owned()), by: Some("A. Engineer".to_owned()) }
         }
     }
 }
@@ -270,8 +270,53 @@ fn a_person_can_stop_after_any_step_and_at_an_inspection() {
     assert_eq!(stopped.outcome, Outcome::Aborted { reason: "stopped on request".to_owned() });
     assert_eq!(ramp_steps(&stopped.procedures[2].history).len(), 4);
     assert!(matches!(&stopped.procedures[0].history, History::Move(steps) if steps.len() == 2));
-    assert_eq!(stopped.events[0].text, "look at the bearing: nothing to see");
+    assert_eq!(stopped.events[0].text, "look at the bearing: nothing to see (A. Engineer)");
     let at_inspection = attend(100, true);
     assert_eq!(at_inspection.outcome, Outcome::Aborted { reason: "a crack".to_owned() });
     assert_eq!(at_inspection.procedures.len(), 2);
+}
+
+/// Pauses after the second step, and says something when asked again.
+#[derive(Default)]
+struct Pausing {
+    steps: u64,
+    looks: u32,
+    heard: Vec<String>,
+}
+
+impl Observer for Pausing {
+    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
+    fn step_done(&mut self, report: &StepReport) {
+        self.steps = report.step;
+    }
+    fn procedure_finished(&mut self, _: &str) {}
+    fn stop_requested(&self) -> bool {
+        false
+    }
+    fn inspect(&mut self, _: &str) -> Inspection {
+        self.looks += 1;
+        if self.looks.is_multiple_of(3) { Inspection::go_on() } else { Inspection::Wait }
+    }
+    fn next(&mut self) -> Next {
+        if self.steps != 2 || self.looks > 2 {
+            return Next::GoOn;
+        }
+        self.looks += 1;
+        if self.looks == 1 { Next::Record("paused".to_owned()) } else { Next::Wait }
+    }
+    fn event(&mut self, event: &Event) {
+        self.heard.push(event.text.clone());
+    }
+}
+
+#[test]
+fn a_pause_changes_nothing_but_what_was_said() {
+    let inspect = ProcedureKind::Inspect { note: "look".to_owned() };
+    let plan = elastic_plan(3e5, vec![ProcedureKind::StiffnessRamp(ramp(1e-4)), inspect]);
+    let mut pausing = Pausing::default();
+    let record = run(&plan, &mut VirtualRig::of_plan(&plan), &mut pausing);
+    let unwatched = run_unwatched(&plan);
+    assert_eq!(ramp_steps(&record.procedures[0].history), ramp_steps(&unwatched.procedures[0].history));
+    assert_eq!((record.events[0].kind, record.events[0].step), (EventKind::Note, Some(2)));
+    assert_eq!(pausing.heard, ["paused", "look"], "who watches hears every event");
 }

@@ -6,7 +6,7 @@ use super::played::{Played, Unplayable, body};
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
 use crate::rig::{Identity, Reading};
-use crate::run::Inspection;
+use crate::run::{Inspection, UNLOADING};
 
 /// How near the rig must stand to where the record left it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,20 +136,20 @@ fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
             EntryKind::Fault => {}
             EntryKind::Event => {
                 let event: Event = body(last)?;
-                if event.kind == EventKind::Hold && event.text == super::super::UNLOADING {
+                if event.kind == EventKind::Hold && event.text == UNLOADING {
                     return Err(Refusal::Unloaded);
                 }
             }
             EntryKind::Operator => match body(last)? {
                 OperatorBody::AskedToStop | OperatorBody::Answered { answer: Inspection::Stop { .. }, .. } => {}
-                OperatorBody::Answered { .. } => break,
+                OperatorBody::Answered { .. } | OperatorBody::Noted { .. } => break,
             },
             _ => break,
         }
         lines.pop();
     }
     let unloading = |line: &Line| {
-        line.kind == EntryKind::Event && line.body.get("text").and_then(|text| text.as_str()) == Some(super::super::UNLOADING)
+        line.kind == EntryKind::Event && line.body.get("text").and_then(|text| text.as_str()) == Some(UNLOADING)
     };
     if lines.iter().any(unloading) { Err(Refusal::Unloaded) } else { Ok(lines) }
 }

@@ -121,6 +121,7 @@ pub struct StepBody {
 #[serde(rename_all = "snake_case", tag = "what")]
 pub enum OperatorBody {
     Answered { note: String, answer: Inspection },
+    Noted { text: String },
     AskedToStop,
 }
 

@@ -8,7 +8,7 @@ use super::entry::{OperatorBody, StepBody};
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
-use crate::run::{Inspection, Observer, StepReport};
+use crate::run::{Inspection, Next, Observer, StepReport};
 
 /// Who watches a run, with every word on record.
 pub struct TapedObserver<'run> {
@@ -93,26 +93,64 @@ impl Observer for TapedObserver<'_> {
         asked
     }
 
+    fn next(&mut self) -> Next {
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            return match state.next_kind() {
+                Some(EntryKind::Operator) => match state.peek(EntryKind::Operator, "a note") {
+                    Ok(OperatorBody::Noted { text }) => {
+                        state.consume();
+                        Next::Record(text)
+                    }
+                    // Whoever asked to stop had paused the run first.
+                    Ok(OperatorBody::AskedToStop) => Next::Wait,
+                    _ => Next::GoOn,
+                },
+                Some(EntryKind::Fault) if state.front_is_pause_fault() => Next::Wait,
+                _ => Next::GoOn,
+            };
+        }
+        if !self.state.borrow().goes_on() {
+            return Next::GoOn;
+        }
+        let next = self.inner.next();
+        if let Next::Record(text) = &next {
+            self.append(EntryKind::Operator, &OperatorBody::Noted { text: text.clone() });
+        }
+        next
+    }
+
     fn inspect(&mut self, note: &str) -> Inspection {
         let playing = self.state.borrow().playing();
         if playing {
             let mut state = self.state.borrow_mut();
+            if state.front_is_pause_fault() {
+                return Inspection::Wait;
+            }
             return match state.peek(EntryKind::Operator, "an answer") {
                 Ok(OperatorBody::Answered { note: asked, answer }) if asked == note => {
                     state.consume();
                     answer
                 }
-                Ok(_) => Inspection::Stop { reason: state.disagrees(format!("an answer to `{note}`")).to_string() },
-                Err(fault) => Inspection::Stop { reason: fault.to_string() },
+                Ok(OperatorBody::AskedToStop) => Inspection::Wait,
+                Ok(_) => stopped(state.disagrees(format!("an answer to `{note}`")).to_string()),
+                Err(fault) => stopped(fault.to_string()),
             };
         }
         if !self.state.borrow().goes_on() {
-            return Inspection::Stop { reason: super::state::ended().to_string() };
+            return stopped(super::state::ended().to_string());
         }
         let answer = self.inner.inspect(note);
-        self.append(EntryKind::Operator, &OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });
+        if answer != Inspection::Wait {
+            self.append(EntryKind::Operator, &OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });
+        }
         answer
     }
+}
+
+fn stopped(reason: String) -> Inspection {
+    Inspection::Stop { reason, by: None }
 }
 
 impl StepBody {

@@ -127,6 +127,12 @@ impl State {
         }
     }
 
+    /// Whether the next record says that a pause failed.
+    pub(super) fn front_is_pause_fault(&self) -> bool {
+        let front = self.lines.front().filter(|line| line.kind == EntryKind::Fault);
+        front.is_some_and(|line| line.body.get("call").and_then(|call| call.as_str()) == Some("pause"))
+    }
+
     /// The run and the record part ways here.
     pub(super) fn differs(&mut self, mismatch: Mismatch) -> RigFault {
         let fault = RigFault::Device(mismatch.to_string());

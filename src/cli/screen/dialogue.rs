@@ -1,0 +1,324 @@
+//! What the person at the keys wants. In: keys, and questions of the run. Out: wishes, answers, words for the record.
+//! Only a `y` typed at a question, then its line and a name, goes on; nothing else ever counts as yes.
+
+use std::collections::VecDeque;
+
+use super::keys::Key;
+use crate::diagnostic::excerpt::escape;
+use crate::rig::Wish;
+use crate::run::{Inspection, Next};
+
+/// Characters of one typed line.
+const LONGEST_LINE: usize = 200;
+
+/// The keys' side of the screen.
+#[derive(Clone, Debug, Default)]
+pub struct Dialogue {
+    /// Who answers, once it is known.
+    pub operator: Option<String>,
+    pub paused: bool,
+    pub help: bool,
+    /// What the run asks a person to look at.
+    pub question: Option<String>,
+    pub typing: Option<Typing>,
+    /// Only watching: nothing runs that could be paused.
+    pub monitor: bool,
+    /// Steps asked for while paused.
+    single: u32,
+    said: VecDeque<String>,
+    answer: Option<Inspection>,
+    /// The terminal is gone: nobody answers any more.
+    lost: bool,
+}
+
+/// A line that is being typed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Typing {
+    pub what: What,
+    pub text: String,
+}
+
+/// What the line is for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum What {
+    Note,
+    /// Whose note it is.
+    NoteName {
+        note: String,
+    },
+    /// `y` or `n`.
+    Answer,
+    /// A remark to the answer.
+    Remark {
+        yes: bool,
+    },
+    /// Who answers.
+    AnswerName {
+        yes: bool,
+        remark: String,
+    },
+}
+
+impl Dialogue {
+    pub fn new(operator: Option<String>) -> Self {
+        Self { operator, ..Self::default() }
+    }
+
+    /// A key was pressed.
+    pub fn press(&mut self, key: Key, wish: &Wish) {
+        if key == Key::Interrupt {
+            wish.interrupt();
+            return;
+        }
+        if std::mem::take(&mut self.help) {
+            return;
+        }
+        match &self.typing {
+            Some(Typing { what: What::Answer, .. }) => self.choose(key, wish),
+            Some(_) => self.edit(key),
+            None => self.command(key, wish),
+        }
+        self.open_question();
+    }
+
+    fn command(&mut self, key: Key, wish: &Wish) {
+        let Key::Character(character) = key else { return };
+        match character.to_ascii_lowercase() {
+            'q' => wish.stop(),
+            'h' => wish.hold_now(),
+            '?' => self.help = true,
+            _ if self.monitor => {}
+            'p' => {
+                self.paused = !self.paused;
+                self.single = 0;
+                let did = if self.paused { "paused" } else { "went on" };
+                self.said.push_back(format!("{did}{}", self.signature()));
+            }
+            's' | ' ' if self.paused => self.single += 1,
+            'i' => self.typing = Some(Typing { what: What::Note, text: String::new() }),
+            _ => {}
+        }
+    }
+
+    /// At a question.
+    fn choose(&mut self, key: Key, wish: &Wish) {
+        match key {
+            Key::Character('y' | 'Y') => self.line(What::Remark { yes: true }),
+            Key::Character('n' | 'N') => self.line(What::Remark { yes: false }),
+            Key::Character('q') => wish.stop(),
+            Key::Character('h') => wish.hold_now(),
+            Key::End => self.no_answer(),
+            _ => {}
+        }
+    }
+
+    fn edit(&mut self, key: Key) {
+        let Some(typing) = &mut self.typing else { return };
+        match key {
+            Key::Character(character) => {
+                if typing.text.chars().count() < LONGEST_LINE {
+                    typing.text.push(character);
+                }
+            }
+            Key::Erase => {
+                typing.text.pop();
+            }
+            Key::EraseLine => typing.text.clear(),
+            Key::Enter => self.enter(),
+            Key::Escape => self.typing = None,
+            Key::End if self.question.is_some() && !typing.what.is_note() => self.no_answer(),
+            Key::End | Key::Interrupt => {}
+        }
+    }
+
+    fn enter(&mut self) {
+        let Some(Typing { what, text }) = self.typing.take() else { return };
+        let text = escape(text.trim());
+        match what {
+            What::Note if text.is_empty() => {}
+            What::Note => match &self.operator {
+                Some(_) => self.say(&text),
+                None => self.line(What::NoteName { note: text }),
+            },
+            What::Remark { yes } => match self.operator.clone() {
+                Some(name) => self.settle(yes, &text, name),
+                None => self.line(What::AnswerName { yes, remark: text }),
+            },
+            // A note or an answer has somebody's name: a blank one is asked for again.
+            What::NoteName { .. } | What::AnswerName { .. } if text.is_empty() => self.line(what),
+            What::NoteName { note } => {
+                self.operator = Some(text);
+                self.say(&note);
+            }
+            What::AnswerName { yes, remark } => {
+                self.operator = Some(text.clone());
+                self.settle(yes, &remark, text);
+            }
+            What::Answer => {}
+        }
+    }
+
+    fn line(&mut self, what: What) {
+        self.typing = Some(Typing { what, text: String::new() });
+    }
+
+    fn say(&mut self, note: &str) {
+        self.said.push_back(format!("{note}{}", self.signature()));
+    }
+
+    fn signature(&self) -> String {
+        self.operator.as_ref().map_or_else(|| " by a person".to_owned(), |name| format!(" ({name})"))
+    }
+
+    fn settle(&mut self, yes: bool, remark: &str, name: String) {
+        let remark = (!remark.is_empty()).then(|| remark.to_owned());
+        let by = Some(name);
+        self.question = None;
+        self.answer = Some(if yes {
+            Inspection::GoOn { note: remark, by }
+        } else {
+            let reason = "stopped by a person at an inspection";
+            Inspection::Stop { reason: remark.map_or_else(|| reason.to_owned(), |remark| format!("{reason}: {remark}")), by }
+        });
+    }
+
+    fn no_answer(&mut self) {
+        self.question = None;
+        self.typing = None;
+        self.answer = Some(Inspection::Stop { reason: "no answer at an inspection".to_owned(), by: None });
+    }
+
+    /// A question waits until the line that is being typed is done: no letter of a note is taken for an answer.
+    fn open_question(&mut self) {
+        if self.question.is_some() && self.typing.is_none() {
+            self.line(What::Answer);
+        }
+    }
+
+    /// The run asks; asked again, the answer is given once it is known.
+    pub fn ask(&mut self, note: &str) -> Inspection {
+        if self.lost {
+            return Inspection::Stop { reason: "nobody to ask at an inspection: the terminal is gone".to_owned(), by: None };
+        }
+        if let Some(answer) = self.answer.take() {
+            return answer;
+        }
+        if self.question.is_none() {
+            self.question = Some(note.to_owned());
+            self.help = false;
+        }
+        self.open_question();
+        Inspection::Wait
+    }
+
+    /// What a person wants between two steps.
+    pub fn next(&mut self) -> Next {
+        if let Some(said) = self.said.pop_front() {
+            return Next::Record(said);
+        }
+        if !self.paused || self.lost {
+            return Next::GoOn;
+        }
+        if self.single > 0 {
+            self.single -= 1;
+            return Next::GoOn;
+        }
+        Next::Wait
+    }
+
+    /// The terminal is gone: the run stops, and nothing is answered.
+    pub fn lose(&mut self, wish: &Wish) {
+        self.lost = true;
+        wish.stop();
+    }
+}
+
+impl What {
+    const fn is_note(&self) -> bool {
+        matches!(self, Self::Note | Self::NoteName { .. })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn type_in(dialogue: &mut Dialogue, text: &str) {
+        let wish = Wish::default();
+        for character in text.chars() {
+            let key = match character {
+                '\n' => Key::Enter,
+                '\u{1b}' => Key::Escape,
+                '\u{4}' => Key::End,
+                other => Key::Character(other),
+            };
+            dialogue.press(key, &wish);
+        }
+    }
+
+    fn answered(operator: Option<&str>, typed: &str) -> Inspection {
+        let mut dialogue = Dialogue::new(operator.map(str::to_owned));
+        assert_eq!(dialogue.ask("look"), Inspection::Wait);
+        type_in(&mut dialogue, typed);
+        dialogue.ask("look")
+    }
+
+    #[test]
+    fn only_yes_with_a_name_goes_on() {
+        let by = |name: &str| Some(name.to_owned());
+        assert_eq!(answered(Some("A. Engineer"), "y\n"), Inspection::GoOn { note: None, by: by("A. Engineer") });
+        let typed = Inspection::GoOn { note: Some("no crack".to_owned()), by: by("B") };
+        assert_eq!(answered(None, "yno crack\n  \nB\n"), typed, "a blank name is asked for again");
+        for undecided in ["", "\n", " ", "x", "y", "yyes", "y\n", "y\n  \n", "y\u{1b}", "p", "i"] {
+            assert_eq!(answered(None, undecided), Inspection::Wait, "{undecided:?}");
+        }
+        assert!(matches!(answered(None, "\u{4}"), Inspection::Stop { .. }), "the end of the input is no yes");
+        assert!(matches!(answered(None, "yfine\u{4}"), Inspection::Stop { .. }));
+        let stop = answered(Some("C"), "ncrack\u{202e}\n");
+        let reason = "stopped by a person at an inspection: crack\\u{202e}".to_owned();
+        assert_eq!(stop, Inspection::Stop { reason, by: by("C") });
+    }
+
+    #[test]
+    fn a_note_being_typed_is_no_answer() {
+        let mut dialogue = Dialogue::new(Some("A".to_owned()));
+        type_in(&mut dialogue, "i");
+        assert_eq!(dialogue.ask("look"), Inspection::Wait);
+        type_in(&mut dialogue, "yes\n");
+        assert_eq!(dialogue.next(), Next::Record("yes (A)".to_owned()));
+        assert_eq!(dialogue.ask("look"), Inspection::Wait, "the question comes after the note");
+        type_in(&mut dialogue, "y\n");
+        assert!(matches!(dialogue.ask("look"), Inspection::GoOn { .. }));
+    }
+
+    #[test]
+    fn a_paused_run_goes_on_step_by_step() {
+        let mut dialogue = Dialogue::new(None);
+        type_in(&mut dialogue, "s");
+        assert_eq!(dialogue.next(), Next::GoOn);
+        type_in(&mut dialogue, "p");
+        assert_eq!(dialogue.next(), Next::Record("paused by a person".to_owned()));
+        assert_eq!(dialogue.next(), Next::Wait);
+        type_in(&mut dialogue, "s ");
+        assert_eq!([dialogue.next(), dialogue.next(), dialogue.next()], [Next::GoOn, Next::GoOn, Next::Wait]);
+        type_in(&mut dialogue, "p");
+        assert_eq!(dialogue.next(), Next::Record("went on by a person".to_owned()));
+        assert_eq!(dialogue.next(), Next::GoOn);
+    }
+
+    #[test]
+    fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_stop() {
+        let wish = Wish::default();
+        let mut dialogue = Dialogue::default();
+        dialogue.press(Key::Character('q'), &wish);
+        assert!(wish.wants_stop() && !wish.wants_hold());
+        dialogue.press(Key::Interrupt, &wish);
+        assert!(wish.wants_hold());
+        let wish = Wish::default();
+        dialogue.paused = true;
+        dialogue.lose(&wish);
+        assert!(wish.wants_stop());
+        assert_eq!(dialogue.next(), Next::GoOn, "a pause does not outlast its terminal");
+        assert!(matches!(dialogue.ask("look"), Inspection::Stop { .. }));
+    }
+}

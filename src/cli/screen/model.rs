@@ -1,0 +1,197 @@
+//! What the screen knows of a run. In: what the run tells its observer. Out: numbers in SI and words, bounded in number
+//! however long the run is. It knows no terminal and no clock.
+
+use std::collections::VecDeque;
+
+use super::curve::Curve;
+use crate::plan::{Interval, Limits, Plan};
+use crate::quantity::Dimension;
+use crate::record::{Event, EventKind};
+use crate::run::StepReport;
+
+/// Events kept for the screen.
+const MOST_EVENTS: usize = 32;
+
+/// Everything that is drawn but the dialogue with the person.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub title: String,
+    pub rig: String,
+    pub simulated: bool,
+    pub limits: Limits,
+    /// The procedure that runs, or ran last.
+    pub procedure: Option<Running>,
+    pub last: Option<StepReport>,
+    /// Displacement (m) over time (s) of this procedure.
+    pub displacement: Curve,
+    /// Force (N) over displacement (m) of this procedure.
+    pub force: Curve,
+    /// Change of target by the last step, m.
+    pub increment: Option<f64>,
+    /// The newest last.
+    pub events: VecDeque<Event>,
+    /// What stands in place of a running procedure: `monitor`.
+    pub by_hand: Option<&'static str>,
+}
+
+/// A procedure and how far it can go.
+#[derive(Clone, Debug)]
+pub struct Running {
+    pub name: String,
+    pub keyword: String,
+    /// Upper bound of its steps, where one is known.
+    pub steps: Option<u64>,
+}
+
+/// One limit and where the last step stands in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitRow {
+    pub name: &'static str,
+    pub dimension: Dimension,
+    pub limit: Interval,
+    /// None where nothing is known of it yet.
+    pub value: Option<f64>,
+}
+
+impl LimitRow {
+    /// Distance to the nearer end; negative past it.
+    pub fn margin(&self) -> Option<f64> {
+        let value = self.value?;
+        let margin = (value - self.limit.low).min(self.limit.high - value);
+        margin.is_finite().then_some(margin)
+    }
+}
+
+impl Model {
+    pub fn new(plan: &Plan, simulated: bool) -> Self {
+        Self {
+            title: plan.title.clone(),
+            rig: plan.rig.name.clone(),
+            simulated,
+            limits: plan.limits,
+            procedure: None,
+            last: None,
+            displacement: Curve::default(),
+            force: Curve::default(),
+            increment: None,
+            events: VecDeque::new(),
+            by_hand: None,
+        }
+    }
+
+    pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.procedure = Some(Running { name: name.to_owned(), keyword: keyword.to_owned(), steps });
+        self.last = None;
+        self.increment = None;
+        self.displacement = Curve::default();
+        self.force = Curve::default();
+    }
+
+    pub fn step_done(&mut self, report: &StepReport) {
+        self.increment = self.last.map(|last| (report.command - last.command).abs());
+        self.displacement.push(report.time, report.displacement);
+        self.force.push(report.displacement, report.force);
+        self.last = Some(*report);
+    }
+
+    pub fn event(&mut self, event: &Event) {
+        if self.events.len() == MOST_EVENTS {
+            self.events.pop_front();
+        }
+        self.events.push_back(event.clone());
+    }
+
+    /// |command − displacement| of the last step, m; none while the rig is read on the way.
+    pub fn tracking_error(&self) -> Option<f64> {
+        let on_the_way = self.procedure.as_ref().is_some_and(|running| running.keyword == "damping sweep");
+        if on_the_way || self.by_hand.is_some() {
+            return None;
+        }
+        self.last.map(|last| (last.command - last.displacement).abs())
+    }
+
+    /// The limits of the plan that a step says something of, those that bound nothing left out.
+    pub fn limit_rows(&self) -> Vec<LimitRow> {
+        let Limits { displacement, force, increment, tracking_error, energy_error, .. } = self.limits;
+        let of = |value: fn(&StepReport) -> f64| self.last.as_ref().map(value);
+        let energy = self.last.and_then(|last| last.energy_error).map(f64::abs);
+        let sizes = |limit: Interval| Interval { low: limit.low.max(0.0), ..limit };
+        [
+            ("displacement", Dimension::LENGTH, displacement, of(|step| step.displacement)),
+            ("force", Dimension::FORCE, force, of(|step| step.force)),
+            ("increment", Dimension::LENGTH, sizes(increment), self.increment),
+            ("tracking error", Dimension::LENGTH, sizes(tracking_error), self.tracking_error()),
+            ("energy error", Dimension::NUMBER, sizes(energy_error), energy),
+        ]
+        .into_iter()
+        .filter(|(_, _, limit, _)| limit.high < f64::INFINITY || limit.low > 0.0 || limit.low < 0.0 && limit.low.is_finite())
+        .map(|(name, dimension, limit, value)| LimitRow { name, dimension, limit, value })
+        .collect()
+    }
+
+    /// The word for an event's kind, as in `summary.json`.
+    pub const fn kind(event: &Event) -> &'static str {
+        match event.kind {
+            EventKind::Note => "note",
+            EventKind::Inspection => "inspection",
+            EventKind::LimitBreach => "limit breach",
+            EventKind::Hold => "hold",
+            EventKind::Fault => "fault",
+            EventKind::Remark => "remark",
+        }
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+    use crate::run::testing::empty_plan;
+
+    pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {
+        StepReport {
+            step,
+            time,
+            command,
+            displacement: command - 2e-6,
+            velocity: None,
+            acceleration: None,
+            force,
+            energy_error: Some(-1e-4),
+        }
+    }
+
+    #[test]
+    fn limits_stand_with_value_and_margin_and_only_where_they_bound() {
+        let mut plan = empty_plan();
+        plan.limits.displacement = Interval { low: -0.01, high: 0.1 };
+        plan.limits.increment = Interval { low: 0.0, high: 0.02 };
+        plan.limits.speed = Interval { low: 0.0, high: 1.0 };
+        let mut model = Model::new(&plan, true);
+        model.procedure_started("hit", "impact", Some(3));
+        assert_eq!(model.limit_rows().iter().map(|row| (row.name, row.value)).collect::<Vec<_>>(), [
+            ("displacement", None),
+            ("increment", None)
+        ]);
+        model.step_done(&step(1, 0.1, 0.01, 5.0));
+        model.step_done(&step(2, 0.2, 0.025, 6.0));
+        let rows = model.limit_rows();
+        assert_eq!(rows[0].margin(), Some(0.024_998 + 0.01));
+        assert!((rows[1].margin().unwrap() - 0.005).abs() < 1e-12);
+        assert!((model.tracking_error().unwrap() - 2e-6).abs() < 1e-12);
+        model.procedure_started("c", "damping sweep", None);
+        model.step_done(&step(1, 0.1, 0.01, 5.0));
+        assert_eq!(model.tracking_error(), None, "the target of a stroke is its end");
+        assert_eq!(model.displacement.points().count(), 2, "a procedure begins its own curves");
+    }
+
+    #[test]
+    fn events_are_bounded() {
+        let mut model = Model::new(&empty_plan(), true);
+        for number in 0..100 {
+            let text = format!("event {number}");
+            model.event(&Event { time: 0.0, procedure: None, step: None, kind: EventKind::Note, text });
+        }
+        assert_eq!(model.events.len(), MOST_EVENTS);
+        assert_eq!(model.events.back().unwrap().text, "event 99");
+    }
+}
