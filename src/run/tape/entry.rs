@@ -13,7 +13,7 @@ pub struct Header {
     pub psd: String,
     /// Digest of the program's sources.
     pub build: String,
-    /// The plan first, then what it used: name, SHA-256, text.
+    /// The plan first, then what it used. Their texts follow in PLAN records.
     pub files: Vec<HeaderFile>,
     /// `--set` values as given.
     pub settings: Vec<(String, String)>,
@@ -34,8 +34,30 @@ pub struct Header {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HeaderFile {
     pub name: String,
+    /// Of its text, hex.
     pub sha256: String,
+}
+
+/// PLAN: a part of a file's text, for a line of the journal is bounded.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlanBody {
+    /// Place in the list of files before it.
+    pub file: usize,
     pub text: String,
+}
+
+impl PlanBody {
+    /// Characters of a part: at most six bytes each in the journal.
+    const PART: usize = 8192;
+
+    /// The parts of the texts, in order.
+    pub fn parts_of(texts: &[String]) -> Vec<Self> {
+        let parts = |(file, text): (usize, &String)| {
+            let characters: Vec<char> = text.chars().collect();
+            characters.chunks(Self::PART).map(|part| Self { file, text: part.iter().collect() }).collect::<Vec<_>>()
+        };
+        texts.iter().enumerate().flat_map(parts).collect()
+    }
 }
 
 /// RIG: who answered, when the run began and at every resumption.

@@ -27,6 +27,7 @@ use crate::plan::Plan;
 use crate::record::journal::{EntryKind, Journal, JournalFault};
 use crate::record::{Event, Outcome, Record};
 use crate::rig::Rig;
+use entry::PlanBody;
 use state::State;
 
 use super::{Observer, Unwatched, run};
@@ -104,11 +105,26 @@ fn add_interruptions(record: &mut Record, interruptions: Vec<Event>) {
     }
 }
 
-/// Writes the first record of a journal.
+/// Writes what a run starts from: the header, and the texts of its files.
 ///
 /// # Errors
 /// It cannot be written.
-pub fn begin(journal: &mut Journal, header: &Header) -> Result<(), JournalFault> {
+pub fn begin(journal: &mut Journal, header: &Header, texts: &[String]) -> Result<(), JournalFault> {
     journal.append(EntryKind::Header, header)?;
+    append_texts(journal, texts)?;
     journal.promise()
+}
+
+/// Writes that something else holds from here on, and its texts.
+///
+/// # Errors
+/// It cannot be written.
+pub fn amend(journal: &mut Journal, amendment: &AmendBody, texts: &[String]) -> Result<(), JournalFault> {
+    journal.append(EntryKind::Amend, amendment)?;
+    append_texts(journal, texts)?;
+    journal.promise()
+}
+
+fn append_texts(journal: &mut Journal, texts: &[String]) -> Result<(), JournalFault> {
+    PlanBody::parts_of(texts).iter().try_for_each(|part| journal.append(EntryKind::Plan, part))
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use serde::de::DeserializeOwned;
 
-use super::entry::{AmendBody, Doubt, Header, ResumeBody, RigBody};
+use super::entry::{AmendBody, Doubt, Header, PlanBody, ResumeBody, RigBody};
 use crate::record::journal::{EntryKind, Line, Recovered};
 use crate::record::{Event, EventKind};
 
@@ -14,6 +14,8 @@ use crate::record::{Event, EventKind};
 pub struct Played {
     /// What holds at the end: that of the last amendment, else of the first record.
     pub header: Header,
+    /// Text of each file of the header.
+    pub texts: Vec<String>,
     /// The rig as it was when the run began.
     pub rig: Option<RigBody>,
     /// The rig as it answered last.
@@ -57,6 +59,7 @@ impl Played {
         let mut lines = recovered.lines.iter();
         let first = lines.next().filter(|line| line.kind == EntryKind::Header).ok_or(Unplayable::NoHeader)?;
         let mut played = Self {
+            texts: Vec::new(),
             header: body(first)?,
             rig: None,
             last_rig: None,
@@ -69,6 +72,8 @@ impl Played {
         for line in lines {
             played.take(line)?;
         }
+        // An empty file has no part.
+        played.texts.resize(played.header.files.len(), String::new());
         Ok(played)
     }
 
@@ -82,11 +87,21 @@ impl Played {
                 self.rig.get_or_insert_with(|| rig.clone());
                 self.last_rig = Some(rig);
             }
+            EntryKind::Plan => {
+                let part: PlanBody = body(line)?;
+                if part.file >= self.header.files.len() {
+                    let reason = "there is no such file".to_owned();
+                    return Err(Unplayable::Body { seq: line.seq, kind: line.kind, reason });
+                }
+                self.texts.resize(self.header.files.len(), String::new());
+                self.texts[part.file].push_str(&part.text);
+            }
             EntryKind::Amend => {
                 let amend: AmendBody = body(line)?;
                 let text = format!("{} ({}): {}", amend.differences.join("; "), amend.by, amend.reason);
                 self.interrupted(EventKind::Amendment, text);
                 self.header = amend.header;
+                self.texts.clear();
             }
             EntryKind::Resume => {
                 let resume: ResumeBody = body(line)?;

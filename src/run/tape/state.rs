@@ -176,7 +176,8 @@ impl State {
         let told = unkept(&fault);
         if let Some(journal) = &mut self.journal {
             let words = FaultBody { t: self.time, call: super::Call::Execute, fault: told.clone(), wall: (self.wall)() };
-            journal.last_words(EntryKind::Fault, &words);
+            // The disk is sick already: what can be said is said, and no more is asked of it.
+            let _ = journal.last_words(EntryKind::Fault, &words);
         }
         self.fault = Some(fault);
         told
@@ -202,7 +203,7 @@ impl State {
     }
 
     pub(super) fn sealed(&self) -> Option<(u64, String)> {
-        self.journal.as_ref().map(|journal| (journal.count(), journal.head().to_owned()))
+        self.journal.as_ref().map(|journal| (journal.len(), journal.head().to_owned()))
     }
 
     pub(super) const fn mismatch(&self) -> Option<&Mismatch> {
