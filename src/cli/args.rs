@@ -20,6 +20,14 @@ pub struct Arguments {
 pub enum Command {
     /// Checks a plan, runs it, writes the results and gives the verdict
     Run(RunArguments),
+    /// Goes on with a run on a real rig that was stopped or cut off
+    Resume(ResumeArguments),
+    /// Proves that a run's record, targets and files belong together; nothing moves
+    Verify {
+        /// The run folder
+        #[arg(value_name = "RUN")]
+        run: PathBuf,
+    },
     /// Shows everything wrong with plans; nothing moves
     Check(CheckArguments),
     /// Writes plans in the canonical layout
@@ -65,6 +73,34 @@ pub struct RunArguments {
     /// Also replaces the blessed results in reports/PLAN, beside the plan's folder
     #[arg(long)]
     pub bless: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ResumeArguments {
+    /// The run folder
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Who takes it upon them that the run goes on
+    #[arg(long, value_name = "NAME")]
+    pub operator: String,
+    /// Why the run was interrupted and may go on; it is recorded
+    #[arg(long, value_name = "TEXT")]
+    pub reason: String,
+    /// A plan that must be the recorded one, or, with --amend, takes its place
+    #[arg(long, value_name = "PLAN")]
+    pub plan: Option<PathBuf>,
+    /// Accepts that the plan or the program is another one; the difference is recorded
+    #[arg(long)]
+    pub amend: bool,
+    /// The rig started anew, and has been referenced since
+    #[arg(long)]
+    pub re_referenced: bool,
+    /// The force changed beyond its band since, and someone has looked at the specimen
+    #[arg(long)]
+    pub accept_relaxation: bool,
+    /// Answers routine questions with yes
+    #[arg(long)]
+    pub yes: bool,
 }
 
 #[derive(Debug, Args)]

@@ -67,6 +67,14 @@ pub enum Failure {
     Output(#[from] crate::output::OutputError),
     #[error("standard output: {0}")]
     Stdout(std::io::Error),
+    #[error(transparent)]
+    Record(#[from] crate::record::journal::FileFault),
+    #[error(transparent)]
+    Journal(#[from] crate::record::journal::JournalFault),
+    #[error("{0}")]
+    Rig(#[from] crate::rig::RigFault),
+    #[error("the run cannot go on: {0}")]
+    Refused(#[from] crate::run::tape::Refusal),
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
     Signals(std::io::Error),
 }
@@ -92,7 +100,14 @@ impl Failure {
     pub const fn exit(&self) -> Exit {
         match self {
             Self::CommandLine { .. } | Self::NotAPlan { .. } => Exit::Wrong,
-            Self::File { .. } | Self::Output(_) | Self::Stdout(_) | Self::Signals(_) => Exit::Fault,
+            Self::File { .. }
+            | Self::Output(_)
+            | Self::Stdout(_)
+            | Self::Record(_)
+            | Self::Journal(_)
+            | Self::Rig(_)
+            | Self::Refused(_)
+            | Self::Signals(_) => Exit::Fault,
         }
     }
 

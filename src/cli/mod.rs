@@ -5,6 +5,7 @@ mod args;
 mod bless;
 mod check;
 mod columns;
+mod conclude;
 mod dry_rig;
 mod exit;
 mod explain;
@@ -16,10 +17,14 @@ mod output;
 mod plan_file;
 mod progress;
 mod provenance;
+mod real_rig;
+mod record_file;
+mod resume;
 mod rig;
 mod run;
 mod run_folder;
 mod settings;
+mod verify;
 
 use std::ffi::OsString;
 
@@ -42,6 +47,8 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
     let settings = settings::Settings::from_environment(arguments.color);
     let outcome = match &arguments.command {
         args::Command::Run(arguments) => run::run(arguments, settings),
+        args::Command::Resume(arguments) => resume::resume(arguments, settings),
+        args::Command::Verify { run } => verify::verify(run, settings),
         args::Command::Check(arguments) => check::check(arguments, settings),
         args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),
         args::Command::Explain { code } => explain::explain(code.as_deref(), settings),

@@ -46,7 +46,13 @@ fn run_id(plan: &Plan, version: &str) -> String {
     hex(&digest.finalize())[..16].to_owned()
 }
 
-fn hex(bytes: &[u8]) -> String {
+/// SHA-256 in hex.
+pub fn sha256(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+/// Two digits a byte.
+pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text

@@ -1,18 +1,22 @@
 //! `psd run`: check → run → verdict → files. Nothing moves while an error stands, and nothing moves before there is a
-//! folder to keep the record in.
+//! record to keep it in.
 
 use super::args::{Format, RunArguments};
 use super::bless::BlessedFolder;
+use super::conclude::conclude;
 use super::exit::{Exit, Failure};
 use super::output::{give, tell};
 use super::progress::Watcher;
+use super::record_file::{self, Circumstances, journal_of};
 use super::run_folder::RunFolder;
 use super::settings::Settings;
 use super::{plan_file, provenance};
 use crate::diagnostic::json;
-use crate::output::{self, OutputFile, Run};
+use crate::output::OutputFile;
+use crate::plan::Plan;
+use crate::record::journal::{Durability, FileStorage, Journal};
 use crate::rig::{Rig as _, VirtualRig};
-use crate::{run as runner, verdict};
+use crate::run::tape;
 
 /// Runs one plan.
 pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -28,17 +32,14 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     let mut rig = VirtualRig::of_plan(plan);
     let mut watcher = Watcher::new(settings, arguments.yes, rig.identity().simulated).map_err(Failure::Signals)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let provenance = provenance::of(plan);
+    let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
+    let journal = begin(&folder, plan, &header)?;
 
-    let record = runner::run(plan, &mut rig, &mut watcher);
+    let recorded = tape::record(plan, &mut rig, &mut watcher, journal, Box::new(|| None));
     watcher.finish();
 
-    let assessment = verdict::assess(plan, &record);
-    let provenance = provenance::of(plan);
-    let run = Run { plan, record: &record, assessment: &assessment, provenance: &provenance };
-    tell(&output::console::verdict_text(&run, settings.color));
-    let files = output::everything(&run)?;
-    folder.write(&files)?;
-    let exit = Exit::from(assessment.verdict);
+    let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         if exit <= Exit::Missed {
             blessed.replace(&files)?;
@@ -52,6 +53,15 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         Format::Json => give(&String::from_utf8_lossy(summary(&files)))?,
     }
     Ok(exit)
+}
+
+/// Opens the record of a run that is about to begin.
+fn begin(folder: &RunFolder, plan: &Plan, header: &tape::Header) -> Result<Journal, Failure> {
+    let storage = FileStorage::create(&journal_of(folder.path()))?;
+    let durability = if plan.rig.link.as_real().is_some() { Durability::EveryPromise } else { Durability::Buffered };
+    let mut journal = Journal::create(Box::new(storage), durability);
+    tape::begin(&mut journal, header, &record_file::texts(plan))?;
+    Ok(journal)
 }
 
 fn summary(files: &[OutputFile]) -> &[u8] {

@@ -61,11 +61,6 @@ impl RunFolder {
     pub fn path(&self) -> &Path {
         &self.path
     }
-
-    /// Writes every file.
-    pub fn write(&self, files: &[OutputFile]) -> Result<(), Failure> {
-        files.iter().try_for_each(|file| write_new(&self.path, file))
-    }
 }
 
 /// Creates one file under `folder`, which must not have it.
@@ -102,9 +97,9 @@ mod tests {
         std::fs::create_dir(root.path().join("beam-of-9")).unwrap();
         let next = RunFolder::numbered(root.path(), "beam").unwrap();
         assert!(first.path().ends_with("beam-1") && next.path().ends_with("beam-8"));
-        next.write(&[file("a/b.csv")]).unwrap();
-        assert!(next.write(&[file("a/b.csv")]).is_err());
-        assert!(next.write(&[file("../b.csv")]).is_err());
+        write_new(next.path(), &file("a/b.csv")).unwrap();
+        assert!(write_new(next.path(), &file("a/b.csv")).is_err());
+        assert!(write_new(next.path(), &file("../b.csv")).is_err());
     }
 
     #[test]

@@ -52,6 +52,11 @@ impl Settings {
         if self.color { format!("\u{1b}[1;31m{text}\u{1b}[0m") } else { text.to_owned() }
     }
 
+    /// A bad finding on standard output.
+    pub fn paint_bad(self, text: &str) -> String {
+        if self.stdout_color { format!("\u{1b}[1;31m{text}\u{1b}[0m") } else { text.to_owned() }
+    }
+
     pub fn paint_note(self, text: &str) -> String {
         if self.color { format!("\u{1b}[36m{text}\u{1b}[0m") } else { text.to_owned() }
     }

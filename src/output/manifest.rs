@@ -7,12 +7,22 @@ use sha2::{Digest as _, Sha256};
 
 use super::OutputFile;
 
+/// Its name; it does not list itself.
+pub(super) const NAME: &str = "manifest.sha256";
+
 /// The manifest of `files`, in order of path.
 pub(super) fn of(files: &[OutputFile]) -> OutputFile {
-    let mut lines: Vec<(&str, String)> = files.iter().map(|file| (file.path.as_str(), sha256(&file.bytes))).collect();
+    with(files.iter(), &[])
+}
+
+/// The manifest of files, and of others by path and digest, in order of path.
+pub(super) fn with<'a>(files: impl Iterator<Item = &'a OutputFile>, others: &[(String, String)]) -> OutputFile {
+    let made = files.map(|file| (file.path.as_str(), sha256(&file.bytes)));
+    let known = others.iter().map(|(path, digest)| (path.as_str(), digest.clone()));
+    let mut lines: Vec<(&str, String)> = made.chain(known).collect();
     lines.sort();
     let text = lines.into_iter().fold(String::new(), |text, (path, hash)| text + &hash + "  " + path + "\n");
-    OutputFile { path: "manifest.sha256".to_owned(), bytes: text.into_bytes() }
+    OutputFile { path: NAME.to_owned(), bytes: text.into_bytes() }
 }
 
 fn sha256(bytes: &[u8]) -> String {

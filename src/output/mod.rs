@@ -76,6 +76,12 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     Ok(files)
 }
 
+/// The manifest of files that are made and of others whose digests are known: path and SHA-256 in hex.
+#[must_use]
+pub fn manifest_with(files: &[OutputFile], others: &[(String, String)]) -> OutputFile {
+    manifest::with(files.iter().filter(|file| file.path != manifest::NAME), others)
+}
+
 /// Whether the plan's report asks for a format; a report that names none asks for all.
 fn wants(plan: &Plan, format: Format) -> bool {
     plan.report.formats.is_empty() || plan.report.formats.contains(&format)

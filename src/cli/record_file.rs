@@ -1,0 +1,129 @@
+//! The journal of a run folder. In: a plan about to run, or a folder. Out: a journal that is open, or what one holds and
+//! the plan checked again from it. The record is enough: nothing else of the machine is read.
+
+use std::path::{Path, PathBuf};
+
+use super::args::PlanSettings;
+use super::exit::Failure;
+use super::loader::plain;
+use crate::check::{LoadFault, Loader, Options, check};
+use crate::output::Provenance;
+use crate::plan::Plan;
+use crate::record::journal::{Recovered, recover};
+use crate::run::tape::{Header, HeaderFile, Played};
+
+/// Name of the journal in its run folder.
+pub const JOURNAL: &str = "journal.psdj";
+
+/// Digest of the sources that this program was built from.
+pub const BUILD: &str = env!("PSD_BUILD");
+
+/// What only a real rig's record says of the place and the people.
+#[derive(Clone, Debug, Default)]
+pub struct Circumstances {
+    pub operator: Option<String>,
+    pub host: Option<String>,
+    /// UTC.
+    pub began: Option<String>,
+}
+
+/// What a run starts from.
+pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, circumstances: Circumstances) -> Header {
+    let file = |file: &crate::plan::PlanFile| HeaderFile {
+        name: file.name.clone(),
+        sha256: super::provenance::sha256(file.text.as_bytes()),
+    };
+    let Circumstances { operator, host, began } = circumstances;
+    Header {
+        run_id: provenance.run_id.clone(),
+        psd: provenance.psd_version.clone(),
+        build: BUILD.to_owned(),
+        files: plan.files.iter().map(file).collect(),
+        settings: settings.set.clone(),
+        rig: settings.rig.clone(),
+        date: settings.date.clone(),
+        operator,
+        host,
+        began,
+    }
+}
+
+/// Texts of the plan's files, in the header's order.
+pub fn texts(plan: &Plan) -> Vec<String> {
+    plan.files.iter().map(|file| file.text.clone()).collect()
+}
+
+/// A record as it was read.
+pub struct ReadRecord {
+    pub recovered: Recovered,
+    pub played: Played,
+    pub plan: Plan,
+    pub provenance: Provenance,
+}
+
+/// Reads the journal of a run folder without touching it.
+pub fn read(run: &Path) -> Result<ReadRecord, Failure> {
+    let path = journal_of(run);
+    let bytes = std::fs::read(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
+    from_bytes(&path, &bytes)
+}
+
+/// A record from the bytes of its journal.
+pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
+    let damaged = |reason: String| Failure::file(path, reason);
+    let recovered = recover(bytes).map_err(|damage| damaged(format!("the record is damaged: {damage}")))?;
+    let played = Played::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
+    for (file, text) in played.header.files.iter().zip(&played.texts) {
+        if super::provenance::sha256(text.as_bytes()) != file.sha256 {
+            return Err(damaged(format!("the text of `{}` is not the one of its digest", file.name)));
+        }
+    }
+    let plan = plan_of(&played).map_err(damaged)?;
+    let provenance = provenance_of(&played.header, &plan);
+    Ok(ReadRecord { recovered, played, plan, provenance })
+}
+
+/// The journal of a run folder.
+pub fn journal_of(run: &Path) -> PathBuf {
+    run.join(JOURNAL)
+}
+
+/// The plan of a record, checked again from the record alone.
+pub fn plan_of(played: &Played) -> Result<Plan, String> {
+    let header = &played.header;
+    let files = Files { header, texts: &played.texts };
+    let (Some(first), Some(text)) = (header.files.first(), played.texts.first()) else {
+        return Err("the record holds no plan".to_owned());
+    };
+    let options = Options { rig: header.rig.clone(), settings: header.settings.clone(), date: header.date.clone() };
+    let checked = check(&first.name, text, &files, &options);
+    checked.plan.ok_or_else(|| {
+        let fault = checked.diagnostics.iter().find(|found| found.is_error());
+        let fault = fault.map_or_else(String::new, |fault| format!(": {}", fault.message));
+        format!("this version of psd finds the recorded plan faulty{fault}")
+    })
+}
+
+/// The provenance that the record gives; the plan's own date counts where none was given on the command line.
+fn provenance_of(header: &Header, plan: &Plan) -> Provenance {
+    let date = plan.particulars.iter().find(|(field, _)| *field == "date").map(|(_, date)| date.clone());
+    Provenance {
+        run_id: header.run_id.clone(),
+        psd_version: header.psd.clone(),
+        plan_sha256: header.files.first().map_or_else(String::new, |file| file.sha256.clone()),
+        date,
+    }
+}
+
+/// Gives the recorded files by the names they were used under.
+struct Files<'a> {
+    header: &'a Header,
+    texts: &'a [String],
+}
+
+impl Loader for Files<'_> {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        let found = self.header.files.iter().position(|file| file.name == path);
+        found.and_then(|index| self.texts.get(index)).cloned().ok_or(LoadFault::NotFound)
+    }
+}

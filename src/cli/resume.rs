@@ -1,0 +1,162 @@
+//! `psd resume RUN`: goes on with a run on a real rig. In: the folder of a run that was stopped or cut off, and who takes
+//! it upon them. Out: the same run, to its end. Nothing moves before record, plan, program and rig are known to be those of
+//! the run, and the target in doubt is settled by asking the rig.
+
+use std::path::{Path, PathBuf};
+
+use super::args::{PlanSettings, ResumeArguments};
+use super::conclude::conclude;
+use super::exit::{Exit, Failure};
+use super::loader::plain;
+use super::output::{give, tell};
+use super::record_file::{self, BUILD, ReadRecord, journal_of};
+use super::settings::Settings;
+use super::{plan_file, provenance, real_rig};
+use crate::output::Provenance;
+use crate::plan::{Plan, RealLink};
+use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
+use crate::rig::Rig;
+use crate::run::tape::{self, AmendBody, Bands, Header, Played, ResumeBody, RigBody};
+
+/// Goes on with one run.
+pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
+    for (what, text) in [("operator", &arguments.operator), ("reason", &arguments.reason)] {
+        if text.trim().is_empty() || text.len() > 1024 {
+            return Err(Failure::command_line(format!("`--{what}` says nothing, or too much")));
+        }
+    }
+    let path = journal_of(&arguments.run);
+    let mut storage = FileStorage::open_existing(&path)?;
+    let read = record_file::from_bytes(&path, &storage.contents()?)?;
+    if read.played.ended {
+        return Err(tape::Refusal::Ended.into());
+    }
+    let Some(link) = read.plan.rig.link.as_real().cloned() else {
+        return Err(Failure::command_line("a run on a virtual rig moved nothing: there is nothing to go on with")
+            .help("start it anew with `psd run`"));
+    };
+    let (plan, provenance, amendment) = what_holds(arguments, &read)?;
+
+    let torn = storage.truncate_to(read.recovered.whole)?;
+    let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
+    if let Some(torn) = torn {
+        let name = torn.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        journal.append(EntryKind::Recover, &serde_json::json!({ "t": read.played.time, "put_aside": name }))?;
+        tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
+    }
+    if let Some((amendment, texts)) = &amendment {
+        tape::amend(&mut journal, amendment, texts)?;
+    }
+
+    let mut opened = real_rig::open(&plan, &arguments.operator, arguments.yes, settings)?;
+    let resumption = settle(arguments, &plan, &link, &read.played, opened.rig.as_mut())?;
+    let about = RigBody { t: read.played.time, ..RigBody::of(opened.rig.as_ref()) };
+    journal.append(EntryKind::Rig, &about)?;
+    journal.append(EntryKind::Resume, &resumption)?;
+    journal.sync()?;
+
+    let played = played(&path)?;
+    put_results_aside(&arguments.run)?;
+    let wall = real_rig::wall_clock();
+    let recorded = tape::resume(&plan, played, opened.rig.as_mut(), &mut opened.watcher, journal, wall);
+    opened.finish();
+    let (exit, _) = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
+    give(&format!("{}\n", arguments.run.display()))?;
+    Ok(exit)
+}
+
+/// The plan and the program that hold from here on; another than the record's needs an amendment.
+type Held = (Plan, Provenance, Option<(AmendBody, Vec<String>)>);
+
+fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Failure> {
+    let recorded = &read.played.header;
+    let mut differences = Vec::new();
+    if recorded.build != BUILD {
+        differences.push(format!("program: {} build {} became {} build {BUILD}", recorded.psd, recorded.build, env!("CARGO_PKG_VERSION")));
+    }
+    let (mut plan, mut header, mut texts) = (read.plan.clone(), recorded.clone(), read.played.texts.clone());
+    if let Some(path) = &arguments.plan {
+        let options = PlanSettings { rig: recorded.rig.clone(), set: recorded.settings.clone(), date: recorded.date.clone() };
+        let checked = plan_file::open(path, &options)?;
+        let Some(given) = checked.plan else {
+            return Err(Failure::command_line(format!("{} has errors: see `psd check`", path.display())));
+        };
+        let now = record_file::header(&given, &options, &provenance::of(&given), record_file::Circumstances::default());
+        differences.extend(changed_files(recorded, &now));
+        header = Header { files: now.files, ..header };
+        texts = record_file::texts(&given);
+        plan = given;
+    }
+    if differences.is_empty() {
+        return Ok((plan, read.provenance.clone(), None));
+    }
+    if !arguments.amend {
+        let told = differences.join("\n  ");
+        return Err(Failure::command_line(format!("not what the run began with:\n  {told}"))
+            .help("`--amend` accepts it; who and why go into the record and onto the certificate"));
+    }
+    header = Header { psd: env!("CARGO_PKG_VERSION").to_owned(), build: BUILD.to_owned(), ..header };
+    let plan_sha256 = header.files.first().map_or_else(String::new, |file| file.sha256.clone());
+    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), ..read.provenance.clone() };
+    let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
+    Ok((plan, provenance, Some((AmendBody { by, reason, differences, header }, texts))))
+}
+
+/// Files whose digests differ, or that only one of the two has.
+fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
+    let of = |header: &Header, name: &str| header.files.iter().find(|file| file.name == name).map(|file| file.sha256.clone());
+    let mut names: Vec<&str> = recorded.files.iter().chain(&now.files).map(|file| file.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let told = |digest: Option<String>| digest.unwrap_or_else(|| "nothing".to_owned());
+    let changed = names.into_iter().filter(|name| of(recorded, name) != of(now, name));
+    changed.map(|name| format!("{name}: {} became {}", told(of(recorded, name)), told(of(now, name)))).collect()
+}
+
+/// Asks the rig, without moving it, what became of the last target.
+fn settle(
+    arguments: &ResumeArguments,
+    plan: &Plan,
+    link: &RealLink,
+    played: &Played,
+    rig: &mut dyn Rig,
+) -> Result<ResumeBody, Failure> {
+    let recorded = played.last_rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
+    tape::same_rig(&recorded.identity, &rig.identity(), arguments.re_referenced)?;
+    let found = rig.read()?;
+    let band = plan.rig.settle.band.max(4.0 * link.readings.resolution);
+    let bands = Bands { displacement: band, force: link.gate.zero.max(6.0 * link.readings.noise) };
+    let decision = tape::decide(played, &RigBody::of(rig), &found, bands, arguments.accept_relaxation)?;
+    Ok(ResumeBody {
+        from: decision.from,
+        by: arguments.operator.clone(),
+        reason: arguments.reason.clone(),
+        doubt: decision.doubt,
+        found: (found.displacement, found.force),
+        recorded: decision.recorded,
+        t: played.time,
+        wall: real_rig::wall_clock()(),
+    })
+}
+
+/// The record as it counts now, with the resumption in it.
+fn played(path: &Path) -> Result<Played, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::file(path, plain(&error)))?;
+    Ok(record_file::from_bytes(path, &bytes)?.played)
+}
+
+/// The results of the interrupted run are kept, beside those to come.
+fn put_results_aside(run: &Path) -> Result<(), Failure> {
+    let failed = |path: PathBuf| move |error: std::io::Error| Failure::file(path, plain(&error));
+    let entries = std::fs::read_dir(run).map_err(failed(run.to_owned()))?;
+    let is_result = |name: &str| !name.starts_with("journal.") && !name.starts_with("before-resume-");
+    let names: Vec<String> =
+        entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).filter(|name| is_result(name)).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let aside = (1..).map(|number: u32| run.join(format!("before-resume-{number}"))).find(|path| !path.exists());
+    let Some(aside) = aside else { return Ok(()) };
+    std::fs::create_dir(&aside).map_err(failed(aside.clone()))?;
+    names.into_iter().try_for_each(|name| std::fs::rename(run.join(&name), aside.join(&name)).map_err(failed(run.join(name))))
+}
