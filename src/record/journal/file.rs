@@ -36,12 +36,9 @@ impl FileStorage {
     /// Something of this name exists, or the disk has no room for the reserve; nothing is left behind then.
     pub fn create(path: &Path) -> Result<Self, FileFault> {
         let file = new_file(path).map_err(FileFault::of("created", path))?;
-        let mut storage = Self { file, path: path.to_owned() };
-        storage.lock()?;
-        storage.settle().inspect_err(|_| {
-            storage.release_reserve();
-            let _ = std::fs::remove_file(path);
-        })?;
+        let storage = Self::locked(file, path)?;
+        // The reserve goes with the storage.
+        storage.settle().inspect_err(|_| drop(std::fs::remove_file(path)))?;
         Ok(storage)
     }
 
@@ -58,8 +55,7 @@ impl FileStorage {
         if !file.metadata().map_err(FileFault::of("opened", path))?.is_file() {
             return Err(FileFault::NotAFile { path: path.to_owned() });
         }
-        let storage = Self { file, path: path.to_owned() };
-        storage.lock()?;
+        let storage = Self::locked(file, path)?;
         storage.settle()?;
         Ok(storage)
     }
@@ -111,15 +107,15 @@ impl FileStorage {
         Ok(told.f_bavail.saturating_mul(told.f_frsize))
     }
 
-    fn lock(&self) -> Result<(), FileFault> {
-        if !on(Guarding::Lock) {
-            return Ok(());
+    /// There is none without the lock: what it removes when it goes is its own.
+    fn locked(file: File, path: &Path) -> Result<Self, FileFault> {
+        if on(Guarding::Lock) {
+            file.try_lock().map_err(|refused| match refused {
+                TryLockError::WouldBlock => FileFault::InUse { path: path.to_owned() },
+                TryLockError::Error(error) => FileFault::of("locked", path)(error),
+            })?;
         }
-        match self.file.try_lock() {
-            Ok(()) => Ok(()),
-            Err(TryLockError::WouldBlock) => Err(FileFault::InUse { path: self.path.clone() }),
-            Err(TryLockError::Error(error)) => Err(FileFault::of("locked", &self.path)(error)),
-        }
+        Ok(Self { file, path: path.to_owned() })
     }
 
     /// Puts the reserve beside the file and makes file, reserve and their names durable.
@@ -147,6 +143,13 @@ impl Storage for FileStorage {
 
     fn release_reserve(&mut self) {
         ballast::release(&self.path);
+    }
+}
+
+/// The reserve is of use only while someone may write; the next to open the journal lays it again.
+impl Drop for FileStorage {
+    fn drop(&mut self) {
+        self.release_reserve();
     }
 }
 
