@@ -1,0 +1,63 @@
+//! Why the journal did not take a record. In: nothing. Out: a fault that can be kept and given again. It knows no file.
+
+use std::io;
+
+use super::EntryKind;
+
+/// A record was not written, or not made safe.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum JournalFault {
+    /// The disk failed. Final: every later call gives the same fault and does not ask the disk again.
+    #[error("the journal cannot be {doing}: {text}")]
+    Storage { doing: Doing, kind: io::ErrorKind, text: String },
+    /// The record is not one; nothing was written, and the journal can go on.
+    #[error("the journal refuses a record: {0}")]
+    Refused(#[from] Refusal),
+}
+
+impl JournalFault {
+    pub(super) fn storage(doing: Doing, error: &io::Error) -> Self {
+        Self::Storage { doing, kind: error.kind(), text: error.to_string() }
+    }
+}
+
+/// What the disk was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doing {
+    Append,
+    Sync,
+    /// Cut half a line off.
+    Cut,
+}
+
+impl std::fmt::Display for Doing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Append => "written",
+            Self::Sync => "made durable",
+            Self::Cut => "cut back",
+        })
+    }
+}
+
+/// What is wrong with a record.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    #[error("a number in it is not finite")]
+    NotFinite,
+    #[error("it is no JSON object")]
+    NotAnObject,
+    #[error("a number in it has more than 64 bits")]
+    TooWide,
+    #[error("it has more than {} brackets inside brackets", super::body::DEEPEST)]
+    TooDeep,
+    #[error("its line would have {bytes} bytes, the most is {}", super::LINE_BYTES)]
+    TooLong { bytes: usize },
+    #[error("its field `{0}` is written by the journal itself")]
+    Reserved(&'static str),
+    /// HEADER is the first and the only one; END is written by `end`; nothing follows it.
+    #[error("{} has no place here", .0.word())]
+    OutOfPlace(EntryKind),
+    #[error("it does not turn into JSON: {0}")]
+    NotJson(String),
+}

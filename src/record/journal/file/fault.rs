@@ -1,0 +1,23 @@
+//! Why the file of a journal cannot be used. In: a path and what the system says. Out: a sentence for people.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum FileFault {
+    #[error("the journal {} is in use by another psd", path.display())]
+    InUse { path: PathBuf },
+    #[error("the journal {} is no regular file", path.display())]
+    NotAFile { path: PathBuf },
+    #[error("the journal {} has more than {most} bytes", path.display())]
+    TooLarge { path: PathBuf, most: u64 },
+    #[error("the journal {} cannot be {doing}: {error}", path.display())]
+    System { doing: &'static str, path: PathBuf, error: io::Error },
+}
+
+impl FileFault {
+    pub(super) fn of(doing: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
+        move |error| Self::System { doing, path: path.to_owned(), error }
+    }
+}

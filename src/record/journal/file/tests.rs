@@ -1,0 +1,188 @@
+//! The file of a journal: locks, reserve, modes, torn ends, writes that come short.
+
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::os::unix::fs::{PermissionsExt as _, symlink};
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+use tempfile::TempDir;
+
+use super::super::{Durability, EntryKind, Journal, Storage, recover};
+use super::{FileFault, FileStorage, ballast, write_whole};
+use crate::rig::failpoint::{Guarding, without};
+
+fn place() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal");
+    (folder, path)
+}
+
+fn begun(path: &Path) -> Journal {
+    let storage = FileStorage::create(path).unwrap();
+    let mut journal = Journal::create(Box::new(storage), Durability::EveryPromise);
+    journal.append(EntryKind::Header, &json!({})).unwrap();
+    journal
+}
+
+fn names(folder: &TempDir) -> Vec<String> {
+    let entries = fs::read_dir(folder.path()).unwrap();
+    let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_run_leaves_one_private_file() {
+    let (folder, path) = place();
+    let mut journal = begun(&path);
+    journal.promise().unwrap();
+    assert_eq!(names(&folder), ["journal", "journal.reserve"]);
+    assert_eq!(fs::metadata(ballast::path(&path)).unwrap().len(), 1 << 20);
+    for name in names(&folder) {
+        assert_eq!(fs::metadata(folder.path().join(name)).unwrap().permissions().mode() & 0o777, 0o600);
+    }
+    journal.end(&json!({})).unwrap();
+    assert_eq!(names(&folder), ["journal"]);
+    assert!(recover(&fs::read(&path).unwrap()).unwrap().ended);
+}
+
+#[test]
+fn the_second_on_one_path_is_refused() {
+    let (_folder, path) = place();
+    let first = FileStorage::create(&path).unwrap();
+    let refused = FileStorage::open_existing(&path).unwrap_err();
+    assert_eq!(refused.to_string(), format!("the journal {} is in use by another psd", path.display()));
+    assert!(without(Guarding::Lock, || FileStorage::open_existing(&path)).is_ok(), "it is the lock that refuses");
+    drop(first);
+    let second = FileStorage::open_existing(&path).unwrap();
+    assert!(matches!(FileStorage::open_existing(&path), Err(FileFault::InUse { .. })));
+    drop(second);
+}
+
+#[test]
+fn nothing_is_written_over_and_nothing_but_a_file_is_opened() {
+    let (folder, path) = place();
+    fs::write(&path, "a letter").unwrap();
+    assert!(
+        matches!(FileStorage::create(&path), Err(FileFault::System { error, .. }) if error.kind() == ErrorKind::AlreadyExists)
+    );
+    assert_eq!((fs::read_to_string(&path).unwrap().as_str(), names(&folder).len()), ("a letter", 1));
+
+    let link = folder.path().join("link");
+    symlink(&path, &link).unwrap();
+    assert!(matches!(FileStorage::open_existing(&link), Err(FileFault::System { .. })), "not through a link");
+    assert!(FileStorage::create(&link).is_err());
+    assert!(matches!(FileStorage::open_existing(Path::new("/dev/full")), Err(FileFault::NotAFile { .. })));
+    assert!(FileStorage::open_existing(folder.path()).is_err());
+    assert!(FileStorage::open_existing(&folder.path().join("none")).is_err());
+}
+
+#[test]
+fn a_torn_end_is_put_aside_and_the_journal_goes_on() {
+    let (folder, path) = place();
+    drop(begun(&path));
+    for round in 1..3 {
+        let whole = fs::read(&path).unwrap();
+        fs::write(&path, [&whole, &b"2 SAMP\0\0"[..]].concat()).unwrap();
+        let mut storage = FileStorage::open_existing(&path).unwrap();
+        let found = recover(&storage.contents().unwrap()).unwrap();
+        assert_eq!(found.whole, whole.len() as u64);
+        let aside = storage.truncate_to(found.whole).unwrap().expect("something is torn");
+        assert_eq!(aside, folder.path().join(format!("journal.torn-{round}")));
+        assert_eq!(fs::read(&aside).unwrap(), b"2 SAMP\0\0");
+        assert_eq!(storage.contents().unwrap(), whole);
+        assert_eq!(storage.truncate_to(found.whole).unwrap(), None, "nothing more to cut");
+        let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &found);
+        journal.append(EntryKind::Recover, &json!({"aside": "journal.torn"})).unwrap();
+    }
+    let found = recover(&fs::read(&path).unwrap()).unwrap();
+    assert_eq!((found.lines.len(), found.torn), (3, None));
+}
+
+#[test]
+fn the_reserve_is_there_while_the_journal_is_open_whatever_a_killed_run_left() {
+    let (folder, path) = place();
+    drop(begun(&path));
+    assert_eq!(names(&folder), ["journal"]);
+    let reserve = ballast::path(&path);
+    for left in [None, Some(10), Some(ballast::RESERVE_BYTES)] {
+        if let Some(bytes) = left {
+            fs::write(&reserve, vec![1; bytes]).unwrap();
+        }
+        let mut storage = FileStorage::open_existing(&path).unwrap();
+        assert_eq!(fs::metadata(&reserve).unwrap().len(), 1 << 20);
+        assert!(FileStorage::open_existing(&path).is_err());
+        assert!(reserve.exists(), "one that is refused does not take it away");
+        storage.release_reserve();
+        assert_eq!(names(&folder), ["journal"]);
+        storage.release_reserve();
+    }
+}
+
+#[test]
+fn a_create_without_room_for_the_reserve_leaves_nothing() {
+    let (folder, path) = place();
+    // A folder in the place of the reserve, which is not removed as a file would be.
+    fs::create_dir(ballast::path(&path)).unwrap();
+    assert!(matches!(FileStorage::create(&path), Err(FileFault::System { .. })));
+    assert_eq!(names(&folder), ["journal.reserve"]);
+}
+
+#[test]
+fn reading_back_is_bounded() {
+    let (_folder, path) = place();
+    let mut storage = FileStorage::create(&path).unwrap();
+    storage.append(b"0123456789").unwrap();
+    assert_eq!(storage.contents_up_to(10).unwrap(), b"0123456789");
+    assert!(matches!(storage.contents_up_to(9), Err(FileFault::TooLarge { most: 9, .. })));
+    storage.append(b"!").unwrap();
+    assert_eq!(storage.contents().unwrap(), b"0123456789!", "reading does not move where it writes");
+    assert!(storage.room().unwrap() > 0);
+}
+
+#[test]
+fn a_cut_never_makes_the_file_longer() {
+    let (_folder, path) = place();
+    let mut storage = FileStorage::create(&path).unwrap();
+    storage.append(b"0123456789").unwrap();
+    storage.cut(4).unwrap();
+    storage.append(b"x").unwrap();
+    assert_eq!(storage.contents().unwrap(), b"0123x");
+    assert!(storage.cut(6).is_err(), "zeros are no records");
+    assert_eq!(storage.contents().unwrap(), b"0123x");
+}
+
+/// Takes a few bytes at a time, is interrupted before each, and stops taking any at the end.
+struct Reluctant {
+    taken: Vec<u8>,
+    calls: usize,
+    most: usize,
+}
+
+impl Write for Reluctant {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.calls += 1;
+        if self.calls % 3 != 0 {
+            return Err(ErrorKind::Interrupted.into());
+        }
+        let taken = bytes.len().min(1 + self.calls % 5).min(self.most - self.taken.len());
+        self.taken.extend_from_slice(&bytes[..taken]);
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn short_and_interrupted_writes_lose_and_double_nothing() {
+    let bytes: Vec<u8> = (0..=255).cycle().take(1000).collect();
+    let mut out = Reluctant { taken: Vec::new(), calls: 0, most: usize::MAX };
+    write_whole(&mut out, &bytes).unwrap();
+    assert_eq!(out.taken, bytes);
+    let mut full = Reluctant { taken: Vec::new(), calls: 0, most: 500 };
+    assert_eq!(write_whole(&mut full, &bytes).unwrap_err().kind(), ErrorKind::WriteZero);
+    assert_eq!(full.taken, bytes[..500]);
+}

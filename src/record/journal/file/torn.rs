@@ -1,0 +1,36 @@
+//! The torn end of a journal, put aside before it is cut off: no byte is thrown away. In: the journal and how much
+//! of it is whole. Out: the path of the copy. It knows no record.
+
+use std::fs::File;
+use std::io::{self, Seek as _, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use super::{beside, new_file, sync_folder};
+
+/// More torn ends than any run leaves.
+const MOST: u32 = 1000;
+
+/// Copies what lies after the first `whole` bytes into a new file beside the journal; None if nothing does.
+pub fn put_aside(mut from: &File, journal: &Path, whole: u64) -> io::Result<Option<PathBuf>> {
+    if from.metadata()?.len() <= whole {
+        return Ok(None);
+    }
+    from.seek(SeekFrom::Start(whole))?;
+    let (mut to, path) = first_free(journal)?;
+    io::copy(&mut from, &mut to)?;
+    to.sync_all()?;
+    sync_folder(&path)?;
+    Ok(Some(path))
+}
+
+/// The first of `….torn-1`, `….torn-2`, … that does not exist, created.
+fn first_free(journal: &Path) -> io::Result<(File, PathBuf)> {
+    for number in 1..MOST {
+        let path = beside(journal, &format!(".torn-{number}"));
+        match new_file(&path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            created => return Ok((created?, path)),
+        }
+    }
+    Err(io::Error::new(io::ErrorKind::AlreadyExists, "too many torn ends lie beside it"))
+}

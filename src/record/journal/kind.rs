@@ -1,0 +1,88 @@
+//! What a record is about. In: the second word of a line. Out: its kind, and back. It knows no body.
+
+use serde::{Deserialize, Serialize};
+
+/// What a record is about; the second word of its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum EntryKind {
+    /// Format version, plan with every file, settings, operator, host: all a run starts from. Always the first.
+    Header,
+    /// Who the rig said it is.
+    Rig,
+    /// A target about to be sent.
+    Intent,
+    /// A reading, with the bytes it was made of.
+    Sample,
+    /// The end of a step, as computed.
+    Step,
+    /// What a person answered, or asked for.
+    Operator,
+    Event,
+    Fault,
+    /// A torn tail was put aside.
+    Recover,
+    /// The plan or the program is no longer the one of the header; who says so, and why.
+    Amend,
+    /// The run goes on.
+    Resume,
+    /// The run came to an end; count of records and the chain before it.
+    End,
+}
+
+impl EntryKind {
+    pub const ALL: [Self; 12] = [
+        Self::Header,
+        Self::Rig,
+        Self::Intent,
+        Self::Sample,
+        Self::Step,
+        Self::Operator,
+        Self::Event,
+        Self::Fault,
+        Self::Recover,
+        Self::Amend,
+        Self::Resume,
+        Self::End,
+    ];
+
+    /// The word in the line.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Header => "HEADER",
+            Self::Rig => "RIG",
+            Self::Intent => "INTENT",
+            Self::Sample => "SAMPLE",
+            Self::Step => "STEP",
+            Self::Operator => "OPERATOR",
+            Self::Event => "EVENT",
+            Self::Fault => "FAULT",
+            Self::Recover => "RECOVER",
+            Self::Amend => "AMEND",
+            Self::Resume => "RESUME",
+            Self::End => "END",
+        }
+    }
+
+    /// The kind of a word; None if no record of this format has it.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.word() == word)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EntryKind;
+
+    #[test]
+    fn every_word_reads_back_and_is_the_one_of_the_json() {
+        for kind in EntryKind::ALL {
+            assert_eq!(EntryKind::of_word(kind.word()), Some(kind));
+            assert_eq!(serde_json::to_value(kind).unwrap(), kind.word());
+        }
+        assert_eq!(EntryKind::of_word("header"), None);
+        assert_eq!(EntryKind::of_word(""), None);
+    }
+}

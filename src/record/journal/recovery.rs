@@ -1,0 +1,140 @@
+//! Reading back: the bytes of a journal, perhaps of a run that was killed. In: bytes. Out: the whole records and what of
+//! the end is torn, or the damage. It knows no file, and does not know what a record means.
+
+use std::ops::Range;
+
+use serde_json::Value;
+
+use super::chain::Chain;
+use super::line::{self, LINE_BYTES, Unsound};
+use super::{Damage, EntryKind, FORMAT, Line, Wrong};
+
+/// What of a journal can be trusted.
+#[derive(Clone, Debug)]
+pub struct Recovered {
+    pub lines: Vec<Line>,
+    /// Bytes that are whole records, from the first byte of the file.
+    pub whole: u64,
+    /// The bytes after them: a record that was being written when the power went.
+    pub torn: Option<Range<u64>>,
+    /// Whether the last record is END; a run that was cut off has none.
+    pub ended: bool,
+    pub(super) chain: Chain,
+}
+
+impl Recovered {
+    /// The chain after the last whole record: 64 hexadecimal digits.
+    #[must_use]
+    pub fn head(&self) -> &str {
+        self.chain.as_str()
+    }
+
+    /// The last field `step` of a record.
+    #[must_use]
+    pub fn last_step(&self) -> Option<u64> {
+        self.lines.iter().rev().find_map(|line| line.body.get("step")?.as_u64())
+    }
+
+    fn take(&mut self, line: Line, chain: Chain, next: u64) {
+        self.ended = line.kind == EntryKind::End;
+        self.lines.push(line);
+        self.chain = chain;
+        self.whole = next;
+    }
+}
+
+/// Reads a journal. Without END it is of a run that did not come to its end; without any record, of one that did not
+/// begin. The end of the file is torn if the first bad line is followed by no line whose own checksum holds, and if from
+/// there on there is no LF, or a NUL (a block that was never written). Memory is bounded by a few times the bytes.
+///
+/// # Errors
+/// Any other bad line: the journal was altered.
+pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
+    let mut found = Recovered { lines: Vec::new(), whole: 0, torn: None, ended: false, chain: Chain::START };
+    let mut rest = bytes;
+    while !rest.is_empty() {
+        let wrong = match whole_line(rest) {
+            Ok((line, after)) => match read_line(line, &found) {
+                Ok((record, chain)) => {
+                    found.take(record, chain, (bytes.len() - after.len()) as u64);
+                    rest = after;
+                    continue;
+                }
+                Err(wrong) => wrong,
+            },
+            Err(wrong) => wrong,
+        };
+        if matches!(wrong, Wrong::Shape | Wrong::Checksum | Wrong::TooLong) && is_torn(rest, &wrong) {
+            found.torn = Some(found.whole..bytes.len() as u64);
+            break;
+        }
+        let (line, step) = (found.lines.len() as u64 + 1, found.last_step());
+        return Err(Damage { offset: found.whole, line, step, reason: wrong });
+    }
+    Ok(found)
+}
+
+/// The first line without its LF, and what is after it.
+fn whole_line(rest: &[u8]) -> Result<(&[u8], &[u8]), Wrong> {
+    let reach = &rest[..rest.len().min(LINE_BYTES)];
+    match reach.iter().position(|byte| *byte == b'\n') {
+        Some(end) => Ok((&rest[..end], &rest[end + 1..])),
+        None if rest.len() > LINE_BYTES => Err(Wrong::TooLong),
+        None => Err(Wrong::Shape),
+    }
+}
+
+/// Whether the rest, from its first bad line on, is what a loss of power leaves. A line that is too long is read no
+/// further, unless it holds a NUL.
+fn is_torn(rest: &[u8], wrong: &Wrong) -> bool {
+    if *wrong == Wrong::TooLong && !rest[..LINE_BYTES].contains(&0) {
+        return false;
+    }
+    let mut later = rest.split(|byte| *byte == b'\n').skip(1).peekable();
+    let one_line = later.peek().is_none();
+    (one_line || rest.contains(&0)) && !later.any(|line| line.len() < LINE_BYTES && line::parse(line).is_ok())
+}
+
+/// A line as the next record after those found.
+fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
+    let parts = line::parse(bytes).map_err(|unsound| match unsound {
+        Unsound::Shape => Wrong::Shape,
+        Unsound::Checksum => Wrong::Checksum,
+    })?;
+    let expected = found.lines.len() as u64 + 1;
+    if parts.seq != expected {
+        return Err(Wrong::Sequence { expected, found: parts.seq });
+    }
+    let chain = found.chain.after(parts.said);
+    if parts.chain != chain.as_str() {
+        return Err(Wrong::Chain);
+    }
+    let kind = EntryKind::of_word(parts.word).ok_or_else(|| Wrong::UnknownKind(short(parts.word)))?;
+    let body: Value = serde_json::from_str(parts.json).map_err(|_| Wrong::NotAnObject)?;
+    if !body.is_object() {
+        return Err(Wrong::NotAnObject);
+    }
+    place(kind, &body, found)?;
+    Ok((Line { seq: parts.seq, kind, body, offset: found.whole }, chain))
+}
+
+/// Whether a record may stand here.
+fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> {
+    let said = |name: &str| body.get(name).map_or_else(|| "missing".to_owned(), |value| short(&value.to_string()));
+    match kind {
+        _ if found.ended => Err(Wrong::AfterEnd),
+        EntryKind::Header if !found.lines.is_empty() => Err(Wrong::SecondHeader),
+        EntryKind::Header if body["format"] != FORMAT => Err(Wrong::Format { found: said("format") }),
+        EntryKind::Header => Ok(()),
+        _ if found.lines.is_empty() => Err(Wrong::NoHeader),
+        EntryKind::End if body["count"] != found.lines.len() as u64 || body["head"] != found.head() => {
+            Err(Wrong::EndOfAnother { count: said("count"), head: said("head") })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The beginning of what a line says, fit for a message.
+fn short(text: &str) -> String {
+    text.chars().take(80).flat_map(char::escape_default).collect()
+}

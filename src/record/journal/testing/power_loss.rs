@@ -1,0 +1,91 @@
+//! A disk with a shadow of what is safe. In: the bytes of a journal, with its syncs. Out: what a loss of power leaves:
+//! all that was synced, and of the rest whatever the test likes. It knows no record.
+
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use super::super::Storage;
+
+/// Bytes that a disk writes at once.
+const SECTOR_BYTES: usize = 512;
+
+/// A disk in memory; its clones are the same disk, so that a test keeps one and gives the other to the journal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PowerLoss(Arc<Mutex<Disk>>);
+
+#[derive(Debug, Default)]
+struct Disk {
+    written: Vec<u8>,
+    /// How many of them are safe.
+    synced: usize,
+    syncs: usize,
+}
+
+impl PowerLoss {
+    pub(crate) fn new() -> Self {
+        Self::default()
+    }
+
+    /// A disk with safe bytes on it.
+    pub(crate) fn holding(bytes: &[u8]) -> Self {
+        let disk = Disk { written: bytes.to_vec(), synced: bytes.len(), syncs: 0 };
+        Self(Arc::new(Mutex::new(disk)))
+    }
+
+    /// All the bytes: what is read while the power is on.
+    pub(crate) fn written(&self) -> Vec<u8> {
+        self.disk().written.clone()
+    }
+
+    /// The bytes that are safe.
+    pub(crate) fn synced(&self) -> Vec<u8> {
+        let disk = self.disk();
+        disk.written[..disk.synced].to_vec()
+    }
+
+    /// How often it was asked to make the bytes safe.
+    pub(crate) fn syncs(&self) -> usize {
+        self.disk().syncs
+    }
+
+    /// What is there after a loss of power: the safe bytes and `length` of the others at most; sectors of the file that
+    /// are not `kept` are zeros in their unsafe part, as when the length of a file is written before its blocks.
+    pub(crate) fn after_loss(&self, length: usize, mut kept: impl FnMut(usize) -> bool) -> Vec<u8> {
+        let disk = self.disk();
+        let end = disk.written.len().min(disk.synced.saturating_add(length));
+        let mut left = disk.written[..end].to_vec();
+        for sector in disk.synced / SECTOR_BYTES..end.div_ceil(SECTOR_BYTES) {
+            if !kept(sector) {
+                let from = disk.synced.max(sector * SECTOR_BYTES);
+                left[from..end.min((sector + 1) * SECTOR_BYTES)].fill(0);
+            }
+        }
+        left
+    }
+
+    fn disk(&self) -> MutexGuard<'_, Disk> {
+        self.0.lock().expect("no test panics while it holds the disk")
+    }
+}
+
+impl Storage for PowerLoss {
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.disk().written.extend_from_slice(bytes);
+        Ok(())
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        let mut disk = self.disk();
+        disk.synced = disk.written.len();
+        disk.syncs += 1;
+        Ok(())
+    }
+
+    fn cut(&mut self, length: u64) -> io::Result<()> {
+        let length = usize::try_from(length).expect("it fits into memory");
+        let mut disk = self.disk();
+        disk.written.truncate(length);
+        disk.synced = disk.synced.min(length);
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+//! A disk that fails as it is told: full after some bytes, with a reserve; or at the n-th sync. In: the bytes of a
+//! journal. Out: what it took of them, and how often it was asked. It knows no record.
+
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use super::super::Storage;
+
+/// What is wrong with a disk.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sickness {
+    /// Bytes it takes until it is full; the append that goes beyond leaves a part. None: all.
+    pub(crate) room: Option<usize>,
+    /// Bytes more once the reserve is given up.
+    pub(crate) reserve: usize,
+    /// Which sync fails, from 1. None: none does. Later ones say that all is well, as Linux does.
+    pub(crate) failed_sync: Option<usize>,
+    /// Whether it cannot be cut.
+    pub(crate) uncuttable: bool,
+}
+
+/// A disk in memory; its clones are the same disk.
+#[derive(Clone, Debug)]
+pub(crate) struct SickDisk(Arc<Mutex<Disk>>);
+
+#[derive(Debug)]
+struct Disk {
+    sickness: Sickness,
+    written: Vec<u8>,
+    appends: usize,
+    syncs: usize,
+}
+
+impl SickDisk {
+    pub(crate) fn new(sickness: Sickness) -> Self {
+        Self(Arc::new(Mutex::new(Disk { sickness, written: Vec::new(), appends: 0, syncs: 0 })))
+    }
+
+    pub(crate) fn written(&self) -> Vec<u8> {
+        self.disk().written.clone()
+    }
+
+    /// How often it was asked to append.
+    pub(crate) fn appends(&self) -> usize {
+        self.disk().appends
+    }
+
+    /// How often it was asked to sync.
+    pub(crate) fn syncs(&self) -> usize {
+        self.disk().syncs
+    }
+
+    fn disk(&self) -> MutexGuard<'_, Disk> {
+        self.0.lock().expect("no test panics while it holds the disk")
+    }
+}
+
+impl Storage for SickDisk {
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let mut disk = self.disk();
+        disk.appends += 1;
+        let room = disk.sickness.room.map_or(bytes.len(), |room| room.saturating_sub(disk.written.len()));
+        let taken = room.min(bytes.len());
+        disk.written.extend_from_slice(&bytes[..taken]);
+        if taken < bytes.len() { Err(io::ErrorKind::StorageFull.into()) } else { Ok(()) }
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        let mut disk = self.disk();
+        disk.syncs += 1;
+        if disk.sickness.failed_sync == Some(disk.syncs) { Err(io::Error::other("Input/output error")) } else { Ok(()) }
+    }
+
+    fn cut(&mut self, length: u64) -> io::Result<()> {
+        let mut disk = self.disk();
+        if disk.sickness.uncuttable {
+            return Err(io::ErrorKind::ReadOnlyFilesystem.into());
+        }
+        disk.written.truncate(usize::try_from(length).expect("it fits into memory"));
+        Ok(())
+    }
+
+    fn release_reserve(&mut self) {
+        let mut disk = self.disk();
+        let reserve = std::mem::take(&mut disk.sickness.reserve);
+        disk.sickness.room = disk.sickness.room.map(|room| room + reserve);
+    }
+}
