@@ -6,8 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum EntryKind {
-    /// Format version, plan with every file, settings, operator, host: all a run starts from. Always the first.
+    /// Format version, names and digests of the plan's files, settings, operator, host: what a run starts from. Always the
+    /// first.
     Header,
+    /// A part of the text of one of those files.
+    Plan,
     /// Who the rig said it is.
     Rig,
     /// A target about to be sent.
@@ -31,8 +34,9 @@ pub enum EntryKind {
 }
 
 impl EntryKind {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Header,
+        Self::Plan,
         Self::Rig,
         Self::Intent,
         Self::Sample,
@@ -51,6 +55,7 @@ impl EntryKind {
     pub const fn word(self) -> &'static str {
         match self {
             Self::Header => "HEADER",
+            Self::Plan => "PLAN",
             Self::Rig => "RIG",
             Self::Intent => "INTENT",
             Self::Sample => "SAMPLE",

@@ -1,1 +1,325 @@
-//! x
+//! A run is the record of it: played back it is the same, changed it is found out, and cut off anywhere it goes on to the
+//! same end with no target carried out twice.
+
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::rc::Rc;
+
+use super::*;
+use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
+use crate::record::History;
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, Recovered, Storage, recover};
+use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, VirtualRig};
+use crate::run::testing::{elastic_plan, impact, ramp, result_of};
+use crate::run::{Inspection, StepReport};
+
+/// The same rig for program after program: it remembers its moves, as a real one does.
+#[derive(Clone)]
+struct Standing(Rc<RefCell<Stand>>);
+
+struct Stand {
+    rig: VirtualRig,
+    offered: Option<f64>,
+    last: LastMove,
+    /// Every target that was carried out, m.
+    carried_out: Vec<f64>,
+}
+
+impl Standing {
+    fn new(plan: &Plan) -> Self {
+        let last = LastMove { id: 0, target: 0.0 };
+        Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })))
+    }
+}
+
+impl Rig for Standing {
+    fn identity(&self) -> Identity {
+        self.0.borrow().rig.identity()
+    }
+    fn degrees_of_freedom(&self) -> usize {
+        1
+    }
+    fn time(&self) -> f64 {
+        self.0.borrow().rig.time()
+    }
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        let mut stand = self.0.borrow_mut();
+        stand.offered = Some(targets[0]);
+        let id = stand.last.id + 1;
+        Ok(Offer { move_id: Some(id), ..stand.rig.propose(targets, speed)? })
+    }
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let mut stand = self.0.borrow_mut();
+        let target = stand.offered.take().unwrap();
+        stand.carried_out.push(target);
+        stand.last = LastMove { id: stand.last.id + 1, target };
+        stand.rig.execute()
+    }
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        self.0.borrow_mut().rig.pause(seconds)
+    }
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        self.0.borrow_mut().rig.read()
+    }
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.0.borrow_mut().rig.traverse(targets, velocity, samples, each)
+    }
+    fn hold(&mut self) {
+        self.0.borrow_mut().rig.hold();
+    }
+    fn declared_noise(&self) -> DeclaredNoise {
+        DeclaredNoise::default()
+    }
+    fn last_move(&self) -> Option<LastMove> {
+        Some(self.0.borrow().last)
+    }
+}
+
+/// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
+struct Killed {
+    disk: PowerLoss,
+    left: usize,
+    after: bool,
+}
+
+impl Killed {
+    fn call<T>(&mut self, call: impl FnOnce(&mut PowerLoss) -> T) -> T {
+        if self.left == 0 && !self.after {
+            panic!("killed");
+        }
+        let done = call(&mut self.disk);
+        if self.left == 0 {
+            panic!("killed");
+        }
+        self.left -= 1;
+        done
+    }
+}
+
+impl Storage for Killed {
+    fn append(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.call(|disk| disk.append(bytes))
+    }
+    fn sync(&mut self) -> std::io::Result<()> {
+        self.call(Storage::sync)
+    }
+    fn cut(&mut self, length: u64) -> std::io::Result<()> {
+        self.disk.cut(length)
+    }
+}
+
+/// Answers every inspection with a name.
+struct Witness;
+
+impl Observer for Witness {
+    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
+    fn step_done(&mut self, _: &StepReport) {}
+    fn procedure_finished(&mut self, _: &str) {}
+    fn stop_requested(&self) -> bool {
+        false
+    }
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::GoOn { note: Some("no crack".to_owned()), by: Some("A. Witness".to_owned()) }
+    }
+}
+
+/// A ramp, a sweep, a move, an impact with an inspection: some forty steps.
+fn plan() -> Plan {
+    let sweep = DampingSweep {
+        specimen: 0,
+        velocities: vec![crate::formula::Formula::Constant(0.01), crate::formula::Formula::Constant(0.02)],
+        stroke: crate::formula::Formula::Constant(1e-3),
+        stiffness: result_of(0, "stiffness"),
+        rate: Some(crate::formula::Formula::Constant(60.0)),
+    };
+    let mut blow = impact(result_of(0, "stiffness"));
+    blow.inspect = vec![InspectTrigger::Every(7)];
+    let home = Move { to: crate::formula::Formula::Constant(0.0), speed: None };
+    elastic_plan(
+        300.0,
+        vec![
+            ProcedureKind::StiffnessRamp(StiffnessRamp { samples: 2, ..ramp(1e-4) }),
+            ProcedureKind::DampingSweep(sweep),
+            ProcedureKind::Inspect { note: "before the blow".to_owned() },
+            ProcedureKind::Impact(blow),
+            ProcedureKind::Move(home),
+        ],
+    )
+}
+
+fn header() -> Header {
+    Header {
+        run_id: "0123456789abcdef".to_owned(),
+        psd: "0".to_owned(),
+        build: "0".to_owned(),
+        files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
+        settings: Vec::new(),
+        rig: None,
+        date: None,
+        operator: None,
+        host: None,
+        began: None,
+    }
+}
+
+fn no_wall() -> Wall {
+    Box::new(|| None)
+}
+
+fn journal(storage: impl Storage + 'static) -> Journal {
+    Journal::create(Box::new(storage), Durability::EveryPromise)
+}
+
+/// Records the plan on a fresh rig; the rig, the record and the journal's bytes.
+fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
+    let (mut rig, disk) = (Standing::new(plan), PowerLoss::new());
+    let mut journal = journal(disk.clone());
+    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let recorded = record(plan, &mut rig, &mut Witness, journal, no_wall());
+    (rig, recorded, disk.written())
+}
+
+fn played(bytes: &[u8]) -> (Recovered, Played) {
+    let recovered = recover(bytes).unwrap();
+    let played = Played::of(&recovered).unwrap();
+    (recovered, played)
+}
+
+/// What a run measured and computed, without the times at which it did.
+fn measured(record: &Record) -> String {
+    let mut told = String::new();
+    for procedure in &record.procedures {
+        told += &format!("{} {:?}\n", procedure.name, procedure.results);
+        match &procedure.history {
+            History::Ramp(history) => {
+                for step in &history.steps {
+                    told += &format!("{:?} {:?} {:?}\n", step.command, step.displacement, step.restoring_force);
+                }
+            }
+            History::Impact(history) => {
+                for step in &history.steps {
+                    told += &format!("{:?} {:?} {:?} {:?}\n", step.command, step.velocity, step.restoring_force, step.energies);
+                }
+            }
+            History::Sweep(history) => {
+                for step in &history.steps {
+                    told += &format!("{:?} {:?}\n", step.displacement, step.restoring_force);
+                }
+            }
+            History::Move(steps) => told += &format!("{:?}\n", steps.iter().map(|step| step.command).collect::<Vec<_>>()),
+            History::Inspect => {}
+        }
+    }
+    told
+}
+
+#[test]
+fn played_back_it_is_the_same_run() {
+    let plan = plan();
+    let (_, whole, bytes) = recorded(&plan);
+    assert_eq!(whole.record.outcome, Outcome::Completed, "{:?}", whole.record.events);
+    assert!(whole.fault.is_none() && whole.mismatch.is_none());
+    let (recovered, played) = played(&bytes);
+    assert!(recovered.ended && played.texts == ["text"]);
+    let replayed = replay(&plan, played);
+    assert_eq!(replayed.mismatch, None);
+    assert_eq!(format!("{:?}", replayed.record), format!("{:?}", whole.record), "to the last bit");
+    let told: Vec<&str> = replayed.record.events.iter().map(|event| event.text.as_str()).collect();
+    assert!(told[0].contains("no crack") && told[0].contains("A. Witness"), "{told:?}");
+}
+
+#[test]
+fn what_the_run_would_not_have_done_is_found_out() {
+    let plan = plan();
+    let (_, _, bytes) = recorded(&plan);
+    // Another number in a reading: the run then asks for other targets.
+    let mut found = 0;
+    let (recovered, _) = played(&bytes);
+    for (at, line) in recovered.lines.iter().enumerate().filter(|(_, line)| line.kind == EntryKind::Sample) {
+        let mut forged = recovered.clone();
+        let force = line.body["r"][0].as_f64().unwrap();
+        forged.lines[at].body["r"][0] = serde_json::json!(force + 1e-9 * force.abs().max(1.0));
+        found += usize::from(replay(&plan, Played::of(&forged).unwrap()).mismatch.is_some());
+    }
+    // A reading before a move that no step reports can be anything: those few prove nothing.
+    let samples = recovered.lines.iter().filter(|line| line.kind == EntryKind::Sample).count();
+    assert!(found > samples * 8 / 10, "{found} of {samples}");
+    for (at, line) in recovered.lines.iter().enumerate().filter(|(_, line)| line.kind == EntryKind::Intent) {
+        let mut forged = recovered.clone();
+        let target = line.body["to"][0].as_f64().unwrap();
+        forged.lines[at].body["to"][0] = serde_json::json!(f64::from_bits(target.to_bits() ^ 1));
+        let mismatch = replay(&plan, Played::of(&forged).unwrap()).mismatch.expect("one bit of a target");
+        assert_eq!(mismatch.seq, line.seq);
+    }
+}
+
+#[test]
+fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
+    let plan = plan();
+    let (whole_rig, whole, _) = recorded(&plan);
+    let once = whole_rig.0.borrow().carried_out.clone();
+    let mut kills = 0;
+    for call in 4.. {
+        for after in [false, true] {
+            let (rig, disk) = (Standing::new(&plan), PowerLoss::new());
+            let storage = Killed { disk: disk.clone(), left: call, after };
+            let ended = catch_unwind(AssertUnwindSafe(|| {
+                let mut journal = journal(storage);
+                begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+                record(&plan, &mut rig.clone(), &mut Witness, journal, no_wall())
+            }));
+            if ended.is_ok() {
+                assert!(kills > 200, "{kills}");
+                return;
+            }
+            kills += 1;
+            go_on_and_compare(&plan, rig, &disk, &measured(&whole.record), &once, call);
+        }
+    }
+}
+
+/// What was written is what a killed program leaves: the system still has it.
+fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected: &str, once: &[f64], call: usize) {
+    let (recovered, before) = played(&disk.written());
+    if before.ended {
+        return;
+    }
+    rig.hold();
+    let found = rig.read().unwrap();
+    let bands = Bands { displacement: 1e-9, force: 1e-6 };
+    let about = RigBody::of(&rig);
+    let decision = match decide(&before, &about, &found, bands, false) {
+        Err(Refusal::NothingRecorded) => return assert!(rig.0.borrow().carried_out.is_empty()),
+        other => other.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
+    };
+    let resume_body = ResumeBody {
+        from: decision.from,
+        by: "A. Witness".to_owned(),
+        reason: "power".to_owned(),
+        doubt: decision.doubt,
+        found: (found.displacement, found.force),
+        recorded: decision.recorded,
+        t: before.time,
+        wall: None,
+    };
+    let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
+    journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
+    journal.append(EntryKind::Resume, &resume_body).unwrap();
+    let (_, again) = played(&disk.written());
+    let resumed = resume(plan, again, &mut rig, &mut Witness, journal, no_wall());
+    assert_eq!(resumed.mismatch, None, "call {call}");
+    assert_eq!(resumed.record.outcome, Outcome::Completed, "call {call}: {:?}", resumed.record.events);
+    assert_eq!(measured(&resumed.record), expected, "call {call}");
+    let carried_out = rig.0.borrow().carried_out.clone();
+    if matches!(decision.doubt, Doubt::Stroke { .. }) {
+        assert_eq!(carried_out.len(), once.len() + 1, "call {call}: only back to where the stroke began");
+    } else {
+        assert_eq!(carried_out, once, "call {call}: no target twice, none left out");
+    }
+    // The record of both together is a run that can be played back.
+    let (_, whole) = played(&disk.written());
+    let replayed = replay(plan, whole);
+    assert_eq!(replayed.mismatch, None, "call {call}");
+    assert_eq!(format!("{:?}", replayed.record), format!("{:?}", resumed.record), "call {call}");
+}
