@@ -120,8 +120,12 @@ impl Observer for Watcher {
     fn inspect(&mut self, note: &str) -> Inspection {
         match self.asking {
             Asking::Yes => Inspection::GoOn { note: Some("answered by --yes".to_owned()), by: None },
-            Asking::NobodyNeeded => Inspection::GoOn { note: Some("nobody was asked: simulated rig, no terminal".to_owned()), by: None },
-            Asking::Nobody => Inspection::Stop { reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned(), by: None },
+            Asking::NobodyNeeded => {
+                Inspection::GoOn { note: Some("nobody was asked: simulated rig, no terminal".to_owned()), by: None }
+            }
+            Asking::Nobody => {
+                Inspection::Stop { reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned(), by: None }
+            }
             Asking::Person(_) => self.ask(note),
         }
     }
@@ -191,7 +195,10 @@ mod tests {
     #[test]
     fn only_a_clear_yes_goes_on() {
         assert_eq!(answer("y"), Some(Inspection::GoOn { note: None, by: None }));
-        assert_eq!(answer(" Yes crack at\u{7} midspan "), Some(Inspection::GoOn { note: Some("crack at\\u{7} midspan".into()), by: None }));
+        assert_eq!(
+            answer(" Yes crack at\u{7} midspan "),
+            Some(Inspection::GoOn { note: Some("crack at\\u{7} midspan".into()), by: None })
+        );
         assert!(matches!(answer("no"), Some(Inspection::Stop { .. })));
         assert_eq!((answer(""), answer("yesterday"), answer("go")), (None, None, None));
     }

@@ -72,7 +72,12 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
     let recorded = &read.played.header;
     let mut differences = Vec::new();
     if recorded.build != BUILD {
-        differences.push(format!("program: {} build {} became {} build {BUILD}", recorded.psd, recorded.build, env!("CARGO_PKG_VERSION")));
+        differences.push(format!(
+            "program: {} build {} became {} build {BUILD}",
+            recorded.psd,
+            recorded.build,
+            env!("CARGO_PKG_VERSION")
+        ));
     }
     let (mut plan, mut header, mut texts) = (read.plan.clone(), recorded.clone(), read.played.texts.clone());
     if let Some(path) = &arguments.plan {

@@ -25,7 +25,11 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, session: &mut Session<'_>) -> R
     let drift = (at_rest - first) / REST;
     let shown = |force| readable(force, Dimension::FORCE);
     if failpoint::on(Guarding::GateZero) && !within(at_rest.abs(), 0.0, gate.zero) {
-        return refuse(format!("{} at rest, {} is allowed: zero the cell, or take the load off", shown(at_rest), shown(gate.zero)));
+        return refuse(format!(
+            "{} at rest, {} is allowed: zero the cell, or take the load off",
+            shown(at_rest),
+            shown(gate.zero)
+        ));
     }
 
     let home = session.commanded();
@@ -52,7 +56,8 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, session: &mut Session<'_>) -> R
             stated(high)
         ));
     }
-    let text = format!("{} at rest, drift {}/s, stiffness {} in a move of {probe}", shown(at_rest), shown(drift), stated(stiffness));
+    let text =
+        format!("{} at rest, drift {}/s, stiffness {} in a move of {probe}", shown(at_rest), shown(drift), stated(stiffness));
     session.event(EventKind::Note, format!("gate passed: {text}"));
     Ok(())
 }

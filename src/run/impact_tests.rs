@@ -4,7 +4,7 @@ use super::testing::{elastic_plan, number, result_of, run_unwatched};
 use super::{Inspection, Observer, StepReport, run};
 use crate::formula::Formula;
 use crate::mechanics::contact::StepState;
-use crate::plan::{Contact, Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Until, VirtualLink};
+use crate::plan::{Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Until, VirtualLink};
 use crate::record::{EventKind, History, ImpactStep, Outcome, Record};
 use crate::rig::VirtualRig;
 
@@ -12,22 +12,9 @@ fn constant(value: f64) -> Formula {
     Formula::Constant(value)
 }
 
-/// Example 1: M 1 kg, K 327.65 N/m, Ms 10 kg, V0 1 m/s, Δt 10 ms.
+/// Example 1.
 fn impact() -> Impact {
-    Impact {
-        specimen: 0,
-        striker: 0,
-        mass: constant(1.0),
-        stiffness: constant(327.65),
-        damping: constant(0.0),
-        contact: Contact::Rigid,
-        time_step: constant(0.01),
-        duration: constant(0.5),
-        until: Until::StrikerStop,
-        pause: constant(0.0),
-        max_tangent_ratio: constant(10.0),
-        inspect: Vec::new(),
-    }
+    super::testing::impact(constant(327.65))
 }
 
 fn plan(impact: Impact) -> Plan {

@@ -2,8 +2,8 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen, StiffnessRamp,
-    Striker, VirtualLink,
+    Behaviour, Calibration, Contact, Impact, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
+    StiffnessRamp, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -59,6 +59,24 @@ pub(crate) fn ramp(step: f64) -> StiffnessRamp {
         repeats: 1,
         return_path: false,
         speed: None,
+    }
+}
+
+/// Example 1 of Melo et al. 2006: M 1 kg, Ms 10 kg, V0 1 m/s, Δt 10 ms; K there is 327.65 N/m.
+pub(crate) fn impact(stiffness: Formula) -> Impact {
+    Impact {
+        specimen: 0,
+        striker: 0,
+        mass: Formula::Constant(1.0),
+        stiffness,
+        damping: Formula::Constant(0.0),
+        contact: Contact::Rigid,
+        time_step: Formula::Constant(0.01),
+        duration: Formula::Constant(0.5),
+        until: Until::StrikerStop,
+        pause: Formula::Constant(0.0),
+        max_tangent_ratio: Formula::Constant(10.0),
+        inspect: Vec::new(),
     }
 }
 

@@ -46,7 +46,9 @@ pub enum Refusal {
     Elsewhere { recorded: f64, found: f64, band: f64 },
     #[error("the rig stands at {found} m, between nothing the record knows: from {from} m to {to} m it was to go")]
     Lost { from: f64, to: f64, found: f64 },
-    #[error("the force is {found} N, the record left it at {recorded} N, {band} N is allowed: look at the specimen, then say so with --accept-relaxation")]
+    #[error(
+        "the force is {found} N, the record left it at {recorded} N, {band} N is allowed: look at the specimen, then say so with --accept-relaxation"
+    )]
     Relaxed { recorded: f64, found: f64, band: f64 },
     #[error(transparent)]
     Unplayable(#[from] Unplayable),
@@ -148,9 +150,8 @@ fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
         }
         lines.pop();
     }
-    let unloading = |line: &Line| {
-        line.kind == EntryKind::Event && line.body.get("text").and_then(|text| text.as_str()) == Some(UNLOADING)
-    };
+    let unloading =
+        |line: &Line| line.kind == EntryKind::Event && line.body.get("text").and_then(|text| text.as_str()) == Some(UNLOADING);
     if lines.iter().any(unloading) { Err(Refusal::Unloaded) } else { Ok(lines) }
 }
 
@@ -169,12 +170,7 @@ fn place_before(lines: &[Line]) -> Result<f64, Unplayable> {
 }
 
 /// A relaxation beyond its band is for a person to accept.
-fn relaxed(
-    recorded: Option<&(Vec<f64>, Vec<f64>)>,
-    found: &Reading,
-    bands: Bands,
-    accept: bool,
-) -> Result<(), Refusal> {
+fn relaxed(recorded: Option<&(Vec<f64>, Vec<f64>)>, found: &Reading, bands: Bands, accept: bool) -> Result<(), Refusal> {
     let Some((_, recorded)) = recorded else { return Ok(()) };
     let inside = (found.force[0] - recorded[0]).abs() <= bands.force;
     if inside || accept {
@@ -196,11 +192,7 @@ impl Place {
     }
 
     fn expect(self, recorded: f64) -> Result<(), Refusal> {
-        if self.is(recorded) {
-            Ok(())
-        } else {
-            Err(Refusal::Elsewhere { recorded, found: self.position, band: self.band })
-        }
+        if self.is(recorded) { Ok(()) } else { Err(Refusal::Elsewhere { recorded, found: self.position, band: self.band }) }
     }
 
     fn on_the_way(self, from: f64, to: f64) -> Result<Doubt, Refusal> {

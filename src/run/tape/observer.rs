@@ -170,7 +170,8 @@ impl StepBody {
     /// Bit for bit.
     fn same(&self, other: &Self) -> bool {
         let numbers = |body: &Self| {
-            [Some(body.time), Some(body.u), Some(body.x), body.v, body.a, Some(body.r), body.e].map(|value| value.map(f64::to_bits))
+            [Some(body.time), Some(body.u), Some(body.x), body.v, body.a, Some(body.r), body.e]
+                .map(|value| value.map(f64::to_bits))
         };
         self.step == other.step && numbers(self) == numbers(other)
     }

@@ -113,7 +113,12 @@ impl Played {
             }
             EntryKind::Recover => self.interrupted(EventKind::Resume, "a torn end of the record was put aside".to_owned()),
             EntryKind::Header | EntryKind::End => {}
-            EntryKind::Intent | EntryKind::Sample | EntryKind::Step | EntryKind::Operator | EntryKind::Event | EntryKind::Fault => {
+            EntryKind::Intent
+            | EntryKind::Sample
+            | EntryKind::Step
+            | EntryKind::Operator
+            | EntryKind::Event
+            | EntryKind::Fault => {
                 self.doubt = None;
                 self.lines.push_back(line.clone());
             }

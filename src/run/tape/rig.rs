@@ -291,14 +291,8 @@ impl RigBody {
 /// A record that was cut off before its rig answered.
 fn nobody() -> RigBody {
     let unknown = String::new;
-    let identity = Identity {
-        name: unknown(),
-        model: unknown(),
-        serial: unknown(),
-        firmware: unknown(),
-        boot: None,
-        simulated: true,
-    };
+    let identity =
+        Identity { name: unknown(), model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: true };
     RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), last_move: None }
 }
 
