@@ -1,4 +1,4 @@
-//! Journals cut short: every whole record is kept, and the rest is called torn; or refused where C of the format says so.
+//! Journals cut short: every whole record is kept, and the rest is called torn, but only if it can be.
 
 use serde_json::json;
 
