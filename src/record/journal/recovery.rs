@@ -45,7 +45,8 @@ impl Recovered {
 
 /// Reads a journal. Without END it is of a run that did not come to its end; without any record, of one that did not
 /// begin. The end of the file is torn if the first bad line is followed by no line whose own checksum holds, and if from
-/// there on there is no LF, or a NUL (a block that was never written). Memory is bounded by a few times the bytes.
+/// there on there is no LF, or a NUL (a block that was never written). Memory grows with the bytes:
+/// lists of short numbers take some thirty times theirs.
 ///
 /// # Errors
 /// Any other bad line: the journal was altered.

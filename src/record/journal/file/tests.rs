@@ -163,7 +163,7 @@ struct Reluctant {
 impl Write for Reluctant {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.calls += 1;
-        if self.calls % 3 != 0 {
+        if !self.calls.is_multiple_of(3) {
             return Err(ErrorKind::Interrupted.into());
         }
         let taken = bytes.len().min(1 + self.calls % 5).min(self.most - self.taken.len());

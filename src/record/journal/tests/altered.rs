@@ -33,7 +33,7 @@ fn no_flipped_bit_passes() {
             let mut flipped = journal.clone();
             flipped[place] ^= 1 << bit;
             match recover(&flipped) {
-                Err(damage) => assert!(damage.offset as usize <= place, "bit {bit} of byte {place}: {damage}"),
+                Err(damage) => assert!(damage.offset <= place as u64, "bit {bit} of byte {place}: {damage}"),
                 Ok(found) => {
                     assert!(place >= last, "bit {bit} of byte {place} passes");
                     assert_eq!(found.torn, Some(last as u64..journal.len() as u64));
@@ -60,7 +60,7 @@ fn no_record_is_left_out_doubled_or_moved() {
             let mut moved = all.clone();
             moved.swap(one, other);
             let damage = recover(&moved.concat()).unwrap_err();
-            assert_eq!(damage.line as usize, other + 1);
+            assert_eq!(damage.line, other as u64 + 1);
             let expected = Wrong::Sequence { expected: other as u64 + 1, found: one as u64 + 1 };
             assert_eq!(damage.reason, expected);
         }
@@ -99,7 +99,7 @@ fn each_check_word_is_checked_alone() {
     let forged = format!("{forged}{:08x}", crc32c::crc32c(forged.as_bytes()));
     let altered = whole.replace(second, &forged);
     assert_eq!(recover(altered.as_bytes()).unwrap_err().reason, Wrong::Chain, "checksum right, chain wrong");
-    let last = altered.lines().take(2).map(|line| format!("{line}\n")).collect::<String>();
+    let last = altered.split_inclusive('\n').take(2).collect::<String>();
     assert_eq!(recover(last.as_bytes()).unwrap_err().reason, Wrong::Chain, "also at the end: a sound line is never torn");
 }
 

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 
 use super::super::{Durability, EntryKind, recover};
-use super::{begun, records, small};
+use super::{begun, lines, records, small};
 
 /// JSON of every shape, with text of any characters and floats of any bits that are numbers.
 fn json() -> impl Strategy<Value = Value> {
@@ -68,7 +68,7 @@ proptest! {
             prop_assert_eq!(line.kind, EntryKind::ALL[*kind]);
             prop_assert_eq!(&line.body, body);
             prop_assert_eq!(bits(&line.body), bits(body));
-            let before = written[..usize::try_from(line.offset).unwrap()].iter().filter(|byte| **byte == b'\n').count();
+            let before = lines(&written[..usize::try_from(line.offset).unwrap()]).len();
             prop_assert_eq!(line.seq, before as u64 + 1);
         }
         prop_assert_eq!(found.lines.len(), bodies.len() + 1);

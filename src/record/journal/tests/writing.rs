@@ -20,6 +20,8 @@ fn header_is_first_and_only_and_nothing_follows_end() {
     let misplaced = |kind| Err(JournalFault::Refused(Refusal::OutOfPlace(kind)));
     assert_eq!(journal.append(EntryKind::Event, &json!({})), misplaced(EntryKind::Event));
     assert_eq!(journal.end(&json!({})), misplaced(EntryKind::End));
+    let reserved = Err(JournalFault::Refused(Refusal::Reserved("format")));
+    assert_eq!(journal.append(EntryKind::Header, &json!({"format": 1})), reserved);
     journal.append(EntryKind::Header, &json!({})).unwrap();
     assert_eq!(journal.append(EntryKind::Header, &json!({})), misplaced(EntryKind::Header));
     assert_eq!(journal.append(EntryKind::End, &json!({})), misplaced(EntryKind::End));
