@@ -4,7 +4,7 @@
 use super::checker::{Checker, Node, Place, Reads, Typed};
 use super::faults::{names as fault, types, values};
 use crate::formula::Formula;
-use crate::schema::{Field, FieldType, Kind, Need};
+use crate::schema::{Field, FieldType, Kind, Need, RigKind};
 use crate::source::Span;
 use crate::suggest;
 use crate::syntax::ast::{Entry, Expr, ExprKind};
@@ -31,7 +31,14 @@ impl<'a> Checker<'a> {
             }
         }
         let unreadable = self.unreadable(block);
-        for field in kind.fields.iter().filter(|field| field.need == Need::Required) {
+        let rig = if self.on_real_rig { RigKind::Real } else { RigKind::Virtual };
+        let required = |field: &&Field| match field.need {
+            Need::Required => true,
+            // What a rig itself lacks is said of it as a whole.
+            Need::RequiredOn(on, _) => on == rig && kind.kind != Kind::Rig,
+            _ => false,
+        };
+        for field in kind.fields.iter().filter(required) {
             if !meant.contains(&field.name)
                 && !unreadable
                 && self.given(block, field.name).is_none()
@@ -48,6 +55,7 @@ impl<'a> Checker<'a> {
         let has = |name: &str| declared.block.fields.iter().any(|entry| entry.key.node == name);
         match declared.kind.kind {
             Kind::Specimen => field == "behaviour" && has("storeys"),
+            // What a load cell alone lacks is said in its place.
             Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
             _ => false,
         }
@@ -170,7 +178,7 @@ impl<'a> Checker<'a> {
         self.text_value(field, &written.value)
     }
 
-    fn text_value(&mut self, field: &str, written: &Expr) -> Option<String> {
+    pub fn text_value(&mut self, field: &str, written: &Expr) -> Option<String> {
         match &written.kind {
             ExprKind::Text(text) => Some(text.clone()),
             ExprKind::Faulty => None,

@@ -89,11 +89,6 @@ pub(super) const SERIAL: Variant = Variant::with(
 /// A device on the network.
 pub(super) const TCP: Variant = Variant::with(
     "tcp",
-    &[
-        Field::text("address", "host and port").required("address: \"127.0.0.1:44000\""),
-        DIALECT,
-        REPLY_TIMEOUT,
-        SERIAL_NUMBER,
-    ],
+    &[Field::text("address", "host and port").required("address: \"127.0.0.1:44000\""), DIALECT, REPLY_TIMEOUT, SERIAL_NUMBER],
     "a device on the network; such a connection proves nobody: keep it on this machine or in a tunnel",
 );

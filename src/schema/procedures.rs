@@ -99,9 +99,11 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         Field::reference("striker", Kind::Striker, "what strikes").required("striker = pendulum"),
         SPECIMEN,
         Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5").above_zero().or_said("the specimen's"),
-        Field::quantity("stiffness", Dimension::STIFFNESS, "K0, before the first tangent")
-            .above_zero()
-            .required_on(RigKind::Real, "stiffness = k0.stiffness", "the behaviour's initial stiffness"),
+        Field::quantity("stiffness", Dimension::STIFFNESS, "K0, before the first tangent").above_zero().required_on(
+            RigKind::Real,
+            "stiffness = k0.stiffness",
+            "the behaviour's initial stiffness",
+        ),
         Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5").or(0.0, "N*s/m").at_least_zero(),
         Field::choice("contact", CONTACTS, "contact law").or_said("rigid"),
         Field::choice(

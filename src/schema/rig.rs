@@ -40,7 +40,9 @@ const GATE: &[Variant] = &[Variant::with(
         Field::interval("stiffness", Dimension::STIFFNESS, "stiffness that it must show, which proves sign, unit and scale")
             .required("stiffness: 250 kN/m .. 350 kN/m")
             .above_zero(),
-        Field::quantity("zero", Dimension::FORCE, "force at rest before it, by size, at most").required("zero: 20 N").above_zero(),
+        Field::quantity("zero", Dimension::FORCE, "force at rest before it, by size, at most")
+            .required("zero: 20 N")
+            .above_zero(),
     ],
     "a tiny move whose stiffness must be as expected",
 )];
@@ -87,10 +89,14 @@ pub(super) const RIG: BlockKind = BlockKind {
             .or(1.0, "mm/s")
             .above_zero()
             .of_real_rigs(),
-        Field::quantity("watchdog", Dimension::TIME, "longest silence between program and rig; past it the rig is to hold by itself")
-            .or(3.0, "s")
-            .above_zero_up_to(LONGEST_WAIT)
-            .of_real_rigs(),
+        Field::quantity(
+            "watchdog",
+            Dimension::TIME,
+            "longest silence between program and rig; past it the rig is to hold by itself",
+        )
+        .or(3.0, "s")
+        .above_zero_up_to(LONGEST_WAIT)
+        .of_real_rigs(),
         Field::quantity("rate", Dimension::FREQUENCY, "readings a second while it settles")
             .or(20.0, "Hz")
             .above_zero_up_to(1e4)
@@ -103,8 +109,12 @@ pub(super) const RIG: BlockKind = BlockKind {
             .or(0.0, "mm")
             .at_least_zero()
             .of_real_rigs(),
-        Field::quantity("noise", Dimension::FORCE, "standard deviation of one force reading").or(0.0, "N").at_least_zero().of_real_rigs(),
-        Field::bounds("force_range", Dimension::FORCE, true, "what the load cell can read; at its ends it is saturated").of_real_rigs(),
+        Field::quantity("noise", Dimension::FORCE, "standard deviation of one force reading")
+            .or(0.0, "N")
+            .at_least_zero()
+            .of_real_rigs(),
+        Field::bounds("force_range", Dimension::FORCE, true, "what the load cell can read; at its ends it is saturated")
+            .of_real_rigs(),
         Field::quantity("force_per_count", Dimension::FORCE, "of a load cell that gives raw counts; not 0").of_real_rigs(),
         Field::quantity("zero_count", Dimension::NUMBER, "count at no force, of a load cell that gives raw counts")
             .or(0.0, "")

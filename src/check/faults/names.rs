@@ -236,6 +236,13 @@ pub fn field_not_given(kind: &BlockKind, name: Option<&Ident>, field: &str, span
         .help(format!("add the field `{field}` to it"))
 }
 
+pub fn stiffness_without_behaviour(name: Option<&Ident>, span: Span) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    Diagnostic::new(Code::UnknownResult, format!("specimen `{name}` has no `stiffness`: no `behaviour` gives it"))
+        .at(span, "not known before it is measured")
+        .help("read the result of a `stiffness ramp`, as in `k0.stiffness`, or give the `behaviour` that is expected")
+}
+
 pub fn no_uncertainty(text: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UnknownResult, format!("`{text}` has no uncertainty"))
         .at(span, "only a measured result has `.u`")
@@ -300,6 +307,12 @@ pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnos
     Diagnostic::new(Code::BadArgument, format!("`{}` lacks its argument `{}`", variant.name, field.name))
         .at(span, format!("`{}` is missing", field.name))
         .help(argument_help(variant, field))
+}
+
+pub fn argument_needs(variant: &str, argument: &str, other: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadArgument, format!("`{argument}` of `{variant}` needs `{other}` beside it"))
+        .at(span, format!("`{other}` is missing"))
+        .help(format!("give `{other}: …` too, or remove `{argument}`"))
 }
 
 pub fn unknown_parameter(name: &str, known: &[&str]) -> Diagnostic {
