@@ -67,15 +67,15 @@ pub struct Checker<'a> {
     pub unread: Vec<Span>,
     pub known: BTreeMap<Node, Option<Typed>>,
     pub used: BTreeSet<usize>,
-    /// Whether the run is on a rig that moves a specimen.
-    pub on_real_rig: bool,
+    /// The rig of the run, where it is one that moves a specimen.
+    pub real_rig: Option<usize>,
     stack: Vec<Node>,
 }
 
 impl<'a> Checker<'a> {
     pub fn new(sources: &'a Sources, scope: &'a Scope<'a>, faults: Vec<Diagnostic>, unread: Vec<Span>, names_lost: bool) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
-        Self { sources, scope, faults, names_lost, unread, known, used, on_real_rig: false, stack }
+        Self { sources, scope, faults, names_lost, unread, known, used, real_rig: None, stack }
     }
 
     /// Notes a fault; returns None, so that a caller can leave with it.

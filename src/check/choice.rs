@@ -156,14 +156,21 @@ impl<'a> Checker<'a> {
     pub fn interval_argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Interval> {
         let (field, written) = chosen.find(name)?;
         let (written, dimension) = (written?, field.dimension()?);
+        let ExprKind::Range { start, end, .. } = &written.kind else {
+            return match written.kind {
+                ExprKind::Faulty => None,
+                _ => self.fail(types::range_wanted_by(field, written.span)),
+            };
+        };
         let (interval, found) = self.interval(written, place)?;
         let typed = Typed {
             bare: found == Dimension::NUMBER && dimension != Dimension::NUMBER,
             ..Typed::number(Formula::Constant(interval.high), found, written.span)
         };
         self.expect(typed, dimension, field.name, written)?;
-        match [interval.low, interval.high].into_iter().find(|end| !field.range.contains(*end)) {
-            Some(end) => self.fail(values::out_of_range(field, dimension, end, self.text(written.span), written.span)),
+        let mut ends = [(interval.low, start.span), (interval.high, end.span)].into_iter();
+        match ends.find(|(end, _)| !field.range.contains(*end)) {
+            Some((end, at)) => self.fail(values::out_of_range(field, dimension, end, self.text(at), at)),
             None => Some(interval),
         }
     }

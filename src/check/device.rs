@@ -35,7 +35,7 @@ fn serial_port<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place)
     let baud = checker.constant_argument(chosen, "baud", place).and_then(whole);
     let (path, span) = path?;
     match fault_of_port(&path) {
-        Some(why) => checker.fail(fault::bad_port(&path, span, why)),
+        Some(why) => checker.fail(fault::bad_port(span, why)),
         None => Some(PortPlan::Serial { path, baud: baud? }),
     }
 }

@@ -31,7 +31,7 @@ impl<'a> Checker<'a> {
             }
         }
         let unreadable = self.unreadable(block);
-        let rig = if self.on_real_rig { RigKind::Real } else { RigKind::Virtual };
+        let rig = if self.real_rig.is_some() { RigKind::Real } else { RigKind::Virtual };
         let required = |field: &&Field| match field.need {
             Need::Required => true,
             // What a rig itself lacks is said of it as a whole.
@@ -44,7 +44,10 @@ impl<'a> Checker<'a> {
                 && self.given(block, field.name).is_none()
                 && !self.replaced(block, field.name)
             {
-                self.faults.push(fault::missing_field(kind, declared.name, declared.block.head, field.name, field.example));
+                self.faults.push(match field.need {
+                    Need::RequiredOn(rig, _) => fault::missing_field_on(rig, kind, declared.name, declared.block.head, field),
+                    _ => fault::missing_field(kind, declared.name, declared.block.head, field.name, field.example),
+                });
             }
         }
     }

@@ -111,7 +111,7 @@ fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
 }
 
 fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Options) -> Option<Plan> {
-    checker.on_real_rig = rig::is_real_run(checker, options.rig.as_deref());
+    checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
     for block in 0..checker.scope.blocks.len() {
         checker.entries_of(block);
     }

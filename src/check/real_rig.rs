@@ -119,8 +119,8 @@ fn hold_watchdog<'d>(
     if watchdog >= silence {
         return Some(());
     }
-    let at = checker.given(block, "watchdog").map_or(slowest.at, |(_, entry)| entry.value.span);
-    checker.fail(fault::watchdog_too_short(watchdog, silence, slowest.link.reply_timeout, at))
+    let given = checker.given(block, "watchdog").map(|(_, entry)| entry.value.span);
+    checker.fail(fault::watchdog_too_short(watchdog, silence, given.is_some(), given.unwrap_or(slowest.at)))
 }
 
 fn gate(checker: &mut Checker, block: usize) -> Option<Gate> {
@@ -155,7 +155,9 @@ fn readings(checker: &mut Checker, block: usize) -> Option<ReadingRules> {
 
 /// Says what each real rig lacks; for the rig of the run also whether its limits bound it, and hold its own moves.
 pub fn complete(checker: &mut Checker, rig: Option<&mut CheckedRig>, limits: Option<&CheckedLimits>) {
-    let of_run = rig.as_ref().and_then(|rig| rig.block);
+    // Limits that the rig names are not known where it is faulty itself.
+    let knows_limits = |block: usize| rig.is_some() || checker.given(block, "limits").is_none();
+    let of_run = checker.real_rig.filter(|block| knows_limits(*block));
     let rigs = checker.scope.of_kind(Kind::Rig).map(|(index, _)| index);
     let real: Vec<usize> = rigs.filter(|block| kind(checker, *block) == Some(RigKind::Real)).collect();
     for block in real {

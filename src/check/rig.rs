@@ -22,11 +22,11 @@ pub struct CheckedRig {
     pub block: Option<usize>,
 }
 
-/// Whether the run is on a rig that moves a specimen: only where `--rig` names one.
-pub fn is_real_run(checker: &Checker, asked: Option<&str>) -> bool {
+/// The rig of the run, where it is one that moves a specimen: only where `--rig` names it.
+pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> {
     let named = |name: Option<&crate::syntax::ast::Ident>| name.is_some_and(|name| Some(name.node.as_str()) == asked);
     let block = checker.scope.of_kind(Kind::Rig).find(|(_, block)| named(block.name)).map(|(index, _)| index);
-    block.is_some_and(|block| kind(checker, block) == Some(RigKind::Real))
+    block.filter(|block| kind(checker, *block) == Some(RigKind::Real))
 }
 
 /// Checks every rig; gives the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.

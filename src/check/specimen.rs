@@ -31,7 +31,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     }
     // A real specimen bends as it does; a virtual one without a behaviour is said already.
     let behaviour = match checker.given(block, "behaviour") {
-        None if checker.on_real_rig => Some(None),
+        None if checker.real_rig.is_some() => Some(None),
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
@@ -57,7 +57,7 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -
     match name {
         "mass" => mass(checker, block),
         // Known only of a behaviour; that a virtual specimen lacks it is said already.
-        _ if checker.on_real_rig && checker.given(block, "behaviour").is_none() => {
+        _ if checker.real_rig.is_some() && checker.given(block, "behaviour").is_none() => {
             let declared = &checker.scope.blocks[block];
             checker.fail(fault::stiffness_without_behaviour(declared.name, asked_at))
         }

@@ -3,7 +3,7 @@
 use super::{one_of, suggestion};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::quantity::unit::{PREFIXES, UNITS};
-use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Need, Variant};
+use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Need, RigKind, Variant};
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Block, Ident};
 
@@ -133,6 +133,16 @@ pub fn missing_field(kind: &BlockKind, name: Option<&Ident>, head: Span, field: 
     Diagnostic::new(Code::MissingField, format!("{} lacks the field `{field}`", owner(kind, name)))
         .at(head, format!("`{field}` is missing"))
         .help(format!("add a line such as `{example}`"))
+}
+
+/// A field that only a rig of this kind needs.
+pub fn missing_field_on(rig: RigKind, kind: &BlockKind, name: Option<&Ident>, head: Span, field: &Field) -> Diagnostic {
+    Diagnostic::new(
+        Code::MissingField,
+        format!("{} lacks the field `{}`, which a {} rig needs", owner(kind, name), field.name, rig.name()),
+    )
+    .at(head, format!("`{}` is missing", field.name))
+    .help(format!("add a line such as `{}`", field.example))
 }
 
 pub fn mass_incomplete(name: Option<&Ident>, head: Span, missing: &str) -> Diagnostic {

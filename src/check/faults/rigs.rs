@@ -124,10 +124,10 @@ pub fn field_of_real_rigs(key: &Ident) -> Diagnostic {
         .help(help)
 }
 
-pub fn bad_port(path: &str, span: Span, why: &str) -> Diagnostic {
-    Diagnostic::new(Code::BadPort, format!("`{}` cannot be the name of a port: {why}", path.escape_debug()))
+pub fn bad_port(span: Span, why: &str) -> Diagnostic {
+    Diagnostic::new(Code::BadPort, format!("this cannot be the name of a port: {why}"))
         .at(span, "no name of a port")
-        .help("write it as the system names it, such as `\"/dev/ttyUSB0\"`; `psd rig list` shows the ports of this machine")
+        .help("write it as the system names it, such as `\"/dev/ttyUSB0\"`")
 }
 
 pub fn bad_address(address: &str, span: Span) -> Diagnostic {
@@ -158,15 +158,20 @@ pub fn not_a_day(day: &str, span: Span) -> Diagnostic {
         .help("write year, month and day, as in `\"2027-03-01\"`")
 }
 
-pub fn watchdog_too_short(watchdog: f64, silence: f64, reply_timeout: f64, at: Span) -> Diagnostic {
+/// `given`: the watchdog stands at `at`; else the device does whose request waits longest.
+pub fn watchdog_too_short(watchdog: f64, silence: f64, given: bool, at: Span) -> Diagnostic {
     let time = |value: f64| shown(value, Dimension::TIME);
-    let (watchdog, silence, timeout) = (time(watchdog), time(silence), time(reply_timeout));
+    // Down to a whole millisecond, so that seven of it fit in.
+    let shorter = (watchdog / 7.0 * 1e3).floor() / 1e3;
+    let (watchdog, silence) = (time(watchdog), time(silence));
+    let label = if given { format!("{watchdog}, a request waits {silence}") } else { format!("a request to it waits {silence}") };
+    let other = if shorter > 0.0 { format!(", or a `reply_timeout` of at most {}", time(shorter)) } else { String::new() };
     Diagnostic::new(
         Code::WatchdogTooShort,
-        format!("the watchdog of {watchdog} ends before a request is given up: one waits {silence}, seven times `reply_timeout`"),
+        format!("the watchdog of {watchdog} ends before a request is given up, after {silence}: seven times its `reply_timeout`"),
     )
-    .at(at, format!("{watchdog}, a request waits {silence}"))
-    .help(format!("write `watchdog = {silence}` or more, or a `reply_timeout` below {timeout}"))
+    .at(at, label)
+    .help(format!("write `watchdog = {silence}` or more{other}"))
 }
 
 pub fn never_settles(field: &str, span: Span) -> Diagnostic {
