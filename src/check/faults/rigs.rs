@@ -189,7 +189,7 @@ pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Dia
     } else {
         ("calibration_due", "calibration_due = \"2027-03-01\"")
     };
-    let lacks = if reference && due { "`calibration` and `calibration_due`".to_owned() } else { format!("`{field}`") };
+    let lacks = if reference && due { "`calibration` or `calibration_due`".to_owned() } else { format!("`{field}`") };
     let lines = if reference && due { format!("{line}\ncalibration_due = \"2027-03-01\"") } else { line.to_owned() };
     Diagnostic::new(
         Code::CalibrationWithoutDay,
