@@ -67,12 +67,15 @@ pub struct Checker<'a> {
     pub unread: Vec<Span>,
     pub known: BTreeMap<Node, Option<Typed>>,
     pub used: BTreeSet<usize>,
+    /// The rig of the run, where it is one that moves a specimen.
+    pub real_rig: Option<usize>,
     stack: Vec<Node>,
 }
 
 impl<'a> Checker<'a> {
     pub fn new(sources: &'a Sources, scope: &'a Scope<'a>, faults: Vec<Diagnostic>, unread: Vec<Span>, names_lost: bool) -> Self {
-        Self { sources, scope, faults, names_lost, unread, known: BTreeMap::new(), used: BTreeSet::new(), stack: Vec::new() }
+        let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
+        Self { sources, scope, faults, names_lost, unread, known, used, real_rig: None, stack }
     }
 
     /// Notes a fault; returns None, so that a caller can leave with it.

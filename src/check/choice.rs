@@ -1,10 +1,12 @@
 //! Words and variants: `rigid`, `limit(1500 N)`, `[every(20), force_drop(10 %)]`. In: an expression and the variants a
 //! field knows. Out: a [`Chosen`], its arguments in SI.
 
-use super::checker::{Checker, Place};
+use super::checker::{Checker, Place, Typed};
 use super::faults::values;
 use super::faults::{names as fault, types};
 use crate::formula::Formula;
+use crate::plan::Interval;
+use crate::quantity::Dimension;
 use crate::schema::{Field, FieldType, Need, Variant};
 use crate::source::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind};
@@ -122,7 +124,64 @@ impl<'a> Checker<'a> {
     }
 }
 
+/// Arguments that are no single number; a required one always stands, or its variant was faulty.
+impl<'a> Checker<'a> {
+    /// An argument that may be left out, a number known before the run: `Some(None)` where it is, None where it is faulty.
+    #[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+    pub fn optional_argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Option<f64>> {
+        match chosen.find(name)? {
+            (_, Some(_)) => self.constant_argument(chosen, name, place).map(Some),
+            (_, None) => Some(None),
+        }
+    }
+
+    /// An argument that is a word or a variant itself.
+    pub fn chosen_argument(&mut self, chosen: &Chosen<'a>, name: &str) -> Option<Chosen<'a>> {
+        let (field, written) = chosen.find(name)?;
+        let FieldType::Choice(variants) = field.ty else { return None };
+        self.chosen(field.name, variants, written?)
+    }
+
+    /// An argument that is a text, and where it stands; `Some(None)` where it is left out, None where it is no text.
+    #[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+    pub fn text_argument(&mut self, chosen: &Chosen<'a>, name: &str) -> Option<Option<(String, Span)>> {
+        let (field, written) = chosen.find(name)?;
+        match written {
+            Some(written) => self.text_value(field.name, written).map(|text| Some((text, written.span))),
+            None => Some(None),
+        }
+    }
+
+    /// An argument that is a range, both ends inside the field's own.
+    pub fn interval_argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Interval> {
+        let (field, written) = chosen.find(name)?;
+        let (written, dimension) = (written?, field.dimension()?);
+        let ExprKind::Range { start, end, .. } = &written.kind else {
+            return match written.kind {
+                ExprKind::Faulty => None,
+                _ => self.fail(types::range_wanted_by(field, written.span)),
+            };
+        };
+        let (interval, found) = self.interval(written, place)?;
+        let typed = Typed {
+            bare: found == Dimension::NUMBER && dimension != Dimension::NUMBER,
+            ..Typed::number(Formula::Constant(interval.high), found, written.span)
+        };
+        self.expect(typed, dimension, field.name, written)?;
+        let mut ends = [(interval.low, start.span), (interval.high, end.span)].into_iter();
+        match ends.find(|(end, _)| !field.range.contains(*end)) {
+            Some((end, at)) => self.fail(values::out_of_range(field, dimension, end, self.text(at), at)),
+            None => Some(interval),
+        }
+    }
+}
+
 impl<'a> Chosen<'a> {
+    /// Where an argument was written.
+    pub fn span(&self, name: &str) -> Option<Span> {
+        self.find(name)?.1.map(|written| written.span)
+    }
+
     /// The argument of the schema, and what was written for it.
     pub fn find(&self, name: &str) -> Option<(&'static Field, Option<&'a Expr>)> {
         let index = self.variant.arguments.iter().position(|field| field.name == name)?;

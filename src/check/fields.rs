@@ -4,7 +4,7 @@
 use super::checker::{Checker, Node, Place, Reads, Typed};
 use super::faults::{names as fault, types, values};
 use crate::formula::Formula;
-use crate::schema::{Field, FieldType, Kind, Need};
+use crate::schema::{Field, FieldType, Kind, Need, RigKind};
 use crate::source::Span;
 use crate::suggest;
 use crate::syntax::ast::{Entry, Expr, ExprKind};
@@ -31,13 +31,23 @@ impl<'a> Checker<'a> {
             }
         }
         let unreadable = self.unreadable(block);
-        for field in kind.fields.iter().filter(|field| field.need == Need::Required) {
+        let rig = if self.real_rig.is_some() { RigKind::Real } else { RigKind::Virtual };
+        let required = |field: &&Field| match field.need {
+            Need::Required => true,
+            // What a rig itself lacks is said of it as a whole.
+            Need::RequiredOn(on, _) => on == rig && kind.kind != Kind::Rig,
+            _ => false,
+        };
+        for field in kind.fields.iter().filter(required) {
             if !meant.contains(&field.name)
                 && !unreadable
                 && self.given(block, field.name).is_none()
                 && !self.replaced(block, field.name)
             {
-                self.faults.push(fault::missing_field(kind, declared.name, declared.block.head, field.name, field.example));
+                self.faults.push(match field.need {
+                    Need::RequiredOn(rig, _) => fault::missing_field_on(rig, kind, declared.name, declared.block.head, field),
+                    _ => fault::missing_field(kind, declared.name, declared.block.head, field.name, field.example),
+                });
             }
         }
     }
@@ -48,6 +58,7 @@ impl<'a> Checker<'a> {
         let has = |name: &str| declared.block.fields.iter().any(|entry| entry.key.node == name);
         match declared.kind.kind {
             Kind::Specimen => field == "behaviour" && has("storeys"),
+            // What a load cell alone lacks is said in its place.
             Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
             _ => false,
         }
@@ -170,7 +181,7 @@ impl<'a> Checker<'a> {
         self.text_value(field, &written.value)
     }
 
-    fn text_value(&mut self, field: &str, written: &Expr) -> Option<String> {
+    pub fn text_value(&mut self, field: &str, written: &Expr) -> Option<String> {
         match &written.kind {
             ExprKind::Text(text) => Some(text.clone()),
             ExprKind::Faulty => None,

@@ -19,6 +19,8 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     };
     let stiffness = match checker.given(block, "stiffness") {
         Some(_) => checker.quantity(block, "stiffness"),
+        // Required there, and said already.
+        None if checker.real_rig.is_some() => None,
         None => specimen_block.and_then(|tested| specimen::export(checker, tested, "stiffness", head)).map(Formula::Constant),
     };
     let damping = checker.quantity(block, "damping");

@@ -43,7 +43,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A range, or a bound `b`: −b .. b where both signs make sense, else 0 .. b.
-    fn bounds(&mut self, block: usize, field: &'static str) -> Option<Interval> {
+    pub fn bounds(&mut self, block: usize, field: &'static str) -> Option<Interval> {
         let Some((entry, written)) = self.given(block, field) else { return Some(Interval::ALL) };
         let FieldType::Bounds { dimension, symmetric } = self.scope.blocks[block].kind.field(field)?.ty else { return None };
         let place = self.place(block, entry);

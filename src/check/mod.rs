@@ -1,10 +1,13 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod calendar;
 mod call;
 mod checker;
 mod choice;
 mod damping_sweep;
+mod device;
+mod dialect;
 mod expression;
 mod faults;
 mod fields;
@@ -18,6 +21,7 @@ mod names;
 mod parameters;
 mod plan_block;
 mod procedures;
+mod real_rig;
 mod report;
 mod require;
 mod rig;
@@ -107,6 +111,7 @@ fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
 }
 
 fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Options) -> Option<Plan> {
+    checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
     for block in 0..checker.scope.blocks.len() {
         checker.entries_of(block);
     }
@@ -116,8 +121,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     let specimens: Vec<_> =
         of_kind(checker, Kind::Specimen).into_iter().map(|block| specimen::specimen(checker, block)).collect();
     let strikers: Vec<_> = of_kind(checker, Kind::Striker).into_iter().map(|block| striker::striker(checker, block)).collect();
-    let rig = rig::rig_of_run(checker, options.rig.as_deref());
+    let mut rig = rig::rig_of_run(checker, options.rig.as_deref());
     let limits = checker.limits(rig.as_ref().and_then(|rig| rig.limits));
+    real_rig::complete(checker, rig.as_mut(), limits.as_ref());
     let procedures = procedures::procedures(checker);
     procedures::hold_specimen(checker, &procedures);
     if let Some(limits) = &limits {
@@ -135,6 +141,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     if !checker.faults.iter().any(Diagnostic::is_error) {
         let head = checker.scope.of_kind(Kind::Plan).map(|(_, block)| block.block.head).next();
         let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
+        if let Some(rig) = &rig {
+            real_rig::warn(checker, rig);
+        }
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
     }
     let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();

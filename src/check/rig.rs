@@ -1,28 +1,45 @@
 //! `rig NAME { … }`: how it is reached, when a reading counts; and which rig a run uses.
 
+use super::calendar;
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
+use super::faults::rigs;
 use super::faults::whole as fault;
+use super::real_rig;
 use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
-use crate::schema::Kind;
+use crate::schema::{Kind, RigKind};
 use crate::source::FileId;
+use crate::syntax::ast::{Expr, ExprKind};
 
 /// At once, for as long as it takes up to ten seconds.
 const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 10.0 };
 
-/// The rig of the run, and the `limits` block it names.
+/// The rig of the run, its block, and the `limits` block it names.
 pub struct CheckedRig {
     pub plan: RigPlan,
     pub limits: Option<usize>,
+    /// None for the ideal rig, which nobody declares.
+    pub block: Option<usize>,
 }
 
-/// Checks every rig; gives the one named by `--rig`, else the first of the plan itself, else an ideal one.
+/// The rig of the run, where it is one that moves a specimen: only where `--rig` names it.
+pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> {
+    let named = |name: Option<&crate::syntax::ast::Ident>| name.is_some_and(|name| Some(name.node.as_str()) == asked);
+    let block = checker.scope.of_kind(Kind::Rig).find(|(_, block)| named(block.name)).map(|(index, _)| index);
+    block.filter(|block| kind(checker, *block) == Some(RigKind::Real))
+}
+
+/// Checks every rig; gives the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.
 pub fn rig_of_run(checker: &mut Checker, asked: Option<&str>) -> Option<CheckedRig> {
-    let rigs: Vec<(usize, bool)> =
-        checker.scope.of_kind(Kind::Rig).map(|(index, block)| (index, block.span.file == FileId(0))).collect();
+    let rigs: Vec<(usize, bool)> = checker
+        .scope
+        .of_kind(Kind::Rig)
+        .map(|(index, block)| (index, block.span.file == FileId(0) && kind(checker, index) != Some(RigKind::Real)))
+        .collect();
     let names: Vec<&str> =
         checker.scope.of_kind(Kind::Rig).filter_map(|(_, block)| block.name).map(|name| name.node.as_str()).collect();
-    let mut checked: Vec<(bool, Option<CheckedRig>)> = rigs.into_iter().map(|(index, own)| (own, rig(checker, index))).collect();
+    let mut checked: Vec<(bool, Option<CheckedRig>)> =
+        rigs.into_iter().map(|(index, unasked)| (unasked, rig(checker, index))).collect();
     if let Some(asked) = asked {
         let position = names.iter().position(|name| *name == asked);
         return match position {
@@ -32,7 +49,7 @@ pub fn rig_of_run(checker: &mut Checker, asked: Option<&str>) -> Option<CheckedR
             None => checker.fail(fault::unknown_rig(asked, &names)),
         };
     }
-    match checked.iter().position(|(own, _)| *own) {
+    match checked.iter().position(|(unasked, _)| *unasked) {
         Some(first) => checked.swap_remove(first).1,
         None => Some(ideal()),
     }
@@ -49,42 +66,73 @@ fn ideal() -> CheckedRig {
         sign: 1.0,
         calibration: Calibration::default(),
     };
-    CheckedRig { plan, limits: None }
+    CheckedRig { plan, limits: None, block: None }
+}
+
+/// What a rig moves, by the words it is reached with; None where those cannot be read.
+pub fn kind(checker: &Checker, block: usize) -> Option<RigKind> {
+    if checker.given(block, "actuator").is_some() || checker.given(block, "load_cell").is_some() {
+        return Some(RigKind::Real);
+    }
+    match word(&checker.given(block, "link")?.1.value)? {
+        "virtual" => Some(RigKind::Virtual),
+        "serial" | "tcp" => Some(RigKind::Real),
+        _ => None,
+    }
+}
+
+/// The word of a choice: `serial` of `serial(…)`.
+fn word(written: &Expr) -> Option<&str> {
+    match &written.kind {
+        ExprKind::Name(name) => Some(name),
+        ExprKind::Call { name, .. } => Some(&name.node),
+        ExprKind::Parenthesised(inner) => word(inner),
+        _ => None,
+    }
 }
 
 fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
-    let link = match checker.choice(block, "link") {
-        Some(chosen) => virtual_link(checker, &chosen, place_of(checker, block, "link")?),
-        None => None,
+    let kind = kind(checker, block);
+    let calibration = calibration(checker, block);
+    let link = match kind {
+        Some(RigKind::Real) => real_rig::real_link(checker, block).map(Link::Real),
+        Some(RigKind::Virtual) => {
+            without_use(checker, block);
+            let chosen = checker.choice(block, "link");
+            chosen.and_then(|chosen| virtual_link(checker, &chosen, place_of(checker, block, "link")?)).map(Link::Virtual)
+        }
+        // Says what is wrong with it.
+        None => checker.choice(block, "link").and(None),
     };
     let settle = match checker.given(block, "settle") {
         Some((entry, _)) => {
             let place = checker.place(block, entry);
-            checker.choice(block, "settle").and_then(|chosen| settle(checker, &chosen, place))
+            checker.choice(block, "settle").and_then(|chosen| settle(checker, &chosen, place, kind))
         }
         None => Some(AT_ONCE),
     };
     let sign = checker.word(block, "sign", "positive").map(|word| if word == "negative" { -1.0 } else { 1.0 });
-    let calibration = match checker.given(block, "calibration") {
-        Some(_) => checker.text_field(block, "calibration").map(Some),
-        None => Some(None),
-    };
     let limits = match checker.given(block, "limits") {
         Some(_) => checker.reference(block, "limits", Kind::Limits).map(Some),
         None => Some(None),
     };
     let name = checker.scope.blocks[block].name?.node.clone();
-    let plan = RigPlan {
-        name,
-        link: Link::Virtual(link?),
-        settle: settle?,
-        sign: sign?,
-        calibration: Calibration { reference: calibration?, ..Calibration::default() },
-    };
-    Some(CheckedRig { plan, limits: limits? })
+    let plan = RigPlan { name, link: link?, settle: settle?, sign: sign?, calibration: calibration? };
+    Some(CheckedRig { plan, limits: limits?, block: Some(block) })
 }
 
-fn place_of(checker: &Checker, block: usize, field: &str) -> Option<Place> {
+/// Fields of a real rig do nothing on a virtual one, and are not passed over in silence.
+fn without_use(checker: &mut Checker, block: usize) {
+    let declared = &checker.scope.blocks[block];
+    for entry in &declared.block.fields {
+        if declared.kind.field(&entry.key.node).is_some_and(|field| field.real_rig_only) {
+            checker.faults.push(rigs::field_of_real_rigs(&entry.key));
+        }
+    }
+}
+
+/// Where the entry of a field stands.
+pub fn place_of(checker: &Checker, block: usize, field: &str) -> Option<Place> {
     checker.given(block, field).map(|(entry, _)| checker.place(block, entry))
 }
 
@@ -105,8 +153,36 @@ fn virtual_link<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place
     })
 }
 
-fn settle<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<Settle> {
+fn settle<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, kind: Option<RigKind>) -> Option<Settle> {
     let mut number = |name: &str| checker.constant_argument(chosen, name, place);
     let (band, force_rate, dwell, timeout) = (number("displacement"), number("force_rate"), number("for"), number("timeout"));
-    Some(Settle { band: band?, force_rate: force_rate?, dwell: dwell?, timeout: timeout? })
+    let settle = Settle { band: band?, force_rate: force_rate?, dwell: dwell?, timeout: timeout? };
+    for (name, bound) in [("displacement", settle.band), ("force_rate", settle.force_rate)] {
+        if let (Some(RigKind::Real), Some(span)) = (kind, chosen.span(name))
+            && bound == 0.0
+        {
+            return checker.fail(rigs::never_settles(name, span));
+        }
+    }
+    Some(settle)
+}
+
+/// Where the numbers are traced to; what a count is worth is for the real rig's own file to judge.
+fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
+    let mut text = |field: &str| match checker.given(block, field) {
+        Some(_) => checker.text_field(block, field).map(Some),
+        None => Some(None),
+    };
+    let (reference, due) = (text("calibration"), text("calibration_due"));
+    if let (Some(Some(day)), Some((_, entry))) = (&due, checker.given(block, "calibration_due"))
+        && !calendar::is_day(day)
+    {
+        return checker.fail(rigs::not_a_day(day, entry.value.span));
+    }
+    let newtons_per_count = match checker.given(block, "force_per_count") {
+        Some(_) => checker.constant(block, "force_per_count").map(Some),
+        None => Some(None),
+    };
+    let zero_count = checker.constant(block, "zero_count");
+    Some(Calibration { reference: reference?, due: due?, newtons_per_count: newtons_per_count?, zero_count: zero_count? })
 }

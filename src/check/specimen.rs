@@ -29,9 +29,13 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     for field in ["length", "area", "density"] {
         checker.quantity(block, field);
     }
-    let behaviour = behaviour(checker, block, head);
+    // A real specimen bends as it does; a virtual one without a behaviour is said already.
+    let behaviour = match checker.given(block, "behaviour") {
+        None if checker.real_rig.is_some() => Some(None),
+        _ => behaviour(checker, block, head).map(Some),
+    };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
-    Some(Specimen { name: name?.node.clone(), mass: mass?, behaviour: Some(behaviour?), damping: damping?, coulomb: coulomb? })
+    Some(Specimen { name: name?.node.clone(), mass: mass?, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
@@ -52,6 +56,11 @@ fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
 pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -> Option<f64> {
     match name {
         "mass" => mass(checker, block),
+        // Known only of a behaviour; that a virtual specimen lacks it is said already.
+        _ if checker.real_rig.is_some() && checker.given(block, "behaviour").is_none() => {
+            let declared = &checker.scope.blocks[block];
+            checker.fail(fault::stiffness_without_behaviour(declared.name, asked_at))
+        }
         _ => behaviour(checker, block, asked_at).map(|behaviour| behaviour.initial_stiffness()),
     }
 }

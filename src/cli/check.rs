@@ -30,7 +30,7 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
             continue;
         };
         if arguments.explain {
-            let dry = explain_plan::DryRun::of(plan);
+            let dry = explain_plan::Explained::of(plan);
             exit = exit.max(dry.exit());
             match arguments.format {
                 Format::Human => give(&dry.text(settings))?,

@@ -9,11 +9,55 @@ use super::exit::Exit;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
-use crate::plan::{Interval, Link, Plan, VirtualLink};
+use crate::plan::{Interval, Link, Plan, ProcedureKind, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::{readable, readable_unit, significant};
 use crate::record::{History, ImpactHistory, Outcome, Record};
 use crate::verdict::{self, Assessment};
+
+/// What a run would do.
+pub enum Explained<'a> {
+    Dry(Box<DryRun<'a>>),
+    /// The specimen of this name has no behaviour: only a real rig knows how it bends.
+    Unknown {
+        specimen: &'a str,
+        rig: &'a str,
+    },
+}
+
+impl<'a> Explained<'a> {
+    /// Runs the plan dry, where the specimen that it tests has a behaviour or none is tested.
+    pub fn of(plan: &'a Plan) -> Self {
+        let tested = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
+            ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
+            ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
+            ProcedureKind::Impact(impact) => Some(impact.specimen),
+            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
+        });
+        match tested.or(Some(0)).and_then(|place| plan.specimens.get(place)) {
+            Some(specimen) if specimen.behaviour.is_none() => Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name },
+            _ => Self::Dry(Box::new(DryRun::of(plan))),
+        }
+    }
+
+    /// A dry run that a limit stops ends as the run would; where there is none, nothing is wrong with the plan.
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Dry(dry) => dry.exit(),
+            Self::Unknown { .. } => Exit::Met,
+        }
+    }
+
+    pub fn text(&self, settings: Settings) -> String {
+        match self {
+            Self::Dry(dry) => dry.text(settings),
+            Self::Unknown { specimen, rig } => format!(
+                "no dry run: specimen `{specimen}` has no `behaviour`, and only rig `{rig}` knows how it bends. A `behaviour` as it is \
+                 expected gives one.\n"
+            ),
+        }
+    }
+}
 
 /// A run that moved nothing but numbers.
 pub struct DryRun<'a> {
@@ -275,6 +319,16 @@ mod tests {
             assert!(text.contains(expected), "{expected} in\n{text}");
         }
         assert_eq!(dry.exit(), Exit::Met);
+    }
+
+    #[test]
+    fn a_specimen_without_behaviour_is_not_run_dry() {
+        let mut plan = example(0.2);
+        assert!(Explained::of(&plan).text(PLAIN).contains("peak displacement"));
+        plan.specimens[0].behaviour = None;
+        let explained = Explained::of(&plan);
+        assert!(explained.text(PLAIN).starts_with("no dry run: specimen `beam`"), "{}", explained.text(PLAIN));
+        assert_eq!(explained.exit(), Exit::Met);
     }
 
     #[test]

@@ -82,6 +82,15 @@ codes! {
     E603 UnknownRig Error;
     E604 LimitsWider Error;
     E605 SeveralSpecimens Error;
+    E606 RealRigIncomplete Error;
+    E607 RigLinks Error;
+    E608 WrongDevice Error;
+    E609 CountsWithoutForce Error;
+    E610 BadPort Error;
+    E611 PortTwice Error;
+    E612 NotADay Error;
+    E613 WatchdogTooShort Error;
+    E614 FieldWithoutUse Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -89,6 +98,8 @@ codes! {
     W704 NothingRequired Warning;
     W705 NothingRuns Warning;
     W706 Unused Warning;
+    W707 CalibrationWithoutDay Warning;
+    W708 DeviceNotPinned Warning;
 }
 
 impl std::fmt::Display for Code {

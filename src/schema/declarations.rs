@@ -1,6 +1,6 @@
 //! What is tested and what strikes it: `specimen` and `striker`.
 
-use super::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind, Variant};
 use crate::quantity::Dimension;
 
 const STIFFNESS: Field =
@@ -64,7 +64,11 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
         Field::quantity("length", Dimension::LENGTH, "length of the beam").above_zero(),
         Field::quantity("area", Dimension::AREA, "area of the cross-section").above_zero(),
         Field::quantity("density", Dimension::DENSITY, "density of the material").above_zero(),
-        Field::choice("behaviour", BEHAVIOURS, "what a virtual rig bends").required("behaviour = elastic(stiffness: 300 kN/m)"),
+        Field::choice("behaviour", BEHAVIOURS, "what a virtual rig bends").required_on(
+            RigKind::Virtual,
+            "behaviour = elastic(stiffness: 300 kN/m)",
+            "",
+        ),
         Field::quantity("damping", Dimension::DAMPING, "c of c·v on the virtual load cell while the actuator moves")
             .or(0.0, "N*s/m")
             .at_least_zero(),

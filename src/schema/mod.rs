@@ -2,6 +2,7 @@
 //! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
 
 mod declarations;
+mod devices;
 mod functions;
 mod later;
 mod limits;
@@ -15,7 +16,7 @@ mod types;
 
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use reference::reference;
-pub use types::{BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, Variant};
+pub use types::{BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant};
 
 /// Every kind of block, in the order of the reference.
 pub const BLOCKS: &[&BlockKind] = &[
@@ -65,13 +66,17 @@ mod tests {
 
     #[test]
     fn every_default_with_a_unit_has_the_dimension_of_its_field() {
-        let arguments = |field: &'static Field| match field.ty {
-            FieldType::Choice(variants) | FieldType::Choices(variants) => {
-                variants.iter().flat_map(|variant| variant.arguments).collect()
-            }
-            _ => Vec::new(),
-        };
-        for field in BLOCKS.iter().flat_map(|block| block.fields).flat_map(|field| [vec![field], arguments(field)].concat()) {
+        /// The field, its arguments, and theirs.
+        fn all(field: &'static Field) -> Vec<&'static Field> {
+            let inner: Vec<&Field> = match field.ty {
+                FieldType::Choice(variants) | FieldType::Choices(variants) => {
+                    variants.iter().flat_map(|variant| variant.arguments).flat_map(all).collect()
+                }
+                _ => Vec::new(),
+            };
+            [vec![field], inner].concat()
+        }
+        for field in BLOCKS.iter().flat_map(|block| block.fields).flat_map(all) {
             if let (Need::Default { unit, .. }, Some(dimension)) = (field.need, field.dimension())
                 && !unit.is_empty()
             {

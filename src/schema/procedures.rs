@@ -1,7 +1,7 @@
 //! What is run: `stiffness ramp`, `damping sweep`, `impact`, `move`, `inspect`.
 
 use super::results;
-use super::types::{BlockKind, Field, Kind, Naming, Variant};
+use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
 use crate::quantity::Dimension;
 
 const SPECIMEN: Field = Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");
@@ -99,9 +99,11 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         Field::reference("striker", Kind::Striker, "what strikes").required("striker = pendulum"),
         SPECIMEN,
         Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5").above_zero().or_said("the specimen's"),
-        Field::quantity("stiffness", Dimension::STIFFNESS, "K0, before the first tangent")
-            .above_zero()
-            .or_said("the behaviour's initial stiffness"),
+        Field::quantity("stiffness", Dimension::STIFFNESS, "K0, before the first tangent").above_zero().required_on(
+            RigKind::Real,
+            "stiffness = k0.stiffness",
+            "the behaviour's initial stiffness",
+        ),
         Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5").or(0.0, "N*s/m").at_least_zero(),
         Field::choice("contact", CONTACTS, "contact law").or_said("rigid"),
         Field::choice(

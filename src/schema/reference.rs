@@ -36,12 +36,14 @@ fn write_block(text: &mut String, block: &BlockKind) {
     let _ = writeln!(text, "{}\n", if block.procedure { " A procedure." } else { "" });
     let _ = writeln!(text, "| field | takes | if absent | |\n|---|---|---|---|");
     for field in block.fields.iter().filter(|field| field.available) {
-        let _ = writeln!(text, "| `{}` | {} | {} | {} |", field.name, takes(field), absent(field), field.doc);
+        let real = if field.real_rig_only { " (a real rig's)" } else { "" };
+        let _ = writeln!(text, "| `{}` | {} | {} | {}{real} |", field.name, takes(field), absent(field), field.doc);
     }
+    let mut written = Vec::new();
     for field in block.fields {
         if let FieldType::Choice(variants) | FieldType::Choices(variants) = field.ty {
             let _ = writeln!(text, "\n`{}`:\n", field.name);
-            write_variants(text, variants, 0);
+            write_variants(text, variants, 0, &mut written);
         }
     }
     write_values(text, "what follows", block.exports);
@@ -53,14 +55,22 @@ fn write_block(text: &mut String, block: &BlockKind) {
     }
 }
 
-/// A choice's words, each with its arguments below it.
-fn write_variants(text: &mut String, variants: &[Variant], depth: usize) {
+/// A choice's words, each with its arguments below it; those of a list that stands in this block already are not said again.
+fn write_variants(text: &mut String, variants: &[Variant], depth: usize, written: &mut Vec<Vec<&'static str>>) {
     let indent = "  ".repeat(depth);
     for variant in variants {
         let names: Vec<&str> = variant.arguments.iter().map(|argument| argument.name).collect();
         let brackets = if names.is_empty() { String::new() } else { format!("({})", names.join(", ")) };
         let later = if variant.available { "" } else { " (not in this version)" };
         let _ = writeln!(text, "{indent}- `{}{brackets}`: {}{later}", variant.name, variant.doc);
+        let signature = [vec![variant.name], names].concat();
+        if written.contains(&signature) {
+            let _ = writeln!(text, "{indent}  - as above");
+            continue;
+        }
+        if signature.len() > 1 {
+            written.push(signature);
+        }
         for argument in variant.arguments {
             let absent = match absent(argument) {
                 words if words.is_empty() => String::new(),
@@ -68,11 +78,22 @@ fn write_variants(text: &mut String, variants: &[Variant], depth: usize) {
                 words => format!("; if absent {words}"),
             };
             let _ = writeln!(text, "{indent}  - `{}`: {}; {}{absent}", argument.name, argument.doc, takes(argument));
-            if let FieldType::Choice(inner) = argument.ty {
-                write_variants(text, inner, depth + 2);
+            match argument.ty {
+                FieldType::Choice(inner) if is_written(inner, written) => {
+                    let _ = writeln!(text, "{indent}    - as above");
+                }
+                FieldType::Choice(inner) => write_variants(text, inner, depth + 2, written),
+                _ => {}
             }
         }
     }
+}
+
+/// Whether every word of a choice that takes arguments stands in this block already.
+fn is_written(variants: &[Variant], written: &[Vec<&'static str>]) -> bool {
+    let mut with = variants.iter().filter(|variant| !variant.arguments.is_empty()).peekable();
+    let known = |name: &str| written.iter().any(|signature| signature.first() == Some(&name));
+    with.peek().is_some() && with.all(|variant| known(variant.name))
 }
 
 fn write_values(text: &mut String, head: &str, values: &[ResultKind]) {
@@ -97,6 +118,9 @@ fn takes(field: &Field) -> String {
         FieldType::Bounds { dimension, symmetric } => {
             let low = if symmetric { "−b" } else { "0" };
             format!("a range, or one bound b for {low} .. b: {}", measure(dimension))
+        }
+        FieldType::Interval(dimension) => {
+            format!("a range: {}{}", measure(dimension), allowed(field.range, dimension))
         }
         FieldType::Count => format!("a whole number{}", allowed(field.range, Dimension::NUMBER)),
         FieldType::Choice(_) => "a choice".to_owned(),

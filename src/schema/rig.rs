@@ -1,27 +1,51 @@
 //! `rig NAME { … }`: what moves the specimen.
 
-use super::types::{BlockKind, Field, Kind, Naming, Variant};
+use super::devices::{LONGEST_WAIT, SERIAL, TCP};
+use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
 use crate::quantity::Dimension;
 
-const LINKS: &[Variant] = &[
-    Variant::with(
-        "virtual",
-        &[
-            Field::quantity("noise", Dimension::FORCE, "standard deviation of the load cell").or(0.0, "N").at_least_zero(),
-            Field::quantity("resolution", Dimension::LENGTH, "quantum of the displacement reading").or(0.0, "mm").at_least_zero(),
-            Field::quantity("force_resolution", Dimension::FORCE, "quantum of the force reading").or(0.0, "N").at_least_zero(),
-            Field::quantity("lag", Dimension::TIME, "first-order time constant of the actuator").or(0.0, "s").at_least_zero(),
-            Field::quantity("tracking", Dimension::NUMBER, "fraction of each increment not reached")
-                .or(0.0, "")
-                .within(-1.0, 1.0),
-            Field::quantity("drift", Dimension::FORCE_RATE, "drift of the load cell").or(0.0, "N/s"),
-            Field::count("seed", 0.0, 9_007_199_254_740_992.0, "seed of the noise").or(0.0, ""),
-        ],
-        "no hardware: bends the specimen's behaviour",
-    ),
-    Variant::later("serial", "a controller on a serial port"),
-    Variant::later("tcp", "a controller on the network"),
-];
+const VIRTUAL: Variant = Variant::with(
+    "virtual",
+    &[
+        Field::quantity("noise", Dimension::FORCE, "standard deviation of the load cell").or(0.0, "N").at_least_zero(),
+        Field::quantity("resolution", Dimension::LENGTH, "quantum of the displacement reading").or(0.0, "mm").at_least_zero(),
+        Field::quantity("force_resolution", Dimension::FORCE, "quantum of the force reading").or(0.0, "N").at_least_zero(),
+        Field::quantity("lag", Dimension::TIME, "first-order time constant of the actuator").or(0.0, "s").at_least_zero(),
+        Field::quantity("tracking", Dimension::NUMBER, "fraction of each increment not reached").or(0.0, "").within(-1.0, 1.0),
+        Field::quantity("drift", Dimension::FORCE_RATE, "drift of the load cell").or(0.0, "N/s"),
+        Field::count("seed", 0.0, 9_007_199_254_740_992.0, "seed of the noise").or(0.0, ""),
+    ],
+    "no hardware: bends the specimen's behaviour",
+);
+
+const SETTLE: &[Variant] = &[Variant::with(
+    "within",
+    &[
+        Field::quantity("displacement", Dimension::LENGTH, "displacement stays this near its target")
+            .required("0.01 mm")
+            .at_least_zero(),
+        Field::quantity("force_rate", Dimension::FORCE_RATE, "the force changes no faster than this")
+            .required("5 N/s")
+            .at_least_zero(),
+        Field::quantity("for", Dimension::TIME, "for this long").or(0.0, "s").at_least_zero(),
+        Field::quantity("timeout", Dimension::TIME, "longest wait").or(10.0, "s").above_zero_up_to(LONGEST_WAIT),
+    ],
+    "a reading counts when it stayed within these bounds",
+)];
+
+const GATE: &[Variant] = &[Variant::with(
+    "probe",
+    &[
+        Field::quantity("displacement", Dimension::LENGTH, "a tiny move from the start").required("0.02 mm").above_zero(),
+        Field::interval("stiffness", Dimension::STIFFNESS, "stiffness that it must show, which proves sign, unit and scale")
+            .required("stiffness: 250 kN/m .. 350 kN/m")
+            .above_zero(),
+        Field::quantity("zero", Dimension::FORCE, "force at rest before it, by size, at most")
+            .required("zero: 20 N")
+            .above_zero(),
+    ],
+    "a tiny move whose stiffness must be as expected",
+)];
 
 pub(super) const RIG: BlockKind = BlockKind {
     kind: Kind::Rig,
@@ -29,27 +53,29 @@ pub(super) const RIG: BlockKind = BlockKind {
     naming: Naming::Named,
     procedure: false,
     fields: &[
-        Field::choice("link", LINKS, "how the rig is reached").required("link = virtual(noise: 2 N, seed: 7)"),
+        Field::choice("link", &[VIRTUAL, SERIAL, TCP], "how the rig is reached; or `actuator` and `load_cell`, each its own")
+            .required("link = virtual(noise: 2 N, seed: 7)"),
+        Field::choice("actuator", &[SERIAL, TCP], "the device that moves").of_real_rigs(),
+        Field::choice("load_cell", &[SERIAL, TCP], "the device that reads the force").of_real_rigs(),
+        Field::choice("settle", SETTLE, "when a reading counts").required_on(
+            RigKind::Real,
+            "settle = within(0.01 mm, 5 N/s, for: 0.3 s)",
+            "at once",
+        ),
         Field::choice(
-            "settle",
-            &[Variant::with(
-                "within",
-                &[
-                    Field::quantity("displacement", Dimension::LENGTH, "displacement stays this near its target")
-                        .required("0.01 mm")
-                        .at_least_zero(),
-                    Field::quantity("force_rate", Dimension::FORCE_RATE, "the force changes no faster than this")
-                        .required("5 N/s")
-                        .at_least_zero(),
-                    Field::quantity("for", Dimension::TIME, "for this long").or(0.0, "s").at_least_zero(),
-                    Field::quantity("timeout", Dimension::TIME, "longest wait").or(10.0, "s").above_zero(),
-                ],
-                "a reading counts when it stayed within these bounds",
-            )],
-            "when a reading counts",
+            "safe_state",
+            &[
+                Variant::word("hold", "stops and keeps the load"),
+                Variant::word("unload", "holds, then goes back to where the run began, if rig and readings are still trusted"),
+            ],
+            "what it does when a run ends early",
         )
-        .or_said("at once"),
-        Field::text("calibration", "reference of the calibration"),
+        .required_on(RigKind::Real, "safe_state = hold", "")
+        .of_real_rigs(),
+        Field::choice("gate", GATE, "what must be so before the first step")
+            .required_on(RigKind::Real, "gate = probe(0.02 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)", "")
+            .of_real_rigs(),
+        Field::reference("limits", Kind::Limits, "a named `limits` block that holds whenever this rig moves"),
         Field::choice(
             "sign",
             &[
@@ -59,13 +85,45 @@ pub(super) const RIG: BlockKind = BlockKind {
             "direction of the rig's displacement and force",
         )
         .or_said("positive"),
-        Field::reference("limits", Kind::Limits, "a named `limits` block that holds whenever this rig moves"),
-        Field::later("actuator", "the link of the actuator alone"),
-        Field::later("load_cell", "the link of the load cell alone"),
-        Field::later("safe_state", "what a real rig does when the run ends early: `hold` or `unload`"),
+        Field::quantity("speed", Dimension::VELOCITY, "speed of a move for which nothing else is said")
+            .or(1.0, "mm/s")
+            .above_zero()
+            .of_real_rigs(),
+        Field::quantity(
+            "watchdog",
+            Dimension::TIME,
+            "longest silence between program and rig; past it the rig is to hold by itself",
+        )
+        .or(3.0, "s")
+        .above_zero_up_to(LONGEST_WAIT)
+        .of_real_rigs(),
+        Field::quantity("rate", Dimension::FREQUENCY, "readings a second while it settles")
+            .or(20.0, "Hz")
+            .above_zero_up_to(1e4)
+            .of_real_rigs(),
+        Field::count("samples", 1.0, 999.0, "settled readings of which the median counts; odd").or(3.0, "").of_real_rigs(),
+        Field::count("frozen_after", 2.0, 1e6, "equal force readings in a row, while it moves, that show a dead sensor")
+            .or(8.0, "")
+            .of_real_rigs(),
+        Field::quantity("resolution", Dimension::LENGTH, "quantum of the displacement reading")
+            .or(0.0, "mm")
+            .at_least_zero()
+            .of_real_rigs(),
+        Field::quantity("noise", Dimension::FORCE, "standard deviation of one force reading")
+            .or(0.0, "N")
+            .at_least_zero()
+            .of_real_rigs(),
+        Field::bounds("force_range", Dimension::FORCE, true, "what the load cell can read; at its ends it is saturated")
+            .of_real_rigs(),
+        Field::quantity("force_per_count", Dimension::FORCE, "of a load cell that gives raw counts; not 0").of_real_rigs(),
+        Field::quantity("zero_count", Dimension::NUMBER, "count at no force, of a load cell that gives raw counts")
+            .or(0.0, "")
+            .of_real_rigs(),
+        Field::text("calibration", "reference of the calibration"),
+        Field::text("calibration_due", "last day on which the calibration holds, `YYYY-MM-DD`"),
     ],
     exports: &[],
     results: &[],
     example: "rig rehearsal { link = virtual(noise: 2 N, seed: 7) }",
-    doc: "What moves the specimen",
+    doc: "What moves the specimen: computed, or real hardware, which moves only when `--rig` names it",
 };

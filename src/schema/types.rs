@@ -62,6 +62,8 @@ pub struct Field {
     pub doc: &'static str,
     /// False for a known word that this version does not carry out.
     pub available: bool,
+    /// Whether it says something of a real rig only, so that it has no use on a virtual one.
+    pub real_rig_only: bool,
 }
 
 /// What a field takes.
@@ -79,6 +81,8 @@ pub enum FieldType {
         dimension: Dimension,
         symmetric: bool,
     },
+    /// A range without a step, both ends inside the field's own range.
+    Interval(Dimension),
     /// A whole number.
     Count,
     /// One of these words or variants.
@@ -111,6 +115,28 @@ pub enum Need {
     },
     /// In the language's words or a person's: `rigid`, `critical / 20`, "the specimen's".
     Said(&'static str),
+    /// Must stand where the run is on a rig of this kind; the words say what holds on the other.
+    RequiredOn(RigKind, &'static str),
+}
+
+/// What a rig moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RigKind {
+    /// Numbers.
+    Virtual,
+    /// A specimen.
+    Real,
+}
+
+impl RigKind {
+    /// The word of a sentence: `virtual`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Virtual => "virtual",
+            Self::Real => "real",
+        }
+    }
 }
 
 /// Allowed values, in SI.
@@ -176,7 +202,7 @@ impl BlockKind {
 
 impl Field {
     const fn new(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
-        Self { name, ty, need: Need::Optional, range: Range::ANY, example: "", doc, available: true }
+        Self { name, ty, need: Need::Optional, range: Range::ANY, example: "", doc, available: true, real_rig_only: false }
     }
 
     pub(super) const fn text(name: &'static str, doc: &'static str) -> Self {
@@ -197,6 +223,10 @@ impl Field {
 
     pub(super) const fn bounds(name: &'static str, dimension: Dimension, symmetric: bool, doc: &'static str) -> Self {
         Self::new(name, FieldType::Bounds { dimension, symmetric }, doc)
+    }
+
+    pub(super) const fn interval(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Interval(dimension), doc)
     }
 
     pub(super) const fn count(name: &'static str, low: f64, high: f64, doc: &'static str) -> Self {
@@ -235,6 +265,18 @@ impl Field {
         self
     }
 
+    /// Must stand on a rig of this kind; elsewhere the words hold.
+    pub(super) const fn required_on(mut self, rig: RigKind, example: &'static str, otherwise: &'static str) -> Self {
+        self.need = Need::RequiredOn(rig, otherwise);
+        self.example = example;
+        self
+    }
+
+    pub(super) const fn of_real_rigs(mut self) -> Self {
+        self.real_rig_only = true;
+        self
+    }
+
     pub(super) const fn or(mut self, number: f64, unit: &'static str) -> Self {
         self.need = Need::Default { number, unit };
         self
@@ -255,6 +297,12 @@ impl Field {
         self
     }
 
+    /// Above 0 and at most `high`.
+    pub(super) const fn above_zero_up_to(mut self, high: f64) -> Self {
+        self.range = Range { low: 0.0, above: true, high };
+        self
+    }
+
     pub(super) const fn within(mut self, low: f64, high: f64) -> Self {
         self.range = Range { low, above: false, high };
         self
@@ -264,9 +312,10 @@ impl Field {
     #[must_use]
     pub const fn dimension(&self) -> Option<Dimension> {
         match self.ty {
-            FieldType::Quantity(dimension) | FieldType::Quantities(dimension) | FieldType::Bounds { dimension, .. } => {
-                Some(dimension)
-            }
+            FieldType::Quantity(dimension)
+            | FieldType::Quantities(dimension)
+            | FieldType::Bounds { dimension, .. }
+            | FieldType::Interval(dimension) => Some(dimension),
             FieldType::Count => Some(Dimension::NUMBER),
             _ => None,
         }
@@ -279,6 +328,8 @@ impl Field {
             Need::Default { number, unit: "" } => Some(number.to_string()),
             Need::Default { number, unit } => Some(format!("{number} {unit}")),
             Need::Said(words) => Some(words.to_owned()),
+            Need::RequiredOn(rig, "") => Some(format!("**required** on a {} rig", rig.name())),
+            Need::RequiredOn(rig, words) => Some(format!("{words}; **required** on a {} rig", rig.name())),
             Need::Required | Need::Optional => None,
         }
     }

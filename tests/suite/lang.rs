@@ -12,7 +12,7 @@ use psd::quantity::display::readable;
 use psd::record::{Outcome, Record};
 use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
-use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, Variant};
+use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, RigKind, Variant};
 use psd::verdict::{Assessment, Verdict, assess};
 
 /// Where a plan's way ends, and the exit code that goes with it.
@@ -207,8 +207,14 @@ fn every_required_field_and_argument_has_a_case() {
     let mut wanted = Vec::new();
     for block in BLOCKS {
         for field in block.fields.iter().filter(|field| field.available) {
-            if field.need == Need::Required {
-                wanted.push(format!("e209_{}_{}", block.words().replace(' ', "_"), field.name));
+            let words = block.words().replace(' ', "_");
+            match field.need {
+                Need::Required | Need::RequiredOn(RigKind::Virtual, _) => wanted.push(format!("e209_{words}_{}", field.name)),
+                Need::RequiredOn(RigKind::Real, _) if block.kind == Kind::Rig => {
+                    wanted.push(format!("e606_{words}_{}", field.name));
+                }
+                Need::RequiredOn(RigKind::Real, _) => wanted.push(format!("e209_{words}_{}_on_a_real_rig", field.name)),
+                Need::Optional | Need::Default { .. } | Need::Said(_) => {}
             }
             wanted.extend(argument_cases(field));
         }

@@ -4,6 +4,7 @@ use crate::quantity::{Dimension, display};
 
 pub mod files;
 pub mod names;
+pub mod rigs;
 pub mod types;
 pub mod values;
 pub mod whole;

@@ -3,7 +3,7 @@
 use super::{one_of, suggestion};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::quantity::unit::{PREFIXES, UNITS};
-use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Need, Variant};
+use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Need, RigKind, Variant};
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Block, Ident};
 
@@ -135,6 +135,16 @@ pub fn missing_field(kind: &BlockKind, name: Option<&Ident>, head: Span, field: 
         .help(format!("add a line such as `{example}`"))
 }
 
+/// A field that only a rig of this kind needs.
+pub fn missing_field_on(rig: RigKind, kind: &BlockKind, name: Option<&Ident>, head: Span, field: &Field) -> Diagnostic {
+    Diagnostic::new(
+        Code::MissingField,
+        format!("{} lacks the field `{}`, which a {} rig needs", owner(kind, name), field.name, rig.name()),
+    )
+    .at(head, format!("`{}` is missing", field.name))
+    .help(format!("add a line such as `{}`", field.example))
+}
+
 pub fn mass_incomplete(name: Option<&Ident>, head: Span, missing: &str) -> Diagnostic {
     let name = name.map_or("", |name| name.node.as_str());
     Diagnostic::new(Code::MissingField, format!("specimen `{name}` lacks `{missing}` to work out its mass"))
@@ -236,6 +246,13 @@ pub fn field_not_given(kind: &BlockKind, name: Option<&Ident>, field: &str, span
         .help(format!("add the field `{field}` to it"))
 }
 
+pub fn stiffness_without_behaviour(name: Option<&Ident>, span: Span) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    Diagnostic::new(Code::UnknownResult, format!("specimen `{name}` has no `stiffness`: no `behaviour` gives it"))
+        .at(span, "not known before it is measured")
+        .help("read the result of a `stiffness ramp`, as in `k0.stiffness`, or give the `behaviour` that is expected")
+}
+
 pub fn no_uncertainty(text: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UnknownResult, format!("`{text}` has no uncertainty"))
         .at(span, "only a measured result has `.u`")
@@ -300,6 +317,12 @@ pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnos
     Diagnostic::new(Code::BadArgument, format!("`{}` lacks its argument `{}`", variant.name, field.name))
         .at(span, format!("`{}` is missing", field.name))
         .help(argument_help(variant, field))
+}
+
+pub fn argument_needs(variant: &str, argument: &str, other: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadArgument, format!("`{argument}` of `{variant}` needs `{other}` beside it"))
+        .at(span, format!("`{other}` is missing"))
+        .help(format!("give `{other}: …` too, or remove `{argument}`"))
 }
 
 pub fn unknown_parameter(name: &str, known: &[&str]) -> Diagnostic {

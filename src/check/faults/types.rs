@@ -4,7 +4,7 @@ use super::one_of;
 use crate::check::checker::Typed;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::quantity::Dimension;
-use crate::schema::{BlockKind, Kind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Variant};
 use crate::source::Span;
 
 /// "a length", "an energy", "a value in kg/m"
@@ -147,6 +147,12 @@ pub fn range_wanted(span: Span, text: &str) -> Diagnostic {
     Diagnostic::new(Code::WrongType, "found one value where a range is wanted")
         .at(span, "not a range")
         .help(format!("write both ends, as in `0 .. {text}`"))
+}
+
+pub fn range_wanted_by(field: &Field, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{}` wants a range, found one value", field.name))
+        .at(span, "not a range")
+        .help(format!("write both ends, as in `{}`", field.example))
 }
 
 pub fn index_of_number(span: Span) -> Diagnostic {

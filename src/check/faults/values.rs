@@ -13,7 +13,8 @@ fn allowed(range: Range, dimension: Dimension) -> String {
     match (range.low.is_finite(), range.above, range.high.is_finite()) {
         (true, true, false) => format!("greater than {}", show(range.low)),
         (true, false, false) => format!("at least {}", show(range.low)),
-        (true, _, true) => format!("between {} and {}", show(range.low), show(range.high)),
+        (true, true, true) => format!("greater than {} and at most {}", show(range.low), show(range.high)),
+        (true, false, true) => format!("between {} and {}", show(range.low), show(range.high)),
         _ => format!("at most {}", show(range.high)),
     }
 }
@@ -27,6 +28,18 @@ pub fn out_of_range(field: &Field, dimension: Dimension, value: f64, text: &str,
     let side = if value > field.range.high { "too large" } else { "too small" };
     let label = if is == text { side.to_owned() } else { format!("`{text}` is {is}") };
     Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name)).at(span, label).help(help)
+}
+
+pub fn zero(field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, format!("`{field}` must not be 0"))
+        .at(span, "gives no force or length for any reading")
+        .help("write what one count or unit is worth, with its sign")
+}
+
+pub fn even(field: &str, span: Span, value: u32) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, format!("`{field}` must be odd, so that one of them is the median"))
+        .at(span, "even")
+        .help(format!("write {} or {}", value.saturating_sub(1), value + 1))
 }
 
 pub fn not_whole(field: &str, span: Span, text: &str) -> Diagnostic {
