@@ -1,0 +1,3 @@
+//! The dialects, pure: bytes to messages and messages to bytes, without port, clock or state of a device.
+
+pub mod modbus;
