@@ -2,7 +2,7 @@
 //! seconds. Out: the bytes of questions and orders, and what answers and status words say. Only questions (`Q`) are
 //! answered; every order stands between taking control and giving it back, or the hydraulics trip. It knows no device.
 
-use super::decimal;
+use super::number;
 
 /// Ends every line, both ways.
 pub const ENDING: &[u8] = b"\r\n";
@@ -117,7 +117,7 @@ pub fn hold() -> Vec<Vec<u8>> {
 #[must_use]
 pub fn said(frames: &[Vec<u8>]) -> Option<(f64, f64)> {
     let number = |start: &[u8]| {
-        frames.iter().find_map(|frame| decimal::strict(frame.strip_prefix(start)?.strip_suffix(ENDING)?))
+        frames.iter().find_map(|frame| number::fixed(frame.strip_prefix(start)?.strip_suffix(ENDING)?))
     };
     Some((number(b"C4,1,")?, number(b"C86,1,")?))
 }
@@ -125,7 +125,7 @@ pub fn said(frames: &[Vec<u8>]) -> Option<(f64, f64)> {
 /// The number of an answer.
 #[must_use]
 pub fn number(answer: &[u8]) -> Option<f64> {
-    decimal::scientific(answer)
+    number::scientific(answer)
 }
 
 #[must_use]
