@@ -3,6 +3,7 @@
 
 mod actuator;
 pub mod device;
+pub mod dialect;
 pub mod failpoint;
 mod guard;
 mod load_cell;
