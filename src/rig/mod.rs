@@ -9,12 +9,16 @@ mod guard;
 mod load_cell;
 pub mod port;
 mod settling;
+#[cfg(test)]
+pub(crate) mod testing;
 mod virtual_rig;
+mod wish;
 
 use crate::quantity::{Dimension, display};
 
 pub use guard::{Guard, Traversed};
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
+pub use wish::Wish;
 
 /// Who the rig says it is.
 #[derive(Clone, Debug, PartialEq, Eq)]

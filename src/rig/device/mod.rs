@@ -1,9 +1,13 @@
 //! What a real rig is made of: devices on ports, each speaking a dialect. A [`Device`] turns SI into bytes and back, and
 //! does nothing else: settling, limits, medians and the record are not its business.
 
+mod line;
+
 use crate::plan::Limits;
 
 use super::{LastMove, Tally};
+
+pub use line::{Answer, LONGEST_LINE, Missed, SLICE, Talk};
 
 /// Who a device says it is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,5 +1,11 @@
-//! The dialects, pure: bytes to messages and messages to bytes, without port, clock or state of a device.
+//! Dialects: what rigs and load cells say, as bytes and as messages. In: bytes. Out: messages in SI, and the reverse.
+//! No dialect reads a port or a clock, and all of them take their numbers from [`number`] alone.
 
+pub mod grbl;
+pub mod hx711;
+pub mod indicator;
 pub mod instron;
 pub mod modbus;
+pub mod native;
 pub mod number;
+pub mod scpi;
