@@ -2,12 +2,15 @@
 //! does nothing else: settling, limits, medians and the record are not its business.
 
 mod line;
+mod modbus;
+mod unnumbered;
 
 use crate::plan::Limits;
 
 use super::{LastMove, Tally};
 
 pub use line::{Answer, LONGEST_LINE, Missed, SLICE, Talk};
+pub use modbus::Modbus;
 
 /// Who a device says it is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
