@@ -1,11 +1,13 @@
 //! Lines whose answers carry no number, so that a late one looks like a fresh one. In: a question as a closure. Out: an
 //! answer that is to that question, or none. It knows no dialect.
 
-use super::{DeviceFault, Missed, Talk};
+use super::{Answer, DeviceFault, Missed, Talk};
 use crate::rig::failpoint::{Guarding, on};
 
 /// How often a question is asked anew after the first silence.
 const AGAIN: u32 = 3;
+/// How long a line of text is listened to before a question, s.
+const LINE_GAP: f64 = 0.001;
 
 /// Waits `quiet` s before a question. What comes unasked meanwhile, or was left over, is counted and thrown away.
 pub(super) fn clear(talk: &mut Talk, quiet: f64) -> Result<(), DeviceFault> {
@@ -62,6 +64,14 @@ pub(super) fn order<T>(talk: &mut Talk, mut give: impl FnMut(&mut Talk) -> Resul
     give(talk).map_err(|fault| match fault {
         DeviceFault::Silent { .. } => DeviceFault::Silent { seconds: talk.now() - began },
         other => other,
+    })
+}
+
+/// Asks for one line and gives it without its ending, never that of an earlier question.
+pub(super) fn ask_line(talk: &mut Talk, question: &[u8], ending: &[u8]) -> Result<Vec<u8>, DeviceFault> {
+    fresh(talk, |talk| {
+        clear(talk, LINE_GAP)?;
+        talk.exchange_once(question, ending, |line| Answer::Take(line.to_vec()))
     })
 }
 

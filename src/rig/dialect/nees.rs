@@ -66,6 +66,12 @@ pub fn get_control_point(transaction: &str, control_point: &str) -> Vec<u8> {
     line(&["get-control-point", transaction, control_point])
 }
 
+/// The transaction of a request of ours.
+#[must_use]
+pub fn transaction(request: &[u8]) -> Option<&str> {
+    std::str::from_utf8(request).ok()?.trim_end().split('\t').nth(1)
+}
+
 /// Whether a name can be a field: nothing in it divides or ends fields.
 #[must_use]
 pub fn is_field(name: &str) -> bool {
