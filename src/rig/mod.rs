@@ -3,11 +3,14 @@
 
 mod actuator;
 pub mod device;
+pub mod dialect;
 pub mod failpoint;
 mod guard;
 mod load_cell;
 pub mod port;
 mod settling;
+#[cfg(test)]
+pub(crate) mod testing;
 mod virtual_rig;
 mod wish;
 

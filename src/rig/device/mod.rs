@@ -1,9 +1,22 @@
 //! What a real rig is made of: devices on ports, each speaking a dialect. A [`Device`] turns SI into bytes and back, and
 //! does nothing else: settling, limits, medians and the record are not its business.
 
+mod instron;
+mod line;
+mod mark10;
+mod modbus;
+mod nees;
+mod unnumbered;
+
 use crate::plan::Limits;
 
 use super::{LastMove, Tally};
+
+pub use instron::Instron;
+pub use line::{Answer, LONGEST_LINE, Missed, SLICE, Talk};
+pub use mark10::{Mark10, Mark10Gauge};
+pub use modbus::Modbus;
+pub use nees::Nees;
 
 /// Who a device says it is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

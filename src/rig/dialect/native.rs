@@ -1,0 +1,272 @@
+//! psd's own line protocol. In: a request and its sequence number; a line that came. Out: the frame; the reply the line
+//! is. It keeps no conversation: which reply answers which request is the driver's business.
+//!
+//! # The protocol
+//! ASCII, 115200 baud 8N1 or TCP, one request in flight, a frame at most 96 bytes with its ending.
+//!
+//! ```text
+//! request = ">" VERB  SP SEQ          *(SP word) "*" CRC LF
+//! reply   = "<" KIND  SP SEQ SP BOOT  *(SP word) "*" CRC LF
+//! ```
+//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of what stands between the lead
+//! character and `*`, as 4 upper-case hexadecimal digits. SEQ is a decimal of 32 bits, one more with every new request.
+//! BOOT is 4 random upper-case hexadecimal digits of this power-up. Words are printable ASCII without blanks. Units are
+//! fixed: mm, N, mm/s, ms. Lengths and speeds have 6 decimals, forces 3.
+//!
+//! A frame that is broken is not answered. The rig keeps its last reply: the same SEQ again is answered by it and does
+//! nothing; any other than the next is `ERR SEQ`. HELLO is taken with every SEQ, is carried out each time, and sets SEQ.
+//!
+//! | Request | Reply |
+//! |---|---|
+//! | `HELLO` | `ACK model serial firmware d_low d_high f_low f_high v_high last_id last_target`: the rig's own limits and the last move it began (id 0: none since power-up). The limits of a run are gone after it. |
+//! | `LIM d_low d_high f_low f_high v_high` | `ACK state`: the limits of this run. Wider than the rig's own: `ERR LIMIT`. |
+//! | `MOVE id target rate` | `ACK state`: goes to the absolute target. An id is greater than every one before. The last id with its target again: `ACK` without motion; with another target, or an older id: `ERR ID`. |
+//! | `MEAS n` | `DATA t disp force raw flags state`: the median of n readings of each channel. |
+//! | `STAT` | `ACK state flags` |
+//! | `STOP` | `ACK HELD`: stops, keeps the load, and stays held until `CLR`. |
+//! | `CLR` | `ACK state`: lets go of a latched hold. Nothing moves. |
+//! | `REF token` | `ACK state`: its position is to be trusted from now on; the token is whose word that is. |
+//!
+//! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3
+//! lower limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` carries
+//! one word: `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `HELD`, `STOP`, `REF`, `FAULT`.
+//!
+//! The byte `!` anywhere holds at once, as `STOP` does, and is no part of a frame. No valid frame for W ms (3000 as
+//! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: what it does not do exactly, it refuses. Holding
+//! keeps the load; taking it away is an operator's act. None of this is in place of a wired emergency stop and end switches.
+
+use super::number;
+use crate::plan::Interval;
+use crate::rig::LastMove;
+use crate::rig::device::Flags;
+use crate::rig::failpoint::{Guarding, on};
+
+/// Longest frame with its ending, bytes.
+pub const LONGEST_FRAME: usize = 96;
+
+/// What is asked. Lengths m, speeds m/s, forces N.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request<'a> {
+    Hello,
+    Limits(&'a Bounds),
+    Move { id: u64, target: f64, speed: f64 },
+    Measure { readings: u32 },
+    Status,
+    Stop,
+    Clear,
+    Reference { token: &'a str },
+}
+
+/// What a rig keeps to: m, N, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    pub displacement: Interval,
+    pub force: Interval,
+    pub top_speed: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Ack,
+    Data,
+    Err,
+}
+
+/// A reply that came whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reply {
+    pub kind: Kind,
+    pub sequence: u32,
+    pub boot: String,
+    pub words: Vec<String>,
+}
+
+/// Why a line is no reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Broken {
+    Shape,
+    Checksum,
+}
+
+/// What a rig says of itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hello {
+    pub model: String,
+    pub serial: String,
+    pub firmware: String,
+    pub bounds: Bounds,
+    pub last: Option<LastMove>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    Idle,
+    Moving,
+    Held,
+}
+
+/// A reading: s, m, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Data {
+    pub time: f64,
+    pub displacement: f64,
+    pub force: f64,
+    pub raw: i64,
+    pub flags: Flags,
+    pub state: State,
+}
+
+/// The frame of a request; nothing where one of its numbers cannot be said or it would be too long.
+#[must_use]
+pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
+    let body = match request {
+        Request::Hello => format!("HELLO {sequence}"),
+        Request::Limits(bounds) => {
+            let (low, high) = (length(bounds.displacement.low)?, length(bounds.displacement.high)?);
+            let (least, most) = (number::write(bounds.force.low, 3)?, number::write(bounds.force.high, 3)?);
+            format!("LIM {sequence} {low} {high} {least} {most} {}", length(bounds.top_speed)?)
+        }
+        Request::Move { id, target, speed } => format!("MOVE {sequence} {id} {} {}", length(*target)?, length(*speed)?),
+        Request::Measure { readings } => format!("MEAS {sequence} {readings}"),
+        Request::Status => format!("STAT {sequence}"),
+        Request::Stop => format!("STOP {sequence}"),
+        Request::Clear => format!("CLR {sequence}"),
+        Request::Reference { token } => {
+            let word = !token.is_empty() && token.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
+            word.then(|| format!("REF {sequence} {token}"))?
+        }
+    };
+    let frame = format!(">{body}*{:04X}\n", checksum(body.as_bytes()));
+    (frame.len() <= LONGEST_FRAME).then(|| frame.into_bytes())
+}
+
+/// m or m/s as it is written: mm or mm/s.
+pub(crate) fn length(value: f64) -> Option<String> {
+    number::write(value * 1e3, 6)
+}
+
+/// The reply a line is, without its ending.
+///
+/// # Errors
+/// It is none.
+pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
+    let [b'<', body @ .., b'*', a, b, c, d] = line else { return Err(Broken::Shape) };
+    let stated = number::hexadecimal(&[*a, *b, *c, *d], 4).ok_or(Broken::Shape)?;
+    if stated != checksum(body) && on(Guarding::Checksum) {
+        return Err(Broken::Checksum);
+    }
+    let mut words = body.split(|byte| *byte == b' ').map(word);
+    let mut next = || words.next().flatten().ok_or(Broken::Shape);
+    let kind = match next()?.as_str() {
+        "ACK" => Kind::Ack,
+        "DATA" => Kind::Data,
+        "ERR" => Kind::Err,
+        _ => return Err(Broken::Shape),
+    };
+    let sequence = number::count(next()?.as_bytes()).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
+    let boot = next()?;
+    number::hexadecimal(boot.as_bytes(), 4).ok_or(Broken::Shape)?;
+    let words = words.collect::<Option<_>>().ok_or(Broken::Shape)?;
+    Ok(Reply { kind, sequence, boot, words })
+}
+
+fn word(bytes: &[u8]) -> Option<String> {
+    let printable = !bytes.is_empty() && bytes.iter().all(u8::is_ascii_graphic);
+    printable.then(|| String::from_utf8(bytes.to_vec()).ok()).flatten()
+}
+
+/// What a rig says of itself.
+#[must_use]
+pub fn hello(words: &[String]) -> Option<Hello> {
+    let [model, serial, firmware, numbers @ ..] = words else { return None };
+    let [low, high, least, most, top_speed, id, target] = numbers else { return None };
+    let (id, target) = (number::count(id.as_bytes())?, millimetres(target)?);
+    let bounds = Bounds {
+        displacement: Interval { low: millimetres(low)?, high: millimetres(high)? },
+        force: Interval { low: number::fixed(least.as_bytes())?, high: number::fixed(most.as_bytes())? },
+        top_speed: millimetres(top_speed)?,
+    };
+    let last = (id > 0).then_some(LastMove { id, target });
+    Some(Hello { model: model.clone(), serial: serial.clone(), firmware: firmware.clone(), bounds, last })
+}
+
+/// The reading of a `DATA` reply.
+#[must_use]
+pub fn data(words: &[String]) -> Option<Data> {
+    let [time, displacement, force, raw, flags, state] = words else { return None };
+    #[expect(clippy::cast_precision_loss, reason = "ms since power-up")]
+    let time = number::count(time.as_bytes())? as f64 / 1e3;
+    Some(Data {
+        time,
+        displacement: millimetres(displacement)?,
+        force: number::fixed(force.as_bytes())?,
+        raw: number::whole(raw.as_bytes())?,
+        flags: self::flags(flags)?,
+        state: self::state(state)?,
+    })
+}
+
+/// mm as m.
+fn millimetres(word: &str) -> Option<f64> {
+    number::fixed(word.as_bytes()).map(|value| value / 1e3)
+}
+
+/// A word of flags; one with a bit nobody knows says nothing.
+#[must_use]
+pub fn flags(word: &str) -> Option<Flags> {
+    let bits = number::hexadecimal(word.strip_prefix("0x")?.as_bytes(), 4).filter(|bits| *bits < 0x100)?;
+    let bit = |index: u16| bits >> index & 1 == 1;
+    Some(Flags {
+        saturated: bit(0),
+        stale: bit(1),
+        limit_high: bit(2),
+        limit_low: bit(3),
+        emergency_stop: bit(4),
+        unreferenced: bit(5),
+        unsettled: bit(6),
+        watchdog_tripped: bit(7),
+    })
+}
+
+#[must_use]
+pub fn state(word: &str) -> Option<State> {
+    match word {
+        "IDLE" => Some(State::Idle),
+        "MOVING" => Some(State::Moving),
+        "HELD" => Some(State::Held),
+        _ => None,
+    }
+}
+
+/// What the code of an `ERR` means.
+#[must_use]
+pub fn refusal(words: &[String]) -> String {
+    let code = words.first().map_or("", String::as_str);
+    let meaning = match code {
+        "SEQ" => "the rig is at another sequence number",
+        "VERB" => "the rig does not know this request",
+        "ARG" => "the rig does not take this argument",
+        "LIMIT" => "outside the limits of the rig",
+        "RATE" => "faster than the rig may go",
+        "ID" => "this number of a move was given to another target",
+        "BUSY" => "the rig is still moving",
+        "HELD" => "the rig is held",
+        "STOP" => "the emergency stop is pressed",
+        "REF" => "the rig is not referenced",
+        "FAULT" => "the rig has a fault of its own",
+        _ => "for a reason psd does not know",
+    };
+    format!("{meaning} (`ERR {}`)", words.join(" "))
+}
+
+/// CRC-16/CCITT-FALSE.
+#[must_use]
+pub fn checksum(bytes: &[u8]) -> u16 {
+    bytes.iter().fold(0xffff, |sum, byte| {
+        (0..8).fold(sum ^ u16::from(*byte) << 8, |sum, _| if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 })
+    })
+}
+
+#[cfg(test)]
+#[path = "native_tests.rs"]
+mod tests;

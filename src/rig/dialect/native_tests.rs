@@ -1,0 +1,129 @@
+//! The native dialect against the vectors of its specification, and against every single fault of a line.
+
+use super::*;
+use crate::rig::failpoint::without;
+
+const DATA: &[u8] = b"<DATA 42 7F3A 118203 1.249871 512.375 812344 0x0000 IDLE*788B";
+const ACK: &[u8] = b"<ACK 41 7F3A MOVING*1F01";
+
+fn framed(body: &str) -> Vec<u8> {
+    format!("<{body}*{:04X}", checksum(body.as_bytes())).into_bytes()
+}
+
+fn words(body: &str) -> Vec<String> {
+    reply(&framed(&format!("ACK 1 7F3A {body}"))).unwrap().words
+}
+
+#[test]
+fn the_vectors_of_the_specification() {
+    assert_eq!(checksum(b"123456789"), 0x29b1);
+    let moving = Request::Move { id: 17, target: 1.25e-3, speed: 0.5e-3 };
+    assert_eq!(frame(41, &moving).unwrap(), b">MOVE 41 17 1.250000 0.500000*6858\n");
+    assert_eq!(frame(42, &Request::Measure { readings: 5 }).unwrap(), b">MEAS 42 5*5976\n");
+    let accepted = reply(ACK).unwrap();
+    assert_eq!((accepted.kind, accepted.sequence, accepted.boot.as_str()), (Kind::Ack, 41, "7F3A"));
+    assert_eq!(state(&accepted.words[0]), Some(State::Moving));
+    let read = data(&reply(DATA).unwrap().words).unwrap();
+    assert_eq!((read.time, read.displacement, read.force, read.raw), (118.203, 1.249_871e-3, 512.375, 812_344));
+    assert_eq!((read.flags, read.state), (Flags::default(), State::Idle));
+}
+
+#[test]
+fn each_request_says_its_verb() {
+    let body = |request| {
+        let frame = String::from_utf8(frame(7, &request).unwrap()).unwrap();
+        assert!(frame.starts_with('>') && frame.ends_with('\n'));
+        frame[1..].split('*').next().unwrap().to_owned()
+    };
+    let (displacement, force) = (Interval { low: -0.002, high: 0.025 }, Interval { low: -2000.0, high: 12_000.0 });
+    let bounds = Bounds { displacement, force, top_speed: 0.12 };
+    assert_eq!(body(Request::Hello), "HELLO 7");
+    assert_eq!(body(Request::Limits(&bounds)), "LIM 7 -2.000000 25.000000 -2000.000 12000.000 120.000000");
+    assert_eq!(body(Request::Status), "STAT 7");
+    assert_eq!(body(Request::Stop), "STOP 7");
+    assert_eq!(body(Request::Clear), "CLR 7");
+    assert_eq!(body(Request::Reference { token: "R-12" }), "REF 7 R-12");
+}
+
+#[test]
+fn what_cannot_be_said_is_not_said() {
+    let target = |target| frame(1, &Request::Move { id: 1, target, speed: 1e-3 });
+    assert!(target(0.0).is_some());
+    assert_eq!((target(f64::NAN), target(f64::INFINITY), target(1e60)), (None, None, None));
+    assert_eq!(frame(1, &Request::Reference { token: "two words" }), None);
+    assert_eq!(frame(1, &Request::Reference { token: &"x".repeat(90) }), None, "longer than a frame");
+}
+
+#[test]
+fn a_rig_says_who_it_is() {
+    let said = "PSD-BENCH 0042 1.3 -2.000000 25.000000 -2000.000 12000.000 120.000000 17 1.250000";
+    let rig = hello(&words(said)).unwrap();
+    assert_eq!((rig.model.as_str(), rig.serial.as_str(), rig.firmware.as_str()), ("PSD-BENCH", "0042", "1.3"));
+    assert_eq!((rig.bounds.displacement.low, rig.bounds.displacement.high), (-0.002, 0.025));
+    assert_eq!((rig.bounds.force.low, rig.bounds.force.high, rig.bounds.top_speed), (-2000.0, 12_000.0, 0.12));
+    assert_eq!(rig.last, Some(LastMove { id: 17, target: 1.25e-3 }));
+    assert_eq!(hello(&words(&said.replace("17 1.25", "0 0.00"))).unwrap().last, None);
+    assert_eq!(hello(&words(&said.replace("25.000000", "inf"))), None);
+    assert_eq!(hello(&words(&said.replace(" 0042", ""))), None);
+}
+
+#[test]
+fn every_bit_flipped_and_every_truncation_of_a_line_is_no_reply() {
+    for line in [DATA, ACK] {
+        for bit in 0..line.len() * 8 {
+            let mut flipped = line.to_vec();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            assert!(reply(&flipped).is_err(), "{}", flipped.escape_ascii());
+        }
+        for length in 0..line.len() {
+            assert!(reply(&line[..length]).is_err(), "{length} bytes");
+            assert!(reply(&line[length + 1..]).is_err(), "without the first {length}");
+        }
+    }
+}
+
+#[test]
+fn without_its_checksum_a_false_number_would_pass() {
+    let mut flipped = DATA.to_vec();
+    let at = DATA.iter().position(|byte| *byte == b'5').unwrap();
+    flipped[at] = b'9';
+    assert_eq!(reply(&flipped), Err(Broken::Checksum));
+    let force = without(Guarding::Checksum, || data(&reply(&flipped).unwrap().words).unwrap().force);
+    assert_eq!(force, 912.375);
+}
+
+#[test]
+fn a_whole_line_with_a_false_field_is_no_reading() {
+    for (right, false_field) in [
+        (" 512.375", ""),
+        (" 512.375", " 512.375 1.0"),
+        ("512.375", "nan"),
+        ("512.375", "5,12"),
+        ("512.375", "--512"),
+        ("512.375", "1e3"),
+        ("1.249871", "1.249871."),
+        ("118203", "-1"),
+        ("812344", "8.5"),
+        ("0x0000", "0x0100"),
+        ("0x0000", "0000"),
+        ("0x0000", "0x00"),
+        ("IDLE", "idle"),
+    ] {
+        let body = String::from_utf8(DATA[1..DATA.len() - 5].to_vec()).unwrap().replacen(right, false_field, 1);
+        assert_eq!(data(&reply(&framed(&body)).unwrap().words), None, "{body}");
+    }
+    for body in
+        ["DATA 42 7F3A 1\02", "DATA 42 7F3A 1  2", "DATA -1 7F3A", "DATA 4294967296 7F3A", "DATA 4 7f3a", "DATA 4", "NACK 1 7F3A"]
+    {
+        assert_eq!(reply(&framed(body)), Err(Broken::Shape), "{body}");
+    }
+}
+
+#[test]
+fn each_flag_has_its_bit_and_each_code_its_words() {
+    let set = |bit: u32| flags(&format!("0x{:04X}", 1 << bit)).unwrap();
+    assert!(set(0).saturated && set(1).stale && set(2).limit_high && set(3).limit_low);
+    assert!(set(4).emergency_stop && set(5).unreferenced && set(6).unsettled && set(7).watchdog_tripped);
+    assert!(refusal(&["LIMIT".to_owned()]).contains("outside the limits"));
+    assert_eq!(refusal(&["WHAT".to_owned()]), "for a reason psd does not know (`ERR WHAT`)");
+}
