@@ -1,7 +1,9 @@
 //! What a real rig is made of: devices on ports, each speaking a dialect. A [`Device`] turns SI into bytes and back, and
 //! does nothing else: settling, limits, medians and the record are not its business.
 
+mod asking;
 mod line;
+pub mod native;
 
 use crate::plan::Limits;
 
