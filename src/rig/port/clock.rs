@@ -1,24 +1,32 @@
 //! The machine's clocks. In: nothing. Out: seconds that only go forward, and the wall clock for the record. A jump of
 //! the wall clock changes no duration.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use rustix::time::{ClockId, clock_gettime};
 
 use super::Clock;
 
-/// Seconds since it was made, by the machine's monotonic clock.
+/// Seconds since it was made, by the clock that runs on while the machine is suspended: a rig does not wait for it.
 #[derive(Clone, Copy, Debug)]
-pub struct MonotonicClock(Instant);
+pub struct MonotonicClock(Duration);
+
+/// Since the machine started.
+fn elapsed() -> Duration {
+    let time = clock_gettime(ClockId::Boottime);
+    Duration::try_from(time).unwrap_or_default()
+}
 
 impl MonotonicClock {
     #[must_use]
     pub fn start() -> Self {
-        Self(Instant::now())
+        Self(elapsed())
     }
 }
 
 impl Clock for MonotonicClock {
     fn now(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
+        elapsed().saturating_sub(self.0).as_secs_f64()
     }
 
     fn sleep(&mut self, seconds: f64) {

@@ -1,0 +1,1 @@
+//! A real rig on scripted devices and a virtual clock.
