@@ -34,15 +34,17 @@ impl RealRig {
         let mut left = REREADS;
         loop {
             let asked = self.ask(&mut raw);
+            if let Err(Unusable::Fault(fault)) = asked {
+                return Err(fault);
+            }
             self.look_up()?;
             match asked {
                 Ok(point) => return Ok(Point { raw, ..point }),
-                Err(Unusable::Fault(fault)) => return Err(fault),
                 Err(Unusable::AskAgain(_)) if left > 0 => {
                     left -= 1;
                     self.reread += 1;
                 }
-                Err(Unusable::AskAgain(fault)) => return Err(fault),
+                Err(Unusable::AskAgain(fault) | Unusable::Fault(fault)) => return Err(fault),
             }
         }
     }
@@ -83,7 +85,8 @@ impl RealRig {
         safety::beat();
         if on(Guarding::Away) && (away.is_nan() || away > self.link.watchdog) {
             return Err(RigFault::Device(format!(
-                "the program was away for {away:.1} s, longer than the watchdog of {} s: it does not go on by itself",
+                "the program was away for {away:.1} s: nothing went between it and the rig for longer than the watchdog's \
+                 {} s, and it does not go on by itself",
                 self.link.watchdog
             )));
         }
