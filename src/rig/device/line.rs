@@ -15,6 +15,9 @@ pub const LONGEST_LINE: usize = 512;
 /// Longest wait in one piece, s: how soon a wish to hold is seen.
 pub const SLICE: f64 = 0.05;
 
+/// A wait that is over, s: a time-out in whole nanoseconds could not get nearer for ever.
+const SHORTEST: f64 = 1e-6;
+
 /// A port, and what has come over it that nobody has used.
 pub struct Talk {
     port: Box<dyn Port>,
@@ -127,7 +130,7 @@ impl Talk {
                 return Err(DeviceFault::Interrupted);
             }
             let left = until - self.clock.now();
-            if left.is_nan() || left <= 0.0 {
+            if left.is_nan() || left < SHORTEST {
                 return Ok(());
             }
             self.clock.sleep(left.min(SLICE));
@@ -280,7 +283,7 @@ impl Talk {
                 return Err(Missed::Interrupted);
             }
             let left = deadline - self.clock.now();
-            if left.is_nan() || left <= 0.0 {
+            if left.is_nan() || left < SHORTEST {
                 return Err(Missed::TimedOut);
             }
             let room = LONGEST_LINE - self.waiting.len();
