@@ -36,22 +36,30 @@ impl Stop {
         match self {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
             | Self::Person { .. } => Outcome::Aborted { reason },
-            Self::Rig(RigFault::Device(_)) | Self::Gate { .. } | Self::NoInput { .. } | Self::BadInput { .. } => {
-                Outcome::Faulted { reason }
-            }
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
+            | Self::Gate { .. }
+            | Self::NoInput { .. }
+            | Self::BadInput { .. } => Outcome::Faulted { reason },
         }
     }
 
     /// Whether rig and readings are still to be trusted with another move.
     pub(super) const fn leaves_the_rig_sound(&self) -> bool {
-        !matches!(self, Self::Rig(RigFault::Device(_) | RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Gate { .. })
+        !matches!(
+            self,
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
+                | Self::Gate { .. }
+        )
     }
 
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
             Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
-            Self::Rig(RigFault::Device(_)) | Self::Gate { .. } | Self::NoInput { .. } | Self::BadInput { .. } => EventKind::Fault,
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
+            | Self::Gate { .. }
+            | Self::NoInput { .. }
+            | Self::BadInput { .. } => EventKind::Fault,
         }
     }
 }

@@ -1,10 +1,12 @@
 //! What a real rig is made of: devices on ports, each speaking a dialect. A [`Device`] turns SI into bytes and back, and
 //! does nothing else: settling, limits, medians and the record are not its business.
 
+mod asking;
 mod instron;
 mod line;
 mod mark10;
 mod modbus;
+pub mod native;
 mod nees;
 mod unnumbered;
 

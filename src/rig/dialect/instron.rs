@@ -116,9 +116,7 @@ pub fn hold() -> Vec<Vec<u8>> {
 /// Target (fraction of full scale) and time (s) of a ramp, read back from the lines that make it ready.
 #[must_use]
 pub fn said(frames: &[Vec<u8>]) -> Option<(f64, f64)> {
-    let number = |start: &[u8]| {
-        frames.iter().find_map(|frame| number::fixed(frame.strip_prefix(start)?.strip_suffix(ENDING)?))
-    };
+    let number = |start: &[u8]| frames.iter().find_map(|frame| number::fixed(frame.strip_prefix(start)?.strip_suffix(ENDING)?));
     Some((number(b"C4,1,")?, number(b"C86,1,")?))
 }
 
