@@ -19,6 +19,7 @@ mod provenance;
 mod rig;
 mod run;
 mod run_folder;
+mod screen;
 mod settings;
 
 use std::ffi::OsString;

@@ -78,7 +78,7 @@ impl Watcher {
                             return answer;
                         }
                     }
-                    None => return Inspection::Stop { reason: "no answer at an inspection".to_owned() },
+                    None => return Inspection::Stop { reason: "no answer at an inspection".to_owned(), by: None },
                 }
             }
         };
@@ -119,9 +119,9 @@ impl Observer for Watcher {
 
     fn inspect(&mut self, note: &str) -> Inspection {
         match self.asking {
-            Asking::Yes => Inspection::GoOn { note: Some("answered by --yes".to_owned()) },
-            Asking::NobodyNeeded => Inspection::GoOn { note: Some("nobody was asked: simulated rig, no terminal".to_owned()) },
-            Asking::Nobody => Inspection::Stop { reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned() },
+            Asking::Yes => Inspection::GoOn { note: Some("answered by --yes".to_owned()), by: None },
+            Asking::NobodyNeeded => Inspection::GoOn { note: Some("nobody was asked: simulated rig, no terminal".to_owned()), by: None },
+            Asking::Nobody => Inspection::Stop { reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned(), by: None },
             Asking::Person(_) => self.ask(note),
         }
     }
@@ -134,9 +134,9 @@ fn answer(line: &str) -> Option<Inspection> {
     match word.to_ascii_lowercase().as_str() {
         "y" | "yes" => {
             let note = escape(rest.trim());
-            Some(Inspection::GoOn { note: (!note.is_empty()).then_some(note) })
+            Some(Inspection::GoOn { note: (!note.is_empty()).then_some(note), by: None })
         }
-        "n" | "no" | "stop" => Some(Inspection::Stop { reason: "stopped by a person at an inspection".to_owned() }),
+        "n" | "no" | "stop" => Some(Inspection::Stop { reason: "stopped by a person at an inspection".to_owned(), by: None }),
         _ => None,
     }
 }
@@ -190,8 +190,8 @@ mod tests {
 
     #[test]
     fn only_a_clear_yes_goes_on() {
-        assert_eq!(answer("y"), Some(Inspection::GoOn { note: None }));
-        assert_eq!(answer(" Yes crack at\u{7} midspan "), Some(Inspection::GoOn { note: Some("crack at\\u{7} midspan".into()) }));
+        assert_eq!(answer("y"), Some(Inspection::go_on()));
+        assert_eq!(answer(" Yes crack at\u{7} midspan "), Some(Inspection::GoOn { note: Some("crack at\\u{7} midspan".into()), by: None }));
         assert!(matches!(answer("no"), Some(Inspection::Stop { .. })));
         assert_eq!((answer(""), answer("yesterday"), answer("go")), (None, None, None));
     }
@@ -214,7 +214,7 @@ mod tests {
         let settings = Settings { color: false, stdout_color: false, unicode: true, stderr_terminal: false, can_ask: false };
         let ask = |yes, simulated| Watcher::new(settings, yes, simulated).unwrap().inspect("look");
         assert!(matches!(ask(false, false), Inspection::Stop { .. }));
-        assert!(matches!(ask(true, false), Inspection::GoOn { note: Some(_) }));
-        assert!(matches!(ask(false, true), Inspection::GoOn { note: Some(_) }));
+        assert!(matches!(ask(true, false), Inspection::GoOn { ..}));
+        assert!(matches!(ask(false, true), Inspection::GoOn { ..}));
     }
 }
