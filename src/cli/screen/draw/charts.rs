@@ -27,17 +27,21 @@ struct Scale {
 }
 
 impl Scale {
-    /// A little more than the data, so that no curve runs along the frame; around a single value, some room.
+    /// From the smallest to the largest; around a single value, some room.
     fn of(data: [f64; 2], dimension: Dimension) -> Self {
         let largest = data[0].abs().max(data[1].abs());
         let (unit, factor) = readable_unit(largest, dimension);
         let span = data[1] - data[0];
-        let room = if span > largest * 1e-9 { 0.03 * span } else if largest > 0.0 { 0.1 * largest } else { factor };
+        let room = if span > largest * 1e-9 { 0.0 } else if largest > 0.0 { 0.1 * largest } else { factor };
         Self { bounds: [data[0] - room, data[1] + room], unit, factor }
     }
 
     fn labels(&self) -> [String; 2] {
-        self.bounds.map(|bound| significant(bound / self.factor, 3))
+        self.bounds.map(|bound| {
+            let number = significant(bound / self.factor, 3);
+            let decimals = number.contains('.') && !number.contains('e');
+            if decimals { number.trim_end_matches('0').trim_end_matches('.').to_owned() } else { number }
+        })
     }
 }
 

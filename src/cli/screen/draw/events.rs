@@ -6,8 +6,6 @@ use ratatui::text::Line;
 
 use super::{View, fitted, shown};
 use crate::cli::screen::model::Model;
-use crate::quantity::Dimension;
-use crate::quantity::display::readable;
 use crate::record::Event;
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
@@ -30,6 +28,6 @@ fn words(event: &Event) -> String {
         (Some(procedure), None) => procedure.clone(),
         (None, _) => String::new(),
     };
-    let time = readable(event.time, Dimension::TIME);
-    format!(" {time:>9}  {:<10} {:<12} {}", fitted(&shown(&place), 18), Model::kind(event), shown(&event.text))
+    let decimals = if event.time < 100.0 { 3 } else { 1 };
+    format!(" {:>9.decimals$} s  {:<10} {:<12} {}", event.time, fitted(&shown(&place), 18), Model::kind(event), shown(&event.text))
 }

@@ -17,7 +17,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     sides(frame, title, title_line(view, title.width.into(), &rig), Line::raw(rig.clone()));
     let clock = format!("{} ", clock(view.elapsed));
     sides(frame, state, state_line(view), Line::raw(clock));
-    frame.render_widget(Line::raw(numbers_line(view)), numbers);
+    frame.render_widget(Line::raw(numbers_line(view, numbers.width >= 80)), numbers);
 }
 
 fn sides(frame: &mut Frame<'_>, area: Rect, left: Line<'_>, right: Line<'_>) {
@@ -66,17 +66,18 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
     }
 }
 
-fn numbers_line(view: &View<'_>) -> String {
+fn numbers_line(view: &View<'_>, wide: bool) -> String {
     let Some(last) = view.model.last else { return String::new() };
+    let error_word = if wide { " error" } else { "" };
     let mut words = vec![
         format!("X {}", readable(last.displacement, Dimension::LENGTH)),
         format!("R {}", readable(last.force, Dimension::FORCE)),
     ];
     if let Some(error) = view.model.tracking_error() {
-        words.push(format!("tracking error {}", readable(error, Dimension::LENGTH)));
+        words.push(format!("tracking{error_word} {}", readable(error, Dimension::LENGTH)));
     }
     if let Some(error) = last.energy_error {
-        words.push(format!("energy error {}", percent(error)));
+        words.push(format!("energy{error_word} {}", percent(error)));
     }
     format!(" {}", words.join("   "))
 }
@@ -100,9 +101,9 @@ pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
     } else if view.dialogue.monitor {
         " q end   ? help"
     } else if view.dialogue.paused {
-        " p go on   s single step   i note   q stop   h hold now   ? help"
+        " p go on   s step   i note   q stop   h hold now   ? help"
     } else {
-        " p pause   i note   q stop at the end of this step   h hold now   ? help"
+        " p pause   i note   q stop   h hold now   ? help"
     };
     Line::styled(text, view.quiet())
 }

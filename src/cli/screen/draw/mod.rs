@@ -39,14 +39,14 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
     if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
         let too_small = format!("psd: this screen needs {} x {}", SMALLEST.0, SMALLEST.1);
         frame.render_widget(Line::raw(too_small), Rect { height: area.height.min(1), ..area });
-        popup::draw(frame, view, area);
+        popup::draw(frame, view, area, area);
         return;
     }
     let rows = view.model.limit_rows();
     let limit_lines = u16::try_from(rows.len().max(1)).unwrap_or(1) + 1;
     // What is left over goes to the curves first, then to the events.
     let spare = area.height.saturating_sub(3 + limit_lines + 1 + 5);
-    let event_lines = (1 + spare / 4).clamp(2, 10);
+    let event_lines = if area.height < 20 { 0 } else { (1 + spare / 4).clamp(2, 10) };
     let [head, charts, limits, events, keys] = Layout::vertical([
         Constraint::Length(3),
         Constraint::Min(5),
@@ -60,7 +60,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
     limits::draw(frame, view, &rows, limits);
     events::draw(frame, view, events);
     frame.render_widget(head::keys(view), keys);
-    popup::draw(frame, view, charts.union(limits));
+    popup::draw(frame, view, charts, charts.union(limits));
 }
 
 impl View<'_> {

@@ -22,12 +22,14 @@ const HELP: &[&str] = &[
     "any key closes this",
 ];
 
-pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, over: Rect) {
-    let width = over.width.min(WIDEST).saturating_sub(2);
+/// Draws it in the middle of `charts`; where that is too low, in the middle of `whole`.
+pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, charts: Rect, whole: Rect) {
+    let width = whole.width.min(WIDEST).saturating_sub(2);
     let room = usize::from(width.saturating_sub(4)).max(1);
     let Some((title, text)) = content(view, room) else { return };
     let lines: Vec<Line<'_>> = text.iter().flat_map(|line| wrapped(line, room)).map(Line::raw).collect();
     let wanted = u16::try_from(lines.len()).unwrap_or(u16::MAX).saturating_add(2);
+    let over = if wanted <= charts.height { charts } else { whole };
     let [row] = Layout::vertical([Constraint::Length(wanted.min(over.height))]).flex(Flex::Center).areas(over);
     let [area] = Layout::horizontal([Constraint::Length(width)]).flex(Flex::Center).areas(row);
     let block = Block::bordered()
