@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::diagnostic::excerpt::escape;
+
 /// Pseudo-dynamic structural tests, from a plan to a certificate.
 #[derive(Debug, Parser)]
 #[command(name = "psd", version, about, max_term_width = 100, arg_required_else_help = true)]
@@ -59,6 +61,9 @@ pub struct RunArguments {
     /// Answers routine questions with yes
     #[arg(long)]
     pub yes: bool,
+    /// Who runs the test and answers at inspections [default: the plan's `operator`]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub operator: Option<String>,
     /// What is printed on standard output: the run folder, or the whole summary
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
@@ -128,6 +133,15 @@ fn setting(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
+/// A person's name: one short line.
+fn name(text: &str) -> Result<String, String> {
+    let name = text.trim();
+    if name.is_empty() || name.chars().count() > 200 || name != escape(name) || name.contains('\n') {
+        return Err("a name is one line of at most 200 letters".to_owned());
+    }
+    Ok(name.to_owned())
+}
+
 /// A day of the calendar, in the one form that a certificate shows.
 fn date(text: &str) -> Result<String, String> {
     let day: jiff::civil::Date = text.parse().map_err(|_| "no such day; write it as 2026-05-31".to_owned())?;
@@ -152,6 +166,14 @@ mod tests {
         assert!(date("2023-02-29").is_err());
         assert!(date("20240229").unwrap_err().contains("2024-02-29"));
         assert!(date("today").is_err());
+    }
+
+    #[test]
+    fn a_name_is_one_line_that_steers_nothing() {
+        assert_eq!(name(" A. Engineer ").as_deref(), Ok("A. Engineer"));
+        for wrong in ["", "  ", "A\nB", "A\u{1b}[2J", "A\u{202e}B", &"x".repeat(1024)] {
+            assert!(name(wrong).is_err(), "{wrong:?}");
+        }
     }
 
     #[test]

@@ -14,13 +14,13 @@ mod limits;
 mod loader;
 mod output;
 mod plan_file;
-mod progress;
 mod provenance;
 mod rig;
 mod run;
 mod run_folder;
 mod screen;
 mod settings;
+mod watch;
 
 use std::ffi::OsString;
 

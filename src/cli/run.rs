@@ -5,13 +5,13 @@ use super::args::{Format, RunArguments};
 use super::bless::BlessedFolder;
 use super::exit::{Exit, Failure};
 use super::output::{give, tell};
-use super::progress::Watcher;
 use super::run_folder::RunFolder;
 use super::settings::Settings;
+use super::watch::{Attendance, Watcher};
 use super::{plan_file, provenance};
 use crate::diagnostic::json;
 use crate::output::{self, OutputFile, Run};
-use crate::rig::{Rig as _, VirtualRig};
+use crate::rig::{Rig as _, VirtualRig, Wish};
 use crate::{run as runner, verdict};
 
 /// Runs one plan.
@@ -26,7 +26,9 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     };
     let blessed = arguments.bless.then(|| BlessedFolder::of(&arguments.plan)).transpose()?;
     let mut rig = VirtualRig::of_plan(plan);
-    let mut watcher = Watcher::new(settings, arguments.yes, rig.identity().simulated).map_err(Failure::Signals)?;
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    let simulated = rig.identity().simulated;
+    let mut watcher = Watcher::new(settings, &attendance, plan, simulated, Wish::default()).map_err(Failure::Signals)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
 
     let record = runner::run(plan, &mut rig, &mut watcher);

@@ -64,6 +64,11 @@ impl Dialogue {
         Self { operator, ..Self::default() }
     }
 
+    /// Nothing to pause and nothing asked: only an end and the help.
+    pub fn of_monitor() -> Self {
+        Self { monitor: true, ..Self::default() }
+    }
+
     /// A key was pressed.
     pub fn press(&mut self, key: Key, wish: &Wish) {
         if key == Key::Interrupt {

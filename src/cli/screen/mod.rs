@@ -5,7 +5,7 @@ mod curve;
 mod dialogue;
 mod draw;
 mod keys;
-mod model;
+pub mod model;
 mod terminal;
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -70,7 +70,7 @@ impl Screen {
     /// A screen that only watches, under this word.
     pub fn monitor(plan: &Plan, simulated: bool, word: &'static str, wish: Wish, color: bool) -> Self {
         let model = Model { by_hand: Some(word), ..Model::new(plan, simulated) };
-        Self::start(model, Dialogue { monitor: true, ..Dialogue::default() }, true, wish, color)
+        Self::start(model, Dialogue::of_monitor(), true, wish, color)
     }
 
     fn start(model: Model, dialogue: Dialogue, wanted: bool, wish: Wish, color: bool) -> Self {
