@@ -145,11 +145,27 @@ impl Observer for Screen {
 /// The screen's thread.
 fn show(shared: &Shared, wish: &Wish, color: bool) {
     let began = Instant::now();
-    if is_wanted(shared) && page(shared, wish, color, began).is_err() {
-        shared.lock().dialogue.lose(wish);
+    let mut left = Left { shared, wish, gone: true };
+    left.gone = is_wanted(shared) && page(shared, wish, color, began).is_err();
+}
+
+/// Says that the thread has left the terminal, however it did.
+struct Left<'a> {
+    shared: &'a Shared,
+    wish: &'a Wish,
+    /// The terminal is gone, or the drawing failed: nobody will answer.
+    gone: bool,
+}
+
+impl Drop for Left<'_> {
+    fn drop(&mut self) {
+        let mut state = self.shared.lock();
+        if self.gone {
+            state.dialogue.lose(self.wish);
+        }
+        state.closed = true;
+        self.shared.changed.notify_all();
     }
-    shared.lock().closed = true;
-    shared.changed.notify_all();
 }
 
 /// Waits until the run has lasted, or asks for the screen; false when it is over before.

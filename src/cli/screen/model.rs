@@ -12,6 +12,9 @@ use crate::run::StepReport;
 /// Events kept for the screen.
 const MOST_EVENTS: usize = 32;
 
+/// The procedure that moves nothing.
+pub const INSPECT: &str = "inspect";
+
 /// Everything that is drawn but the dialogue with the person.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -84,6 +87,10 @@ impl Model {
 
     pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
         self.procedure = Some(Running { name: name.to_owned(), keyword: keyword.to_owned(), steps });
+        // While a person looks at the specimen, what came before stays to be seen.
+        if keyword == INSPECT {
+            return;
+        }
         self.last = None;
         self.increment = None;
         self.displacement = Curve::default();
@@ -186,6 +193,7 @@ pub mod tests {
         model.procedure_started("c", "damping sweep", None);
         model.step_done(&step(1, 0.1, 0.01, 5.0));
         assert_eq!(model.tracking_error(), None, "the target of a stroke is its end");
+        model.procedure_started("look", INSPECT, Some(0));
         assert_eq!(model.displacement.points().count(), 2, "a procedure begins its own curves");
     }
 

@@ -37,7 +37,10 @@ impl Scale {
     }
 
     fn labels(&self) -> [String; 2] {
+        let span = self.bounds[1] - self.bounds[0];
         self.bounds.map(|bound| {
+            // The first step is not quite 0, and nobody wants to read how much.
+            let bound = if bound.abs() < 1e-3 * span { 0.0 } else { bound };
             let number = significant(bound / self.factor, 3);
             let decimals = number.contains('.') && !number.contains('e');
             if decimals { number.trim_end_matches('0').trim_end_matches('.').to_owned() } else { number }

@@ -6,6 +6,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
+use crate::cli::screen::model::INSPECT;
 use crate::quantity::Dimension;
 use crate::quantity::display::{readable, significant};
 
@@ -40,12 +41,14 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
         words.push_str(&format!("  {}, {}", fitted(&shown(&running.name), 20), running.keyword));
         let step = view.model.last.map_or(0, |last| last.step);
         match running.steps {
+            _ if running.keyword == INSPECT => {}
             Some(steps) if steps > 0 => words.push_str(&format!("   step {step} of {}", steps.max(step))),
             _ if step > 0 => words.push_str(&format!("   step {step}")),
             _ => {}
         }
     }
-    if let Some(last) = view.model.last {
+    let moving = view.model.procedure.as_ref().is_none_or(|running| running.keyword != INSPECT);
+    if let Some(last) = view.model.last.filter(|_| moving) {
         words.push_str(&format!("   t {}", readable(last.time, Dimension::TIME)));
     }
     Line::from(vec![Span::raw(" "), badge, Span::raw(words)])
