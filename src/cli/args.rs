@@ -44,6 +44,42 @@ pub enum Command {
 pub enum RigCommand {
     /// Lists the serial ports of this machine
     List,
+    /// Says who the rig is, what it reads and how far it is from each limit; nothing moves
+    Probe {
+        /// The plan, a `.psd` file
+        #[arg(value_name = "PLAN")]
+        plan: PathBuf,
+        #[command(flatten)]
+        plan_settings: PlanSettings,
+    },
+    /// Shows the readings as they come; nothing moves
+    Monitor {
+        /// The plan, a `.psd` file
+        #[arg(value_name = "PLAN")]
+        plan: PathBuf,
+        #[command(flatten)]
+        plan_settings: PlanSettings,
+        /// Ends after so many readings
+        #[arg(long, value_name = "N")]
+        count: Option<u64>,
+    },
+    /// Moves the rig by hand inside the plan's limits, asking first on every move
+    Jog {
+        /// The plan, a `.psd` file
+        #[arg(value_name = "PLAN")]
+        plan: PathBuf,
+        #[command(flatten)]
+        plan_settings: PlanSettings,
+        /// Where to, such as "1 mm" [default: places are typed, one a line]
+        #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
+        to: Option<String>,
+        /// How fast, such as "0.5 mm/s" [default: the plan's highest, else the rig's own]
+        #[arg(long, value_name = "SPEED")]
+        speed: Option<String>,
+        /// Answers the question before a move with yes
+        #[arg(long)]
+        yes: bool,
+    },
 }
 
 #[derive(Debug, Args)]

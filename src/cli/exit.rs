@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
+use crate::rig::RigFault;
 use crate::verdict::Verdict;
 
 /// An exit code, worst last.
@@ -67,6 +68,8 @@ pub enum Failure {
     Output(#[from] crate::output::OutputError),
     #[error("standard output: {0}")]
     Stdout(std::io::Error),
+    #[error("the rig: {0}")]
+    Rig(RigFault),
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
     Signals(std::io::Error),
 }
@@ -92,7 +95,10 @@ impl Failure {
     pub const fn exit(&self) -> Exit {
         match self {
             Self::CommandLine { .. } | Self::NotAPlan { .. } => Exit::Wrong,
-            Self::File { .. } | Self::Output(_) | Self::Stdout(_) | Self::Signals(_) => Exit::Fault,
+            Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted) => Exit::Stopped,
+            Self::File { .. } | Self::Output(_) | Self::Stdout(_) | Self::Signals(_) | Self::Rig(RigFault::Device(_)) => {
+                Exit::Fault
+            }
         }
     }
 

@@ -113,7 +113,7 @@ impl Observer for Screen {
     fn procedure_finished(&mut self, _: &str) {}
 
     fn stop_requested(&self) -> bool {
-        self.wish.wants_stop()
+        self.wish.wants_end()
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {

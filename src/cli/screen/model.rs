@@ -178,10 +178,10 @@ pub mod tests {
         plan.limits.speed = Interval { low: 0.0, high: 1.0 };
         let mut model = Model::new(&plan, true);
         model.procedure_started("hit", "impact", Some(3));
-        assert_eq!(model.limit_rows().iter().map(|row| (row.name, row.value)).collect::<Vec<_>>(), [
-            ("displacement", None),
-            ("increment", None)
-        ]);
+        assert_eq!(
+            model.limit_rows().iter().map(|row| (row.name, row.value)).collect::<Vec<_>>(),
+            [("displacement", None), ("increment", None)]
+        );
         model.step_done(&step(1, 0.1, 0.01, 5.0));
         model.step_done(&step(2, 0.2, 0.025, 6.0));
         let rows = model.limit_rows();

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use crate::cli::output::tell;
 use crate::diagnostic::excerpt::escape;
+use crate::rig::Wish;
 use crate::run::Inspection;
 
 /// How long one look for an answer takes: Ctrl-C and the rig are heard between two.
@@ -98,6 +99,18 @@ fn answer(line: &str) -> Option<Inspection> {
     }
 }
 
+/// The next line typed. None at the end of the input, which never counts as yes, and on Ctrl-C.
+pub fn next_line(lines: &Receiver<String>, wish: &Wish) -> Option<String> {
+    loop {
+        match lines.recv_timeout(LOOK) {
+            Ok(line) => return Some(line),
+            Err(RecvTimeoutError::Disconnected) => return None,
+            Err(RecvTimeoutError::Timeout) if wish.wants_end() => return None,
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+    }
+}
+
 /// Lines of standard input, read beside the run: a read that waits must not keep Ctrl-C from being heard.
 pub fn typed_lines() -> Receiver<String> {
     let (send, receive) = channel();
@@ -141,6 +154,19 @@ mod tests {
         assert_eq!(said(&["what", " Yes crack at\u{7} midspan ", "", "B"], None), Inspection::GoOn { note, by: by("B") });
         assert!(matches!(said(&["no"], Some("A")), Inspection::Stop { by: Some(_), .. }));
         assert_eq!((answer(""), answer("yesterday"), answer("go")), (None, None, None));
+    }
+
+    #[test]
+    fn a_line_ends_with_the_input_and_with_ctrl_c() {
+        let wish = Wish::default();
+        let (send, receive) = channel();
+        send.send("y".to_owned()).unwrap();
+        drop(send);
+        assert_eq!(next_line(&receive, &wish).as_deref(), Some("y"));
+        assert_eq!(next_line(&receive, &wish), None);
+        let (_kept, receive) = channel();
+        wish.stop_after_step();
+        assert_eq!(next_line(&receive, &wish), None, "Ctrl-C while a question waits");
     }
 
     #[test]

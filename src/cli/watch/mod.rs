@@ -12,8 +12,9 @@ use crate::record::Event;
 use crate::rig::Wish;
 use crate::run::{Inspection, Next, Observer, StepReport};
 use asking::Person;
+pub use asking::{next_line, typed_lines};
 use plain::{Bar, Lines};
-use signals::Signals;
+pub use signals::{Signals, interrupt};
 
 /// The observer of `psd run`.
 pub struct Watcher {
@@ -111,7 +112,7 @@ impl Observer for Watcher {
     }
 
     fn stop_requested(&self) -> bool {
-        self.wish.wants_stop()
+        self.wish.wants_end()
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {
@@ -150,7 +151,14 @@ mod tests {
 
     #[test]
     fn a_real_rig_stops_where_nobody_can_be_asked() {
-        let settings = Settings { color: false, stdout_color: false, unicode: true, stderr_terminal: false, can_ask: false };
+        let settings = Settings {
+            color: false,
+            stdout_color: false,
+            unicode: true,
+            stderr_terminal: false,
+            stdout_terminal: false,
+            can_ask: false,
+        };
         let mut plan = empty_plan();
         plan.particulars.push(("operator", "A. Engineer".to_owned()));
         let ask = |yes, simulated| {

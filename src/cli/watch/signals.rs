@@ -18,15 +18,38 @@ impl Signals {
         let wish = wish.clone();
         std::thread::spawn(move || {
             for _ in signals.forever() {
-                wish.interrupt();
+                interrupt(&wish);
             }
         });
         Ok(Self { handle })
     }
 }
 
+/// One Ctrl-C: the first stops the run at the end of its step, the second holds the rig now.
+pub fn interrupt(wish: &Wish) {
+    if wish.wants_end() {
+        wish.hold_now();
+    } else {
+        wish.stop_after_step();
+    }
+}
+
 impl Drop for Signals {
     fn drop(&mut self) {
         self.handle.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_interrupt_stops_and_the_second_holds() {
+        let wish = Wish::default();
+        interrupt(&wish);
+        assert!(wish.wants_end() && !wish.wants_hold());
+        interrupt(&wish);
+        assert!(wish.wants_hold());
     }
 }

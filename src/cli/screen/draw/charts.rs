@@ -32,7 +32,13 @@ impl Scale {
         let largest = data[0].abs().max(data[1].abs());
         let (unit, factor) = readable_unit(largest, dimension);
         let span = data[1] - data[0];
-        let room = if span > largest * 1e-9 { 0.0 } else if largest > 0.0 { 0.1 * largest } else { factor };
+        let room = if span > largest * 1e-9 {
+            0.0
+        } else if largest > 0.0 {
+            0.1 * largest
+        } else {
+            factor
+        };
         Self { bounds: [data[0] - room, data[1] + room], unit, factor }
     }
 
@@ -65,16 +71,8 @@ fn chart(
     let points: Vec<(f64, f64)> = curve.points().collect();
     let newest: Vec<(f64, f64)> = curve.newest().into_iter().collect();
     let datasets = vec![
-        Dataset::default()
-            .marker(Marker::Braille)
-            .graph_type(GraphType::Line)
-            .style(view.paint(Color::Cyan))
-            .data(&points),
-        Dataset::default()
-            .marker(Marker::Dot)
-            .graph_type(GraphType::Scatter)
-            .style(view.paint(Color::Yellow))
-            .data(&newest),
+        Dataset::default().marker(Marker::Braille).graph_type(GraphType::Line).style(view.paint(Color::Cyan)).data(&points),
+        Dataset::default().marker(Marker::Dot).graph_type(GraphType::Scatter).style(view.paint(Color::Yellow)).data(&newest),
     ];
     let axis = |scale: &Scale| Axis::default().bounds(scale.bounds).labels(scale.labels()).style(view.quiet());
     let title = format!(" {up} ({}) over {across} ({}) ", y.unit, x.unit);

@@ -29,5 +29,11 @@ fn words(event: &Event) -> String {
         (None, _) => String::new(),
     };
     let decimals = if event.time < 100.0 { 3 } else { 1 };
-    format!(" {:>9.decimals$} s  {:<10} {:<12} {}", event.time, fitted(&shown(&place), 18), Model::kind(event), shown(&event.text))
+    format!(
+        " {:>9.decimals$} s  {:<10} {:<12} {}",
+        event.time,
+        fitted(&shown(&place), 18),
+        Model::kind(event),
+        shown(&event.text)
+    )
 }

@@ -58,7 +58,7 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
 fn state(view: &View<'_>) -> (&'static str, Color) {
     if view.wish.wants_hold() {
         ("HOLDING", Color::Red)
-    } else if view.wish.wants_stop() {
+    } else if view.wish.wants_end() {
         ("STOPPING", Color::Red)
     } else if view.dialogue.question.is_some() {
         ("INSPECTION", Color::Yellow)
@@ -99,7 +99,7 @@ fn clock(seconds: u64) -> String {
 pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
     let text = if view.wish.wants_hold() {
         " the rig holds now"
-    } else if view.wish.wants_stop() {
+    } else if view.wish.wants_end() {
         " stops at the end of this step   h or Ctrl-C again: hold now"
     } else if view.dialogue.monitor {
         " q end   ? help"

@@ -84,7 +84,8 @@ impl Bar {
     fn closeness(&self, row: &LimitRow) -> Option<f64> {
         let value = row.value?;
         let margin = row.margin()?;
-        let toward = if !row.size && value - self.low < self.high - value && row.limit.low.is_finite() { self.low } else { self.high };
+        let toward =
+            if !row.size && value - self.low < self.high - value && row.limit.low.is_finite() { self.low } else { self.high };
         let whole = if toward.abs() > 0.0 { toward.abs() } else { self.high - self.low };
         // A displacement limit of 0 as the near end is where a test begins, not a danger.
         (whole > 0.0 && !(value.abs() < 1e-3 * (self.high - self.low) && margin >= 0.0)).then(|| margin / whole)
