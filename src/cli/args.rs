@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::diagnostic::excerpt::escape;
+
 /// Pseudo-dynamic structural tests, from a plan to a certificate.
 #[derive(Debug, Parser)]
 #[command(name = "psd", version, about, max_term_width = 100, arg_required_else_help = true)]
@@ -50,6 +52,42 @@ pub enum Command {
 pub enum RigCommand {
     /// Lists the serial ports of this machine
     List,
+    /// Says who the rig is, what it reads and how far it is from each limit; nothing moves
+    Probe {
+        /// The plan, a `.psd` file
+        #[arg(value_name = "PLAN")]
+        plan: PathBuf,
+        #[command(flatten)]
+        plan_settings: PlanSettings,
+    },
+    /// Shows the readings as they come; nothing moves
+    Monitor {
+        /// The plan, a `.psd` file
+        #[arg(value_name = "PLAN")]
+        plan: PathBuf,
+        #[command(flatten)]
+        plan_settings: PlanSettings,
+        /// Ends after so many readings
+        #[arg(long, value_name = "N")]
+        count: Option<u64>,
+    },
+    /// Moves the rig by hand inside the plan's limits, asking first on every move
+    Jog {
+        /// The plan, a `.psd` file
+        #[arg(value_name = "PLAN")]
+        plan: PathBuf,
+        #[command(flatten)]
+        plan_settings: PlanSettings,
+        /// Where to, such as "1 mm" [default: places are typed, one a line]
+        #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
+        to: Option<String>,
+        /// How fast, such as "0.5 mm/s" [default: the plan's highest, else the rig's own]
+        #[arg(long, value_name = "SPEED")]
+        speed: Option<String>,
+        /// Answers the question before a move with yes
+        #[arg(long)]
+        yes: bool,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -67,6 +105,9 @@ pub struct RunArguments {
     /// Answers routine questions with yes
     #[arg(long)]
     pub yes: bool,
+    /// Who runs the test and answers at inspections [default: the plan's `operator`]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub operator: Option<String>,
     /// What is printed on standard output: the run folder, or the whole summary
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
@@ -164,6 +205,15 @@ fn setting(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
+/// A person's name: one short line.
+fn name(text: &str) -> Result<String, String> {
+    let name = text.trim();
+    if name.is_empty() || name.chars().count() > 200 || name != escape(name) || name.contains('\n') {
+        return Err("a name is one line of at most 200 letters".to_owned());
+    }
+    Ok(name.to_owned())
+}
+
 /// A day of the calendar, in the one form that a certificate shows.
 fn date(text: &str) -> Result<String, String> {
     let day: jiff::civil::Date = text.parse().map_err(|_| "no such day; write it as 2026-05-31".to_owned())?;
@@ -188,6 +238,14 @@ mod tests {
         assert!(date("2023-02-29").is_err());
         assert!(date("20240229").unwrap_err().contains("2024-02-29"));
         assert!(date("today").is_err());
+    }
+
+    #[test]
+    fn a_name_is_one_line_that_steers_nothing() {
+        assert_eq!(name(" A. Engineer ").as_deref(), Ok("A. Engineer"));
+        for wrong in ["", "  ", "A\nB", "A\u{1b}[2J", "A\u{202e}B", &"x".repeat(1024)] {
+            assert!(name(wrong).is_err(), "{wrong:?}");
+        }
     }
 
     #[test]

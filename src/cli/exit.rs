@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
+use crate::rig::RigFault;
 use crate::verdict::Verdict;
 
 /// An exit code, worst last.

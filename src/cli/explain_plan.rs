@@ -307,7 +307,14 @@ mod tests {
         }
     }
 
-    const PLAIN: Settings = Settings { color: false, stdout_color: false, unicode: true, stderr_terminal: false, can_ask: false };
+    const PLAIN: Settings = Settings {
+        color: false,
+        stdout_color: false,
+        unicode: true,
+        stderr_terminal: false,
+        stdout_terminal: false,
+        can_ask: false,
+    };
 
     #[test]
     fn the_papers_first_example_is_predicted_without_the_rigs_noise() {

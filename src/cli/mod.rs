@@ -15,7 +15,6 @@ mod limits;
 mod loader;
 mod output;
 mod plan_file;
-mod progress;
 mod provenance;
 mod real_rig;
 mod record_file;
@@ -23,8 +22,10 @@ mod resume;
 mod rig;
 mod run;
 mod run_folder;
+mod screen;
 mod settings;
 mod verify;
+mod watch;
 
 use std::ffi::OsString;
 

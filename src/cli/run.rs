@@ -6,16 +6,16 @@ use super::bless::BlessedFolder;
 use super::conclude::conclude;
 use super::exit::{Exit, Failure};
 use super::output::{give, tell};
-use super::progress::Watcher;
 use super::record_file::{self, Circumstances, journal_of};
 use super::run_folder::RunFolder;
 use super::settings::Settings;
+use super::watch::{Attendance, Watcher};
 use super::{plan_file, provenance};
 use crate::diagnostic::json;
 use crate::output::OutputFile;
 use crate::plan::Plan;
 use crate::record::journal::{Durability, FileStorage, Journal};
-use crate::rig::{Rig as _, VirtualRig};
+use crate::rig::{Rig as _, VirtualRig, Wish};
 use crate::run::tape;
 
 /// Runs one plan.
@@ -30,7 +30,9 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     };
     let blessed = arguments.bless.then(|| BlessedFolder::of(&arguments.plan)).transpose()?;
     let mut rig = VirtualRig::of_plan(plan);
-    let mut watcher = Watcher::new(settings, arguments.yes, rig.identity().simulated).map_err(Failure::Signals)?;
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    let simulated = rig.identity().simulated;
+    let mut watcher = Watcher::new(settings, &attendance, plan, simulated, Wish::default()).map_err(Failure::Signals)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let provenance = provenance::of(plan);
     let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());

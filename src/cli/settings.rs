@@ -18,6 +18,8 @@ pub struct Settings {
     pub unicode: bool,
     /// Standard error is a terminal: a progress bar makes sense.
     pub stderr_terminal: bool,
+    /// Standard output is a terminal: what is shown there is for a person.
+    pub stdout_terminal: bool,
     /// Someone can be asked: standard input and standard error are a terminal.
     pub can_ask: bool,
 }
@@ -38,6 +40,7 @@ impl Settings {
             stdout_color: colored(std::io::stdout().is_terminal()),
             unicode: !stderr_terminal || draws_boxes(&variable("TERM"), locale.as_deref()),
             stderr_terminal,
+            stdout_terminal: std::io::stdout().is_terminal(),
             can_ask: stderr_terminal && std::io::stdin().is_terminal(),
         }
     }

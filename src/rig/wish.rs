@@ -1,53 +1,56 @@
-//! What a person wants of a run that is under way, heard from any thread: to end it after this step, or to hold the rig
-//! at once. In: keys and signals. Out: two questions for who drives the rig. It knows no rig; a wish only ever grows.
+//! What a person wants of a run that is under way. In: wishes from signal handlers, keys and other threads. Out: the
+//! wish, for whoever waits on a rig. It knows no rig and does nothing itself.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 const NOTHING: u8 = 0;
-const STOP: u8 = 1;
-const HOLD: u8 = 2;
+const STOP_AFTER_STEP: u8 = 1;
+const HOLD_NOW: u8 = 2;
 /// A wish to hold that has been seen: holding itself must not be interrupted by it.
 const HEEDED: u8 = 3;
 
-/// Shared by who asks and who obeys: a clone is the same wish.
+/// A wish that all clones share.
 #[derive(Clone, Debug, Default)]
 pub struct Wish(Arc<AtomicU8>);
 
 impl Wish {
-    /// The run is to end at the end of this step.
-    pub fn stop(&self) {
-        self.0.fetch_max(STOP, Ordering::SeqCst);
+    /// The run is to end when the step under way is done.
+    pub fn stop_after_step(&self) {
+        // A stronger wish stays.
+        self.0.compare_exchange(NOTHING, STOP_AFTER_STEP, Ordering::SeqCst, Ordering::SeqCst).ok();
     }
 
-    /// The rig is to hold now, in the middle of a step too: every wait on it ends.
+    /// The rig is to hold at once: every wait on it ends.
     pub fn hold_now(&self) {
-        self.0.fetch_max(HOLD, Ordering::SeqCst);
-    }
-
-    /// Ctrl-C and its like: the first stops at the end of this step, the second holds now.
-    pub fn interrupt(&self) {
-        if self.0.compare_exchange(NOTHING, STOP, Ordering::SeqCst, Ordering::SeqCst).is_err() {
-            self.hold_now();
-        }
+        self.0.store(HOLD_NOW, Ordering::SeqCst);
     }
 
     /// Says that the wish to hold was seen, so that the words that hold the rig can be said and answered.
     pub fn heed(&self) {
-        self.0.compare_exchange(HOLD, HEEDED, Ordering::SeqCst, Ordering::SeqCst).ok();
-    }
-
-    /// Whether the run is to end, now or after this step.
-    #[must_use]
-    pub fn wants_stop(&self) -> bool {
-        self.0.load(Ordering::SeqCst) != NOTHING
+        self.0.compare_exchange(HOLD_NOW, HEEDED, Ordering::SeqCst, Ordering::SeqCst).ok();
     }
 
     /// Whether a hold is wanted that nobody has seen yet.
     #[must_use]
     pub fn wants_hold(&self) -> bool {
-        self.0.load(Ordering::SeqCst) == HOLD
+        self.0.load(Ordering::SeqCst) == HOLD_NOW
     }
+
+    /// Whether the run is to end, now or after the step.
+    #[must_use]
+    pub fn wants_end(&self) -> bool {
+        self.0.load(Ordering::SeqCst) != NOTHING
+    }
+
+    /// The number itself, for a signal handler that stores [`Wish::HOLD`] or [`Wish::STOP`].
+    #[must_use]
+    pub fn cell(&self) -> Arc<AtomicU8> {
+        Arc::clone(&self.0)
+    }
+
+    pub const STOP: u8 = STOP_AFTER_STEP;
+    pub const HOLD: u8 = HOLD_NOW;
 }
 
 #[cfg(test)]
@@ -55,18 +58,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_interrupt_stops_and_the_second_holds() {
+    fn a_wish_to_hold_outranks_one_to_stop_and_can_be_heeded_once() {
         let wish = Wish::default();
-        let elsewhere = wish.clone();
-        assert!(!wish.wants_stop() && !wish.wants_hold());
-        elsewhere.interrupt();
-        assert!(wish.wants_stop() && !wish.wants_hold());
-        elsewhere.interrupt();
-        assert!(wish.wants_hold());
-        wish.stop();
-        assert!(elsewhere.wants_hold(), "a wish never shrinks");
+        let clone = wish.clone();
+        assert!(!wish.wants_end());
+        clone.stop_after_step();
+        assert!(wish.wants_end() && !wish.wants_hold());
+        clone.hold_now();
+        clone.stop_after_step();
+        assert!(wish.wants_hold(), "not weakened");
         wish.heed();
-        elsewhere.hold_now();
-        assert!(!wish.wants_hold() && wish.wants_stop(), "seen once is enough");
+        assert!(!clone.wants_hold() && clone.wants_end());
+        clone.cell().store(Wish::HOLD, Ordering::SeqCst);
+        assert!(wish.wants_hold(), "a second wish is a new one");
     }
 }

@@ -1,14 +1,58 @@
-//! `psd rig …`: one file a command.
+//! `psd rig …`: one file a command. What is done by hand is done to the plan's rig and inside the plan's limits.
 
+mod jog;
 mod list;
+mod monitor;
+mod probe;
 
-use super::args::RigCommand;
+use std::path::Path;
+
+use super::args::{PlanSettings, RigCommand};
 use super::exit::{Exit, Failure};
+use super::plan_file;
 use super::settings::Settings;
+use crate::plan::{Link, Plan};
+use crate::rig::{Rig, VirtualRig, Wish};
 
 /// Does one of the commands.
-pub fn rig(command: &RigCommand, _settings: Settings) -> Result<Exit, Failure> {
+pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
     match command {
         RigCommand::List => list::list(),
+        RigCommand::Probe { plan, plan_settings } => {
+            with_rig(plan, plan_settings, settings, |rig, plan, _| probe::probe(rig, plan))
+        }
+        RigCommand::Monitor { plan, plan_settings, count } => {
+            with_rig(plan, plan_settings, settings, |rig, plan, wish| monitor::monitor(rig, plan, *count, wish, settings))
+        }
+        RigCommand::Jog { plan, plan_settings, to, speed, yes } => {
+            let asked = jog::Asked { to: to.as_deref(), speed: speed.as_deref(), yes: *yes };
+            with_rig(plan, plan_settings, settings, |rig, plan, wish| jog::jog(rig, plan, &asked, wish, settings))
+        }
+    }
+}
+
+/// Checks the plan, opens its rig and does `what` with it.
+fn with_rig(
+    path: &Path,
+    plan_settings: &PlanSettings,
+    settings: Settings,
+    what: impl FnOnce(&mut dyn Rig, &Plan, &Wish) -> Result<Exit, Failure>,
+) -> Result<Exit, Failure> {
+    let checked = plan_file::open(path, plan_settings)?;
+    plan_file::show(&checked, path, settings);
+    let Some(plan) = &checked.plan else { return Ok(Exit::Wrong) };
+    let wish = Wish::default();
+    let mut rig = open_rig(plan, &wish)?;
+    what(rig.as_mut(), plan, &wish)
+}
+
+/// The rig of the plan, which is told the wish.
+fn open_rig(plan: &Plan, _wish: &Wish) -> Result<Box<dyn Rig>, Failure> {
+    match &plan.rig.link {
+        Link::Virtual(_) => Ok(Box::new(VirtualRig::of_plan(plan))),
+        Link::Real(_) => {
+            let message = format!("the rig `{}` is a real one; these commands open virtual rigs only", plan.rig.name);
+            Err(Failure::command_line(message).help("name a virtual rig of the plan with `--rig`"))
+        }
     }
 }

@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 
 use super::keys::Key;
+use crate::cli::watch::interrupt;
 use crate::diagnostic::excerpt::escape;
 use crate::rig::Wish;
 use crate::run::{Inspection, Next};
@@ -64,10 +65,15 @@ impl Dialogue {
         Self { operator, ..Self::default() }
     }
 
+    /// Nothing to pause and nothing asked: only an end and the help.
+    pub fn of_monitor() -> Self {
+        Self { monitor: true, ..Self::default() }
+    }
+
     /// A key was pressed.
     pub fn press(&mut self, key: Key, wish: &Wish) {
         if key == Key::Interrupt {
-            wish.interrupt();
+            interrupt(wish);
             return;
         }
         if std::mem::take(&mut self.help) {
@@ -84,7 +90,7 @@ impl Dialogue {
     fn command(&mut self, key: Key, wish: &Wish) {
         let Key::Character(character) = key else { return };
         match character.to_ascii_lowercase() {
-            'q' => wish.stop(),
+            'q' => wish.stop_after_step(),
             'h' => wish.hold_now(),
             '?' => self.help = true,
             _ if self.monitor => {}
@@ -105,7 +111,7 @@ impl Dialogue {
         match key {
             Key::Character('y' | 'Y') => self.line(What::Remark { yes: true }),
             Key::Character('n' | 'N') => self.line(What::Remark { yes: false }),
-            Key::Character('q') => wish.stop(),
+            Key::Character('q') => wish.stop_after_step(),
             Key::Character('h') => wish.hold_now(),
             Key::End => self.no_answer(),
             _ => {}
@@ -229,7 +235,7 @@ impl Dialogue {
     /// The terminal is gone: the run stops, and nothing is answered.
     pub fn lose(&mut self, wish: &Wish) {
         self.lost = true;
-        wish.stop();
+        wish.stop_after_step();
     }
 }
 
@@ -311,13 +317,13 @@ mod tests {
         let wish = Wish::default();
         let mut dialogue = Dialogue::default();
         dialogue.press(Key::Character('q'), &wish);
-        assert!(wish.wants_stop() && !wish.wants_hold());
+        assert!(wish.wants_end() && !wish.wants_hold());
         dialogue.press(Key::Interrupt, &wish);
         assert!(wish.wants_hold());
         let wish = Wish::default();
         dialogue.paused = true;
         dialogue.lose(&wish);
-        assert!(wish.wants_stop());
+        assert!(wish.wants_end());
         assert_eq!(dialogue.next(), Next::GoOn, "a pause does not outlast its terminal");
         assert!(matches!(dialogue.ask("look"), Inspection::Stop { .. }));
     }

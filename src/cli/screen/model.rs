@@ -12,6 +12,9 @@ use crate::run::StepReport;
 /// Events kept for the screen.
 const MOST_EVENTS: usize = 32;
 
+/// The procedure that moves nothing.
+pub const INSPECT: &str = "inspect";
+
 /// Everything that is drawn but the dialogue with the person.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -49,6 +52,8 @@ pub struct LimitRow {
     pub name: &'static str,
     pub dimension: Dimension,
     pub limit: Interval,
+    /// Whether it bounds a size, to which 0 is no danger.
+    pub size: bool,
     /// None where nothing is known of it yet.
     pub value: Option<f64>,
 }
@@ -57,7 +62,8 @@ impl LimitRow {
     /// Distance to the nearer end; negative past it.
     pub fn margin(&self) -> Option<f64> {
         let value = self.value?;
-        let margin = (value - self.limit.low).min(self.limit.high - value);
+        let above = if self.size && self.limit.low == 0.0 { f64::INFINITY } else { value - self.limit.low };
+        let margin = above.min(self.limit.high - value);
         margin.is_finite().then_some(margin)
     }
 }
@@ -81,6 +87,10 @@ impl Model {
 
     pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
         self.procedure = Some(Running { name: name.to_owned(), keyword: keyword.to_owned(), steps });
+        // While a person looks at the specimen, what came before stays to be seen.
+        if keyword == INSPECT {
+            return;
+        }
         self.last = None;
         self.increment = None;
         self.displacement = Curve::default();
@@ -116,16 +126,16 @@ impl Model {
         let of = |value: fn(&StepReport) -> f64| self.last.as_ref().map(value);
         let energy = self.last.and_then(|last| last.energy_error).map(f64::abs);
         let sizes = |limit: Interval| Interval { low: limit.low.max(0.0), ..limit };
+        let row = |name, dimension, limit, size, value| LimitRow { name, dimension, limit, size, value };
         [
-            ("displacement", Dimension::LENGTH, displacement, of(|step| step.displacement)),
-            ("force", Dimension::FORCE, force, of(|step| step.force)),
-            ("increment", Dimension::LENGTH, sizes(increment), self.increment),
-            ("tracking error", Dimension::LENGTH, sizes(tracking_error), self.tracking_error()),
-            ("energy error", Dimension::NUMBER, sizes(energy_error), energy),
+            row("displacement", Dimension::LENGTH, displacement, false, of(|step| step.displacement)),
+            row("force", Dimension::FORCE, force, false, of(|step| step.force)),
+            row("increment", Dimension::LENGTH, sizes(increment), true, self.increment),
+            row("tracking error", Dimension::LENGTH, sizes(tracking_error), true, self.tracking_error()),
+            row("energy error", Dimension::NUMBER, sizes(energy_error), true, energy),
         ]
         .into_iter()
-        .filter(|(_, _, limit, _)| limit.high < f64::INFINITY || limit.low > 0.0 || limit.low < 0.0 && limit.low.is_finite())
-        .map(|(name, dimension, limit, value)| LimitRow { name, dimension, limit, value })
+        .filter(|row| row.limit.high < f64::INFINITY || row.limit.low > if row.size { 0.0 } else { f64::NEG_INFINITY })
         .collect()
     }
 
@@ -168,19 +178,22 @@ pub mod tests {
         plan.limits.speed = Interval { low: 0.0, high: 1.0 };
         let mut model = Model::new(&plan, true);
         model.procedure_started("hit", "impact", Some(3));
-        assert_eq!(model.limit_rows().iter().map(|row| (row.name, row.value)).collect::<Vec<_>>(), [
-            ("displacement", None),
-            ("increment", None)
-        ]);
+        assert_eq!(
+            model.limit_rows().iter().map(|row| (row.name, row.value)).collect::<Vec<_>>(),
+            [("displacement", None), ("increment", None)]
+        );
         model.step_done(&step(1, 0.1, 0.01, 5.0));
         model.step_done(&step(2, 0.2, 0.025, 6.0));
         let rows = model.limit_rows();
         assert_eq!(rows[0].margin(), Some(0.024_998 + 0.01));
         assert!((rows[1].margin().unwrap() - 0.005).abs() < 1e-12);
+        model.step_done(&step(3, 0.3, 0.026, 6.0));
+        assert!((model.limit_rows()[1].margin().unwrap() - 0.019).abs() < 1e-12, "no increment at all is as far as can be");
         assert!((model.tracking_error().unwrap() - 2e-6).abs() < 1e-12);
         model.procedure_started("c", "damping sweep", None);
         model.step_done(&step(1, 0.1, 0.01, 5.0));
         assert_eq!(model.tracking_error(), None, "the target of a stroke is its end");
+        model.procedure_started("look", INSPECT, Some(0));
         assert_eq!(model.displacement.points().count(), 2, "a procedure begins its own curves");
     }
 

@@ -1,0 +1,80 @@
+//! `psd rig monitor`: the readings as they come: on the screen of a terminal, one line a reading in a pipe. Nothing moves.
+
+use std::time::Duration;
+
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::output::give;
+use crate::cli::screen::{Screen, is_large_enough};
+use crate::cli::settings::Settings;
+use crate::cli::watch::Signals;
+use crate::plan::Plan;
+use crate::rig::{Reading, Rig, Wish};
+use crate::run::{Observer as _, StepReport};
+
+/// Time from one reading to the next, s.
+const APART: f64 = 0.1;
+
+/// Reads until Ctrl-C, `q` or `count` readings.
+pub fn monitor(rig: &mut dyn Rig, plan: &Plan, count: Option<u64>, wish: &Wish, settings: Settings) -> Result<Exit, Failure> {
+    let _signals = Signals::caught(wish).map_err(Failure::Signals)?;
+    let simulated = rig.identity().simulated;
+    let on_screen = settings.can_ask && settings.stdout_terminal && settings.unicode && is_large_enough();
+    let mut screen = on_screen.then(|| Screen::monitor(plan, simulated, "MONITOR", wish.clone(), settings.color));
+    if let Some(screen) = &mut screen {
+        screen.procedure_started("readings", "monitor", None);
+    } else {
+        give("time_s,displacement_m,force_n\n")?;
+    }
+    let mut number = 0;
+    while !wish.wants_end() && count.is_none_or(|count| number < count) {
+        if number > 0 {
+            rig.pause(APART).map_err(Failure::Rig)?;
+            // A virtual rig's time costs nothing; a person's eyes are not that fast.
+            if simulated && count.is_none() {
+                std::thread::sleep(Duration::from_secs_f64(APART));
+            }
+        }
+        number += 1;
+        let reading = rig.read().map_err(Failure::Rig)?;
+        match &mut screen {
+            Some(screen) => screen.step_done(&step(number, &reading)),
+            None => give(&line(&reading))?,
+        }
+    }
+    Ok(Exit::Met)
+}
+
+/// The first degree of freedom, as a step that asked for nothing.
+fn step(number: u64, reading: &Reading) -> StepReport {
+    let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
+    let displacement = first(&reading.displacement);
+    StepReport {
+        step: number,
+        time: reading.time,
+        command: displacement,
+        displacement,
+        velocity: None,
+        acceleration: None,
+        force: first(&reading.force),
+        energy_error: None,
+    }
+}
+
+/// SI, one column a value; of several degrees of freedom all displacements, then all forces.
+fn line(reading: &Reading) -> String {
+    let values = std::iter::once(&reading.time).chain(&reading.displacement).chain(&reading.force);
+    let words: Vec<String> = values.map(ToString::to_string).collect();
+    format!("{}\n", words.join(","))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reading_is_one_line_that_reads_back() {
+        let reading = Reading { time: 0.1, displacement: vec![1e-3], force: vec![-0.3], raw: Vec::new() };
+        assert_eq!(line(&reading), "0.1,0.001,-0.3\n");
+        assert_eq!(step(3, &reading).force, -0.3);
+    }
+}

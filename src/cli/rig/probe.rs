@@ -1,0 +1,122 @@
+//! `psd rig probe`: who the rig is, what it reads at rest, how much its readings scatter and drift, and how far it is
+//! from each limit. Nothing moves.
+
+use std::fmt::Write as _;
+
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::output::give;
+use crate::diagnostic::excerpt::escape;
+use crate::mechanics::identification::fit_line;
+use crate::plan::{Interval, Plan};
+use crate::quantity::Dimension;
+use crate::quantity::display::{plain, readable};
+use crate::rig::{Identity, Reading, Rig};
+
+/// Readings, and the time from one to the next, s.
+const READINGS: usize = 10;
+const APART: f64 = 0.1;
+
+/// Gives the report; exit 4 where the rig stands outside a limit.
+pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {
+    let identity = rig.identity();
+    let mut readings = Vec::with_capacity(READINGS);
+    for index in 0..READINGS {
+        if index > 0 {
+            rig.pause(APART).map_err(Failure::Rig)?;
+        }
+        readings.push(rig.read().map_err(Failure::Rig)?);
+    }
+    let axes = (0..rig.degrees_of_freedom()).map(|axis| Axis::of(&readings, axis)).collect::<Vec<_>>();
+    give(&report(&identity, &axes, plan))?;
+    let inside =
+        |axis: &Axis| plan.limits.displacement.contains(axis.displacement.mean) && plan.limits.force.contains(axis.force.mean);
+    Ok(if axes.iter().all(inside) { Exit::Met } else { Exit::Stopped })
+}
+
+/// One degree of freedom.
+struct Axis {
+    displacement: Channel,
+    force: Channel,
+}
+
+/// What readings at rest say of one channel, SI.
+struct Channel {
+    mean: f64,
+    /// Standard deviation about the drift.
+    noise: f64,
+    /// Change a second.
+    drift: f64,
+}
+
+impl Axis {
+    fn of(readings: &[Reading], axis: usize) -> Self {
+        let times: Vec<f64> = readings.iter().map(|reading| reading.time).collect();
+        let values = |of: fn(&Reading) -> &Vec<f64>| -> Vec<f64> {
+            readings.iter().filter_map(|reading| of(reading).get(axis).copied()).collect()
+        };
+        let displacement = Channel::of(&times, &values(|reading| &reading.displacement));
+        Self { displacement, force: Channel::of(&times, &values(|reading| &reading.force)) }
+    }
+}
+
+impl Channel {
+    #[expect(clippy::cast_precision_loss, reason = "ten readings")]
+    fn of(times: &[f64], values: &[f64]) -> Self {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let middle = times.iter().sum::<f64>() / count;
+        let drift = fit_line(times, values).map_or(0.0, |fit| fit.slope);
+        let square = |(time, value): (&f64, &f64)| (value - mean - drift * (time - middle)).powi(2);
+        let squares: f64 = times.iter().zip(values).map(square).sum();
+        Self { mean, noise: (squares / (count - 2.0).max(1.0)).sqrt(), drift }
+    }
+}
+
+fn report(identity: &Identity, axes: &[Axis], plan: &Plan) -> String {
+    let mut text = format!("{}{}\n", escape(&identity.name), if identity.simulated { " (simulated)" } else { "" });
+    for (what, word) in [("model", &identity.model), ("serial number", &identity.serial), ("firmware", &identity.firmware)] {
+        if !word.is_empty() {
+            let _ = writeln!(text, "  {what:<14}{}", escape(word));
+        }
+    }
+    for (number, axis) in (1..).zip(axes) {
+        if axes.len() > 1 {
+            let _ = writeln!(text, "  axis {number}");
+        }
+        channel(&mut text, "displacement", Dimension::LENGTH, Dimension::VELOCITY, &axis.displacement, plan.limits.displacement);
+        let (force, limit) = (&axis.force, plan.limits.force);
+        channel(&mut text, "force", Dimension::FORCE, Dimension::FORCE, force, limit);
+    }
+    text
+}
+
+fn channel(text: &mut String, name: &str, dimension: Dimension, rate: Dimension, channel: &Channel, limit: Interval) {
+    let Channel { mean, noise, drift } = *channel;
+    let per_second = if rate == Dimension::VELOCITY { "" } else { "/s" };
+    let (noise, drift) = (readable(noise, dimension), readable(drift, rate));
+    let _ = writeln!(text, "  {name:<14}{}   noise {noise}   drift {drift}{per_second}", readable(mean, dimension));
+    for (end, bound, margin) in [("low", limit.low, mean - limit.low), ("high", limit.high, limit.high - mean)] {
+        if bound.is_finite() {
+            let bound = plain(bound, dimension, 4);
+            let past = if margin >= 0.0 { "margin" } else { "PAST THE LIMIT by" };
+            let _ = writeln!(text, "    {end:<12}{bound:<12}{past} {}", readable(margin.abs(), dimension));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drift_is_not_taken_for_noise() {
+        let times: Vec<f64> = (0..10).map(|index| f64::from(index) * 0.1).collect();
+        let drifting: Vec<f64> = times.iter().map(|time| 5.0 + 2.0 * time).collect();
+        let channel = Channel::of(&times, &drifting);
+        assert!((channel.drift - 2.0).abs() < 1e-9 && channel.noise < 1e-9 && (channel.mean - 5.9).abs() < 1e-9);
+        // ±1 about 0: its line has a slope of -0.0909/0.1 · …; about that line the scatter stays close to 1.
+        let noisy: Vec<f64> = (0..10).map(|index| if index % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let channel = Channel::of(&times, &noisy);
+        assert!((1.0..1.2).contains(&channel.noise), "{}", channel.noise);
+    }
+}

@@ -1,0 +1,112 @@
+//! The first three lines, where the run stands, and the last one, what the keys do.
+
+use ratatui::Frame;
+use ratatui::layout::{Alignment, Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Span};
+
+use super::{View, fitted, shown};
+use crate::cli::screen::model::INSPECT;
+use crate::quantity::Dimension;
+use crate::quantity::display::{readable, significant};
+
+/// Title and rig; state, procedure, step and time; the last numbers.
+pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
+    let [title, state, numbers] = Layout::vertical([Constraint::Length(1); 3]).areas(area);
+    let rig = if view.model.simulated { "simulated rig" } else { "REAL RIG" };
+    let rig = format!("{rig} {} ", fitted(&shown(&view.model.rig), 24));
+    sides(frame, title, title_line(view, title.width.into(), &rig), Line::raw(rig.clone()));
+    let clock = format!("{} ", clock(view.elapsed));
+    sides(frame, state, state_line(view), Line::raw(clock));
+    frame.render_widget(Line::raw(numbers_line(view, numbers.width >= 80)), numbers);
+}
+
+fn sides(frame: &mut Frame<'_>, area: Rect, left: Line<'_>, right: Line<'_>) {
+    let width = u16::try_from(right.width()).unwrap_or(u16::MAX);
+    let [start, end] = Layout::horizontal([Constraint::Min(0), Constraint::Length(width)]).areas(area);
+    frame.render_widget(left, start);
+    frame.render_widget(right.alignment(Alignment::Right), end);
+}
+
+fn title_line<'a>(view: &View<'_>, width: usize, rig: &str) -> Line<'a> {
+    let room = width.saturating_sub(rig.chars().count() + 3);
+    Line::styled(format!(" {}", fitted(&shown(&view.model.title), room)), Style::new().add_modifier(Modifier::BOLD))
+}
+
+fn state_line<'a>(view: &View<'_>) -> Line<'a> {
+    let (word, color) = state(view);
+    let badge = Span::styled(format!(" {word} "), view.paint(color).add_modifier(Modifier::BOLD | Modifier::REVERSED));
+    let mut words = String::new();
+    if let Some(running) = &view.model.procedure {
+        words.push_str(&format!("  {}, {}", fitted(&shown(&running.name), 20), running.keyword));
+        let step = view.model.last.map_or(0, |last| last.step);
+        match running.steps {
+            _ if running.keyword == INSPECT => {}
+            Some(steps) if steps > 0 => words.push_str(&format!("   step {step} of {}", steps.max(step))),
+            _ if step > 0 => words.push_str(&format!("   step {step}")),
+            _ => {}
+        }
+    }
+    let moving = view.model.procedure.as_ref().is_none_or(|running| running.keyword != INSPECT);
+    if let Some(last) = view.model.last.filter(|_| moving) {
+        words.push_str(&format!("   t {}", readable(last.time, Dimension::TIME)));
+    }
+    Line::from(vec![Span::raw(" "), badge, Span::raw(words)])
+}
+
+/// One word for how things stand, the gravest first.
+fn state(view: &View<'_>) -> (&'static str, Color) {
+    if view.wish.wants_hold() {
+        ("HOLDING", Color::Red)
+    } else if view.wish.wants_end() {
+        ("STOPPING", Color::Red)
+    } else if view.dialogue.question.is_some() {
+        ("INSPECTION", Color::Yellow)
+    } else if view.dialogue.paused {
+        ("PAUSED", Color::Yellow)
+    } else {
+        (view.model.by_hand.unwrap_or("RUNNING"), Color::Green)
+    }
+}
+
+fn numbers_line(view: &View<'_>, wide: bool) -> String {
+    let Some(last) = view.model.last else { return String::new() };
+    let error_word = if wide { " error" } else { "" };
+    let mut words = vec![
+        format!("X {}", readable(last.displacement, Dimension::LENGTH)),
+        format!("R {}", readable(last.force, Dimension::FORCE)),
+    ];
+    if let Some(error) = view.model.tracking_error() {
+        words.push(format!("tracking{error_word} {}", readable(error, Dimension::LENGTH)));
+    }
+    if let Some(error) = last.energy_error {
+        words.push(format!("energy{error_word} {}", percent(error)));
+    }
+    format!(" {}", words.join("   "))
+}
+
+/// A fraction for people; rounding noise is nothing.
+pub fn percent(fraction: f64) -> String {
+    if fraction.abs() < 1e-8 { "0 %".to_owned() } else { format!("{} %", significant(fraction * 100.0, 3)) }
+}
+
+fn clock(seconds: u64) -> String {
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    if hours > 0 { format!("{hours}:{minutes:02}:{seconds:02}") } else { format!("{minutes}:{seconds:02}") }
+}
+
+/// The last line.
+pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
+    let text = if view.wish.wants_hold() {
+        " the rig holds now"
+    } else if view.wish.wants_end() {
+        " stops at the end of this step   h or Ctrl-C again: hold now"
+    } else if view.dialogue.monitor {
+        " q end   ? help"
+    } else if view.dialogue.paused {
+        " p go on   s step   i note   q stop   h hold now   ? help"
+    } else {
+        " p pause   i note   q stop   h hold now   ? help"
+    };
+    Line::styled(text, view.quiet())
+}

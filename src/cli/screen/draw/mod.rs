@@ -1,0 +1,94 @@
+//! Model and dialogue → one picture. In: what is known. Out: cells of a frame. Pure: the same view is the same picture;
+//! whatever a plan or a person wrote is shown escaped.
+
+mod charts;
+mod events;
+mod head;
+mod limits;
+mod popup;
+#[cfg(test)]
+mod tests;
+
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Borders};
+
+use super::dialogue::Dialogue;
+use super::model::Model;
+use crate::diagnostic::excerpt::escape;
+use crate::rig::Wish;
+
+/// The smallest terminal that is drawn on: columns and rows.
+pub const SMALLEST: (u16, u16) = (60, 16);
+
+/// Everything a picture is made of.
+pub struct View<'a> {
+    pub model: &'a Model,
+    pub dialogue: &'a Dialogue,
+    pub wish: &'a Wish,
+    /// Wall time since the run began, s.
+    pub elapsed: u64,
+    pub color: bool,
+}
+
+/// Draws the whole screen.
+pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
+    let area = frame.area();
+    if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
+        let too_small = format!("psd: this screen needs {} x {}", SMALLEST.0, SMALLEST.1);
+        frame.render_widget(Line::raw(too_small), Rect { height: area.height.min(1), ..area });
+        popup::draw(frame, view, area, area);
+        return;
+    }
+    let rows = view.model.limit_rows();
+    let limit_lines = u16::try_from(rows.len().max(1)).unwrap_or(1) + 1;
+    // What is left over goes to the curves first, then to the events.
+    let spare = area.height.saturating_sub(3 + limit_lines + 1 + 5);
+    let event_lines = if area.height < 20 { 0 } else { (1 + spare / 4).clamp(2, 10) };
+    let [head, charts, limits, events, keys] = Layout::vertical([
+        Constraint::Length(3),
+        Constraint::Min(5),
+        Constraint::Length(limit_lines),
+        Constraint::Length(event_lines),
+        Constraint::Length(1),
+    ])
+    .areas(area);
+    head::draw(frame, view, head);
+    charts::draw(frame, view, charts);
+    limits::draw(frame, view, &rows, limits);
+    events::draw(frame, view, events);
+    frame.render_widget(head::keys(view), keys);
+    popup::draw(frame, view, charts, charts.union(limits));
+}
+
+impl View<'_> {
+    /// A colour where colours are wanted.
+    fn paint(&self, color: Color) -> Style {
+        if self.color { Style::new().fg(color) } else { Style::new() }
+    }
+
+    fn quiet(&self) -> Style {
+        if self.color { Style::new().add_modifier(Modifier::DIM) } else { Style::new() }
+    }
+
+    /// A rule with a heading, under which a part of the screen stands.
+    fn part<'a>(&self, heading: &'a str) -> Block<'a> {
+        Block::new().borders(Borders::TOP).border_style(self.quiet()).title(Line::raw(heading))
+    }
+}
+
+/// Text on one line that cannot steer the terminal.
+fn shown(text: &str) -> String {
+    escape(text).replace('\n', " ")
+}
+
+/// At most `width` characters; a cut text says so.
+fn fitted(text: &str, width: usize) -> String {
+    if text.chars().count() <= width {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(width.saturating_sub(1)).collect();
+    format!("{kept}…")
+}

@@ -1,0 +1,204 @@
+//! The live screen of a run. In: what the run tells its observer, and keys. Out: pictures, wishes, answers. The run only
+//! ever writes down what happened; a thread of the screen's own draws it, at most twenty times a second.
+
+mod curve;
+mod dialogue;
+mod draw;
+mod keys;
+pub mod model;
+mod terminal;
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::plan::Plan;
+use crate::record::Event;
+use crate::rig::Wish;
+use crate::run::{Inspection, Next, Observer, StepReport};
+use dialogue::Dialogue;
+use draw::View;
+use model::Model;
+use terminal::{Gone, Page};
+
+pub use terminal::is_large_enough;
+
+/// Time from one picture to the next, at least.
+const FRAME: Duration = Duration::from_millis(50);
+
+/// A virtual run shorter than this shows no screen.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// How long the end of a run waits for the terminal to be given back.
+const FAREWELL: Duration = Duration::from_secs(1);
+
+/// The run's side of the screen.
+pub struct Screen {
+    shared: Arc<Shared>,
+    wish: Wish,
+    finished: bool,
+}
+
+struct Shared {
+    state: Mutex<State>,
+    /// Something is to be shown, or an answer is there.
+    changed: Condvar,
+}
+
+struct State {
+    model: Model,
+    dialogue: Dialogue,
+    /// The screen is wanted, however short the run.
+    wanted: bool,
+    /// The run is over.
+    over: bool,
+    /// The terminal has been given back, or was never taken.
+    closed: bool,
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Screen {
+    /// A screen for a run of `plan`; it appears at once on a real rig, else when the run lasts.
+    pub fn new(plan: &Plan, simulated: bool, operator: Option<String>, wish: Wish, color: bool) -> Self {
+        Self::start(Model::new(plan, simulated), Dialogue::new(operator), !simulated, wish, color)
+    }
+
+    /// A screen that only watches, under this word.
+    pub fn monitor(plan: &Plan, simulated: bool, word: &'static str, wish: Wish, color: bool) -> Self {
+        let model = Model { by_hand: Some(word), ..Model::new(plan, simulated) };
+        Self::start(model, Dialogue::of_monitor(), true, wish, color)
+    }
+
+    fn start(model: Model, dialogue: Dialogue, wanted: bool, wish: Wish, color: bool) -> Self {
+        let state = State { model, dialogue, wanted, over: false, closed: false };
+        let shared = Arc::new(Shared { state: Mutex::new(state), changed: Condvar::new() });
+        let (theirs, their_wish) = (Arc::clone(&shared), wish.clone());
+        std::thread::spawn(move || show(&theirs, &their_wish, color));
+        Self { shared, wish, finished: false }
+    }
+
+    /// Gives the terminal back.
+    pub fn finish(&mut self) {
+        if std::mem::replace(&mut self.finished, true) {
+            return;
+        }
+        let mut state = self.shared.lock();
+        state.over = true;
+        self.shared.changed.notify_all();
+        // A terminal that is gone may keep its thread for ever; the run's results are not kept with it.
+        let closed = self.shared.changed.wait_timeout_while(state, FAREWELL, |state| !state.closed);
+        drop(closed);
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        self.finish();
+    }
+}
+
+impl Observer for Screen {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.shared.lock().model.procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.shared.lock().model.step_done(report);
+    }
+
+    fn procedure_finished(&mut self, _: &str) {}
+
+    fn stop_requested(&self) -> bool {
+        self.wish.wants_end()
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        let mut state = self.shared.lock();
+        state.wanted = true;
+        self.shared.changed.notify_all();
+        let answer = state.dialogue.ask(note);
+        if answer == Inspection::Wait {
+            // An answer, or the time for the rig to be heard from.
+            drop(self.shared.changed.wait_timeout(state, FRAME));
+        }
+        answer
+    }
+
+    fn next(&mut self) -> Next {
+        let mut state = self.shared.lock();
+        let next = state.dialogue.next();
+        if next == Next::Wait {
+            drop(self.shared.changed.wait_timeout(state, FRAME));
+        }
+        next
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.shared.lock().model.event(event);
+    }
+}
+
+/// The screen's thread.
+fn show(shared: &Shared, wish: &Wish, color: bool) {
+    let began = Instant::now();
+    let mut left = Left { shared, wish, gone: true };
+    left.gone = is_wanted(shared) && page(shared, wish, color, began).is_err();
+}
+
+/// Says that the thread has left the terminal, however it did.
+struct Left<'a> {
+    shared: &'a Shared,
+    wish: &'a Wish,
+    /// The terminal is gone, or the drawing failed: nobody will answer.
+    gone: bool,
+}
+
+impl Drop for Left<'_> {
+    fn drop(&mut self) {
+        let mut state = self.shared.lock();
+        if self.gone {
+            state.dialogue.lose(self.wish);
+        }
+        state.closed = true;
+        self.shared.changed.notify_all();
+    }
+}
+
+/// Waits until the run has lasted, or asks for the screen; false when it is over before.
+fn is_wanted(shared: &Shared) -> bool {
+    let state = shared.lock();
+    let waited = shared.changed.wait_timeout_while(state, PATIENCE, |state| !state.wanted && !state.over);
+    let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
+    !state.over
+}
+
+/// Draws and listens until the run is over.
+fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(), Gone> {
+    let mut page = Page::open()?;
+    loop {
+        let drawn = Instant::now();
+        let (model, dialogue) = {
+            let state = shared.lock();
+            if state.over {
+                return Ok(());
+            }
+            (state.model.clone(), state.dialogue.clone())
+        };
+        page.draw(&View { model: &model, dialogue: &dialogue, wish, elapsed: began.elapsed().as_secs(), color })?;
+        // Keys are heard at once, and the next picture is drawn when its time has come.
+        while let Some(left) = FRAME.checked_sub(drawn.elapsed()).filter(|left| !left.is_zero()) {
+            let pressed = page.keys(left)?;
+            if !pressed.is_empty() {
+                let mut state = shared.lock();
+                for key in pressed {
+                    state.dialogue.press(key, wish);
+                }
+                shared.changed.notify_all();
+            }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Watching a run: the live screen on a terminal, a bar on one that is too small, plain lines in a pipe; who answers at
+//! an inspection; signals. In: what the run tells its observer. Out: answers and wishes.
+
+mod asking;
+mod plain;
+mod signals;
+
+use super::screen::{self, Screen};
+use super::settings::Settings;
+use crate::plan::Plan;
+use crate::record::Event;
+use crate::rig::Wish;
+use crate::run::{Inspection, Next, Observer, StepReport};
+use asking::Person;
+pub use asking::{next_line, typed_lines};
+use plain::{Bar, Lines};
+pub use signals::{Signals, interrupt};
+
+/// The observer of `psd run`.
+pub struct Watcher {
+    face: Face,
+    asking: Asking,
+    operator: Option<String>,
+    wish: Wish,
+    _signals: Signals,
+}
+
+/// What the person sees.
+#[expect(clippy::large_enum_variant, reason = "there is one")]
+enum Face {
+    Screen(Screen),
+    Bar(Bar),
+    Lines(Lines),
+}
+
+/// Who answers at an inspection.
+enum Asking {
+    /// `--yes`
+    Yes,
+    /// A person at the screen.
+    Screen,
+    /// A person who types lines.
+    Person(Person),
+    /// No terminal, and nothing real moves.
+    NobodyNeeded,
+    /// No terminal, and a real rig waits for an answer that cannot come.
+    Nobody,
+}
+
+/// What the command line says of the person.
+#[derive(Clone, Debug, Default)]
+pub struct Attendance {
+    /// `--yes`
+    pub yes: bool,
+    /// `--operator`
+    pub operator: Option<String>,
+}
+
+impl Watcher {
+    /// Watches a run on a simulated or a real rig. Keys and signals become `wish`, which a rig that can hold in the
+    /// middle of a step is given too.
+    pub fn new(settings: Settings, attendance: &Attendance, plan: &Plan, simulated: bool, wish: Wish) -> std::io::Result<Self> {
+        let signals = Signals::caught(&wish)?;
+        let named = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
+        let operator = attendance.operator.clone().or(named).filter(|name| !name.trim().is_empty());
+        let face = if settings.can_ask && settings.unicode && screen::is_large_enough() {
+            Face::Screen(Screen::new(plan, simulated, operator.clone(), wish.clone(), settings.color))
+        } else if settings.stderr_terminal {
+            Face::Bar(Bar::new(settings.unicode))
+        } else {
+            Face::Lines(Lines::default())
+        };
+        let asking = match (attendance.yes, settings.can_ask, simulated, &face) {
+            (true, ..) => Asking::Yes,
+            (false, true, _, Face::Screen(_)) => Asking::Screen,
+            (false, true, ..) => Asking::Person(Person::default()),
+            (false, false, true, _) => Asking::NobodyNeeded,
+            (false, false, false, _) => Asking::Nobody,
+        };
+        Ok(Self { face, asking, operator, wish, _signals: signals })
+    }
+
+    /// Takes screen and bar off the terminal.
+    pub fn finish(&mut self) {
+        match &mut self.face {
+            Face::Screen(screen) => screen.finish(),
+            Face::Bar(bar) => bar.clear(),
+            Face::Lines(_) => {}
+        }
+    }
+
+    fn face(&mut self) -> &mut dyn Observer {
+        match &mut self.face {
+            Face::Screen(screen) => screen,
+            Face::Bar(bar) => bar,
+            Face::Lines(lines) => lines,
+        }
+    }
+}
+
+impl Observer for Watcher {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.face().procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.face().step_done(report);
+    }
+
+    fn procedure_finished(&mut self, name: &str) {
+        self.face().procedure_finished(name);
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.wish.wants_end()
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        let by = self.operator.clone();
+        match &mut self.asking {
+            Asking::Yes => Inspection::GoOn { note: Some("answered by --yes".to_owned()), by },
+            Asking::NobodyNeeded => {
+                Inspection::GoOn { note: Some("nobody was asked: simulated rig, no terminal".to_owned()), by: None }
+            }
+            Asking::Nobody => {
+                Inspection::Stop { reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned(), by: None }
+            }
+            Asking::Screen => self.face().inspect(note),
+            Asking::Person(person) => {
+                if let Face::Bar(bar) = &mut self.face {
+                    bar.clear();
+                }
+                person.ask(note, &mut self.operator)
+            }
+        }
+    }
+
+    fn next(&mut self) -> Next {
+        self.face().next()
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.face().event(event);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::testing::empty_plan;
+
+    #[test]
+    fn a_real_rig_stops_where_nobody_can_be_asked() {
+        let settings = Settings {
+            color: false,
+            stdout_color: false,
+            unicode: true,
+            stderr_terminal: false,
+            stdout_terminal: false,
+            can_ask: false,
+        };
+        let mut plan = empty_plan();
+        plan.particulars.push(("operator", "A. Engineer".to_owned()));
+        let ask = |yes, simulated| {
+            let attendance = Attendance { yes, operator: None };
+            Watcher::new(settings, &attendance, &plan, simulated, Wish::default()).unwrap().inspect("look")
+        };
+        assert!(matches!(ask(false, false), Inspection::Stop { .. }));
+        let yes = Inspection::GoOn { note: Some("answered by --yes".to_owned()), by: Some("A. Engineer".to_owned()) };
+        assert_eq!(ask(true, false), yes);
+        assert!(matches!(ask(false, true), Inspection::GoOn { by: None, .. }));
+    }
+}

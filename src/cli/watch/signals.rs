@@ -1,0 +1,55 @@
+//! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the
+//! second holds the rig now.
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator;
+
+use crate::rig::Wish;
+
+/// Signals are caught as long as this lives. Afterwards they do nothing: what a run leaves is still being written.
+pub struct Signals {
+    handle: iterator::Handle,
+}
+
+impl Signals {
+    pub fn caught(wish: &Wish) -> std::io::Result<Self> {
+        let mut signals = iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
+        let handle = signals.handle();
+        let wish = wish.clone();
+        std::thread::spawn(move || {
+            for _ in signals.forever() {
+                interrupt(&wish);
+            }
+        });
+        Ok(Self { handle })
+    }
+}
+
+/// One Ctrl-C: the first stops the run at the end of its step, the second holds the rig now.
+pub fn interrupt(wish: &Wish) {
+    if wish.wants_end() {
+        wish.hold_now();
+    } else {
+        wish.stop_after_step();
+    }
+}
+
+impl Drop for Signals {
+    fn drop(&mut self) {
+        self.handle.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_interrupt_stops_and_the_second_holds() {
+        let wish = Wish::default();
+        interrupt(&wish);
+        assert!(wish.wants_end() && !wish.wants_hold());
+        interrupt(&wish);
+        assert!(wish.wants_hold());
+    }
+}
