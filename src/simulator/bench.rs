@@ -263,21 +263,8 @@ impl Bench {
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::bench;
     use super::*;
-
-    fn bench() -> Bench {
-        Bench::new(BenchSettings {
-            behaviour: Behaviour::Elastic { stiffness: 1e5 },
-            damping: 0.0,
-            noise: 0.0,
-            resolution: 1e-6,
-            newtons_per_count: -0.01,
-            zero_count: 1000.0,
-            seed: 1,
-            limits: Interval { low: -0.001, high: 0.01 },
-            top_speed: 0.01,
-        })
-    }
 
     #[test]
     fn it_moves_evenly_and_stops_at_its_target() {

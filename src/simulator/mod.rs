@@ -3,9 +3,16 @@
 
 mod bench;
 mod bench_fault;
+mod faulty;
+pub mod firmware;
+pub mod script;
+#[cfg(test)]
+mod testing;
 
 pub use bench::{Bench, BenchSettings, SentMove};
 pub use bench_fault::BenchFault;
+pub use faulty::Faulty;
+pub use script::Script;
 
 /// What a controller's firmware does. It owns its dialect; the [`Bench`] owns motion, specimen and sensors.
 pub trait Firmware: Send {
