@@ -1,5 +1,8 @@
 //! What the tests of this folder share: one plain bench.
 
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex};
+
 use super::{Bench, BenchSettings};
 use crate::plan::{Behaviour, Interval};
 
@@ -16,4 +19,24 @@ pub fn bench() -> Bench {
         limits: Interval { low: -0.001, high: 0.01 },
         top_speed: 0.01,
     })
+}
+
+/// Text that is written in one place and read in another.
+#[derive(Clone, Default)]
+pub struct SharedText(Arc<Mutex<Vec<u8>>>);
+
+impl SharedText {
+    pub fn text(&self) -> String {
+        String::from_utf8(self.0.lock().expect("no writer panicked").clone()).expect("text")
+    }
+}
+
+impl Write for SharedText {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().expect("no writer panicked").write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

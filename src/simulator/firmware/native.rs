@@ -48,9 +48,8 @@ pub struct Native {
     settings: NativeSettings,
     generator: Pcg64,
     boot: u16,
+    /// What has come of the line; one that fills it is no frame.
     line: Vec<u8>,
-    /// The rest of a line that was too long is thrown away.
-    overlong: bool,
     /// Sequence number of the last request, and what was answered.
     last: Option<(u32, Vec<u8>)>,
     own: Bounds,
@@ -86,7 +85,6 @@ impl Native {
             generator,
             boot,
             line: Vec::new(),
-            overlong: false,
             last: None,
             own,
             run: own,
@@ -261,12 +259,12 @@ impl Firmware for Native {
                 b'!' => self.hold(bench),
                 b'\n' => {
                     let line = std::mem::take(&mut self.line);
-                    if !std::mem::take(&mut self.overlong) {
+                    if line.len() < LONGEST {
                         said.extend(self.frame(&line, bench).unwrap_or_default());
                     }
                 }
-                _ if self.line.len() + 1 >= LONGEST => self.overlong = true,
-                _ => self.line.push(*byte),
+                _ if self.line.len() < LONGEST => self.line.push(*byte),
+                _ => {}
             }
         }
         said
