@@ -5,14 +5,20 @@ mod bench;
 mod bench_fault;
 mod faulty;
 pub mod firmware;
+mod in_process;
+mod log;
 pub mod script;
+mod stand;
 #[cfg(test)]
 mod testing;
 
 pub use bench::{Bench, BenchSettings, SentMove};
 pub use bench_fault::BenchFault;
 pub use faulty::Faulty;
+pub use in_process::{InProcess, SimulatedClock, SimulatedPort};
+pub use log::Log;
 pub use script::Script;
+pub use stand::Stand;
 
 /// What a controller's firmware does. It owns its dialect; the [`Bench`] owns motion, specimen and sensors.
 pub trait Firmware: Send {

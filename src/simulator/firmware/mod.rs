@@ -2,4 +2,6 @@
 
 mod native;
 
+#[cfg(test)]
+pub use native::sealed;
 pub use native::{Native, NativeSettings};
