@@ -241,6 +241,7 @@ mod tests {
     fn a_controller_that_does_not_read_fills_the_line() {
         let shared = native("at 0 s: stop reading", Log::none());
         let mut port = shared.port(0);
+        shared.clock().sleep(0.01);
         let taken = (0..100).take_while(|_| port.write(&[b'x'; 96], SOON).is_ok()).count();
         assert_eq!(taken, LINE_BUFFER / 96);
         assert!(shared.now() >= 0.1);

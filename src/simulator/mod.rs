@@ -7,8 +7,11 @@ mod faulty;
 pub mod firmware;
 mod in_process;
 mod log;
+mod pseudo_terminal;
 pub mod script;
+pub mod serve;
 mod stand;
+mod tcp;
 #[cfg(test)]
 mod testing;
 
@@ -17,8 +20,10 @@ pub use bench_fault::BenchFault;
 pub use faulty::Faulty;
 pub use in_process::{InProcess, SimulatedClock, SimulatedPort};
 pub use log::Log;
+pub use pseudo_terminal::PseudoTerminal;
 pub use script::Script;
 pub use stand::Stand;
+pub use tcp::TcpLine;
 
 /// What a controller's firmware does. It owns its dialect; the [`Bench`] owns motion, specimen and sensors.
 pub trait Firmware: Send {
