@@ -8,7 +8,7 @@ use rand_pcg::rand_core::SeedableRng as _;
 use super::script::{Fault, LineFault, Place, ReplyFault, What, When};
 use super::{Bench, Firmware};
 
-/// Between the pieces of a split reply, s.
+/// Between the pieces of a split reply, and between a reply and hanging up after it, s.
 const GAP: f64 = 0.02;
 
 /// A firmware, and all that goes wrong around it.
@@ -218,7 +218,8 @@ impl Faulty {
             }
         }
         if ends {
-            self.outgoing.push(Outgoing { due, bytes: None });
+            // A reply that is still on its way when a terminal hangs up does not arrive.
+            self.outgoing.push(Outgoing { due: due + GAP, bytes: None });
         }
     }
 

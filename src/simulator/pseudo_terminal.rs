@@ -162,13 +162,22 @@ mod tests {
         (0..1000).find_map(|_| open().map_err(|_| std::thread::yield_now()).ok()).expect("the port opens")
     }
 
+    /// Ends the serving when it is dropped.
+    struct Ending<'a>(&'a AtomicBool);
+
+    impl Drop for Ending<'_> {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+
     #[test]
     fn hosts_come_and_go_and_the_rig_stays() {
         let folder = tempfile::tempdir().expect("a folder");
         let link = folder.path().join("rig");
         let terminal = PseudoTerminal::linked(&link).expect("a pseudo-terminal");
         let over = AtomicBool::new(false);
-        let stand = Mutex::new(stand("after 3 replies: hang up after reply"));
+        let stand = Mutex::new(stand("after 4 replies: hang up before reply"));
         std::thread::scope(|scope| {
             let mut carriers: Vec<Box<dyn Carrier>> = vec![Box::new(terminal)];
             let serving = scope.spawn(|| {
@@ -178,6 +187,8 @@ mod tests {
                 drop(carriers);
                 served
             });
+            // Also where an assertion fails: the scope waits for its thread.
+            let ending = Ending(&over);
             let first = fs::read_link(&link).expect("a link");
             let mut port = opened(&link);
             port.write_all(&sealed("HELLO 1")).expect("sent");
@@ -194,8 +205,9 @@ mod tests {
             assert!(hello.contains(" 9 0.100000*"), "the same controller, which remembers its move: {hello}");
             port.write_all(&sealed("STAT 2")).expect("sent");
             assert!(line(&mut *port).expect("an answer").starts_with("<ACK 2 "));
+            port.write_all(&sealed("STAT 3")).expect("sent");
             assert_eq!(line(&mut *port), None, "it hung up");
-            over.store(true, Ordering::Relaxed);
+            drop(ending);
             serving.join().expect("no panic").expect("served");
         });
         assert!(fs::symlink_metadata(&link).is_err(), "the link is gone");

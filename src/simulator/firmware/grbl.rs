@@ -105,12 +105,12 @@ impl Grbl {
             State::Hold => "Hold:0",
             State::Alarm => "Alarm",
         };
-        let feed = if bench.moving() { self.feed(bench) } else { 0.0 };
+        let feed = if bench.moving() { Self::feed(bench) } else { 0.0 };
         format!("<{state}|MPos:{:.3},0.000,0.000|FS:{feed:.0},0>\r\n", bench.commanded() * 1e3)
     }
 
     /// mm/min of the move under way.
-    fn feed(&self, bench: &Bench) -> f64 {
+    fn feed(bench: &Bench) -> f64 {
         bench.moves().last().map_or(0.0, |sent| sent.speed * 6e4)
     }
 
