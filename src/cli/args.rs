@@ -42,6 +42,31 @@ pub enum Command {
 pub enum RigCommand {
     /// Lists the serial ports of this machine
     List,
+    /// Stands in for the rig of a plan, at the plan's own port, until Ctrl-C
+    Simulate(SimulateArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes: 0 every target lay within the limits, 2 the plan, the script or the command line is wrong,\n\
+    3 a port or a file failed, 4 a target lay outside the limits.")]
+pub struct SimulateArguments {
+    /// The plan, a `.psd` file
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// What goes wrong, one fault a line: `after 12 moves: drop replies 3`
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
+    /// Every byte and every move with its time; a new file
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// Noise and faults by chance are the same for the same seed
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Ends when its last host has hung up
+    #[arg(long)]
+    pub once: bool,
 }
 
 #[derive(Debug, Args)]
