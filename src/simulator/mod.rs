@@ -2,6 +2,7 @@
 //! Out: bytes. It shares no parsing code with the drivers in `rig`, so that one cannot hide a mistake of the other.
 
 mod bench;
+pub mod firmware;
 
 pub use bench::{Bench, BenchSettings};
 
