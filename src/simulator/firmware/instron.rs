@@ -66,7 +66,10 @@ impl Instron {
             ["Q308", "1"] => Some(self.full_scale[0].to_string()),
             ["Q308", "2"] => Some(self.full_scale[1].to_string()),
             ["Q134", "1", "0"] => Some(format!("{:.8}", bench.displacement() / self.full_scale[0])),
-            ["Q134", "2", "0"] => Some(format!("{:.8}", bench.force() / self.full_scale[1])),
+            ["Q134", "2", "0"] => {
+                let raw = format!("{:.8}", bench.force() / self.full_scale[1]);
+                Some(bench.shown_force(raw))
+            }
             ["Q86", "1"] => self.console.ramp_time.map(|seconds| seconds.to_string()),
             ["Q4", "1"] => self.console.ramp_target.map(|raw| raw.to_string()),
             _ => None,
@@ -130,8 +133,11 @@ impl Instron {
                 }
             }
             ["C4", "1", raw] => {
-                if let Some(raw) = number(raw).filter(|raw| (-1.0..=1.0).contains(raw)) {
+                let raw = number(raw).unwrap_or(f64::NAN);
+                if (-1.0..=1.0).contains(&raw) {
                     console.ramp_target = Some(raw);
+                } else {
+                    bench.refuse(raw * self.full_scale[0]);
                 }
             }
             ["C1", "0"] => stop(console, bench),
@@ -140,7 +146,7 @@ impl Instron {
                     (console.position_mode, console.absolute_ramp, console.ramp_target, console.ramp_time)
                 {
                     let target = raw * self.full_scale[0];
-                    let speed = (target - bench.displacement()).abs() / seconds;
+                    let speed = (target - bench.commanded()).abs() / seconds;
                     console.ramp = Some((target, speed));
                     console.held = false;
                     bench.go(target, speed);

@@ -2,7 +2,11 @@
 
 mod instron;
 mod line_buffer;
+mod mark10;
+mod mark10_gauge;
 #[cfg(test)]
 mod testing;
 
 pub use instron::Instron;
+pub use mark10::Mark10;
+pub use mark10_gauge::Mark10Gauge;
