@@ -1,0 +1,3 @@
+//! psd as a rig for others.
+
+pub mod nees_message;
