@@ -185,8 +185,9 @@ impl<'rig> Guard<'rig> {
         self.check(LimitedQuantity::EnergyError, self.limits.energy_error, fraction.abs())
     }
 
-    /// Stops all motion and keeps the load.
+    /// Stops all motion and keeps the load. What was proposed is forgotten.
     pub fn hold(&mut self) {
+        self.proposed = None;
         self.rig.hold();
     }
 
@@ -352,6 +353,9 @@ mod tests {
         assert_eq!(guard.commanded(), [0.0], "nothing moved yet");
         assert!(guard.propose(&[0.03], None).is_err());
         assert!(guard.execute().is_err(), "the proposal before it is forgotten");
+        guard.propose(&[0.0005], None).unwrap();
+        guard.hold();
+        assert!(guard.execute().is_err(), "held in between");
         guard.propose(&[0.0005], None).unwrap();
         guard.execute().unwrap();
         assert_eq!(guard.commanded(), [0.0005]);
