@@ -1,6 +1,7 @@
 //! `psd rig …`: one file a command.
 
 mod list;
+mod serve;
 mod simulate;
 
 use super::args::RigCommand;
@@ -12,5 +13,6 @@ pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
     match command {
         RigCommand::List => list::list(),
         RigCommand::Simulate(arguments) => simulate::simulate(arguments, settings),
+        RigCommand::Serve(arguments) => serve::serve(arguments, settings),
     }
 }

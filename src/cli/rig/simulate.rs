@@ -25,9 +25,8 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
     let stopped = stopped_by_signals().map_err(Failure::Signals)?;
     let unfit = |reason: String| Failure::command_line(format!("{}: {reason}", arguments.plan.display()));
     // Nothing is made where there is nothing to stand in for.
-    of_plan(plan, &script, Log::none(), arguments.seed).map_err(|error| {
-        unfit(error.to_string()).help("name the real rig with --rig NAME, and give its specimen a behaviour")
-    })?;
+    of_plan(plan, &script, Log::none(), arguments.seed)
+        .map_err(|error| unfit(error.to_string()).help("name the real rig with --rig NAME, and give its specimen a behaviour"))?;
     let mut carriers = devices(plan).map(|(_, device)| carrier(device)).collect::<Result<Vec<_>, _>>()?;
     let log = arguments.log.as_deref().map_or_else(|| Ok(Log::none()), log)?;
     let mut stand = of_plan(plan, &script, log, arguments.seed).map_err(|error| unfit(error.to_string()))?;
