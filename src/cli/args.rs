@@ -88,6 +88,78 @@ pub enum RigCommand {
         #[arg(long)]
         yes: bool,
     },
+    /// Stands in for the rig of a plan, at the plan's own port, until Ctrl-C
+    Simulate(SimulateArguments),
+    /// Lets a coordinator or OpenSees drive the plan's rig, inside the plan's limits
+    Serve(ServeArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit codes: 0 every target lay within the limits, 2 the plan, the script or the command line is wrong,\n\
+    3 a port or a file failed, 4 a target lay outside the limits."
+)]
+pub struct SimulateArguments {
+    /// The plan, a `.psd` file
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// What goes wrong, one fault a line: `after 12 moves: drop replies 3`
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
+    /// Every byte and every move with its time; a new file
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// Noise and faults by chance are the same for the same seed
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Ends when its last host has hung up
+    #[arg(long)]
+    pub once: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Prints `ready` once it listens, and after each session what it asked of the specimen.\n\
+    Exit codes: 0 closed by the client, 2 the plan or the command line is wrong, 3 the client or the rig\n\
+    failed, 4 stopped by a limit or by a person. The worst session counts.")]
+pub struct ServeArguments {
+    /// The plan, a `.psd` file: its rig, specimen and limits count
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// What the client speaks
+    #[arg(long, value_enum)]
+    pub protocol: ServedProtocol,
+    /// Where to listen; port 0: any free one. Other machines reach only another address than the loopback's
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8090")]
+    pub listen: std::net::SocketAddr,
+    /// The constant stiffness that a generic client is told [default: the specimen's initial one]
+    #[arg(long, value_name = "STIFFNESS")]
+    pub stiffness: Option<String>,
+    /// Ends after the first session
+    #[arg(long)]
+    pub once: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ServedProtocol {
+    /// NEES "LabVIEW plugin" ASCII, of OpenFresco and UI-SimCor
+    Nees,
+    /// The socket of OpenSees' `genericClient` and of OpenFresco's `GenericTCP`
+    GenericClient,
+}
+
+impl ServedProtocol {
+    /// The word of the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nees => "nees",
+            Self::GenericClient => "generic-client",
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use sha2::{Digest as _, Sha256};
 
+use super::record_file::Circumstances;
 use crate::output::Provenance;
 use crate::plan::Plan;
 
@@ -19,6 +20,17 @@ pub fn of(plan: &Plan) -> Provenance {
         plan_sha256: hex(&Sha256::digest(text.as_bytes())),
         date,
     }
+}
+
+/// The provenance of a run on a real rig: no two are the same, so that who, where and when are part of its id.
+pub fn of_real_run(plan: &Plan, circumstances: &Circumstances) -> Provenance {
+    let provenance = of(plan);
+    let Circumstances { operator, host, began } = circumstances;
+    let told = [Some(provenance.run_id.clone()), operator.clone(), host.clone(), began.clone()];
+    let text: Vec<String> =
+        told.into_iter().map(|part| part.map_or("-".to_owned(), |part| format!("{}:{part}", part.len()))).collect();
+    let date = provenance.date.clone().or_else(|| began.as_ref().and_then(|began| began.get(..10)).map(str::to_owned));
+    Provenance { run_id: sha256(text.join(" ").as_bytes())[..16].to_owned(), date, ..provenance }
 }
 
 /// The first 16 hex digits of SHA-256 over the plan and every file it used, the settings, the rig with its seed, and

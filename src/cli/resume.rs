@@ -4,13 +4,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{PlanSettings, ResumeArguments};
+use super::args::ResumeArguments;
 use super::conclude::conclude;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::{give, tell};
 use super::record_file::{self, BUILD, ReadRecord, journal_of};
 use super::settings::Settings;
+use super::watch::Attendance;
 use super::{plan_file, provenance, real_rig};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
@@ -48,9 +49,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         tape::amend(&mut journal, amendment, texts)?;
     }
 
-    let mut opened = real_rig::open(&plan, &arguments.operator, arguments.yes, settings)?;
-    let resumption = settle(arguments, &plan, &link, &read.played, opened.rig.as_mut())?;
-    let about = RigBody { t: read.played.time, ..RigBody::of(opened.rig.as_ref()) };
+    let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
+    let mut opened = real_rig::open(&plan, &attendance, settings)?;
+    let resumption = settle(arguments, &plan, &link, &read.played, &mut opened.connected.rig)?;
+    let about = RigBody { t: read.played.time, ..RigBody::of(&opened.connected.rig) };
     journal.append(EntryKind::Rig, &about)?;
     journal.append(EntryKind::Resume, &resumption)?;
     journal.sync()?;
@@ -58,8 +60,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let played = played(&path)?;
     put_results_aside(&arguments.run)?;
     let wall = real_rig::wall_clock();
-    let recorded = tape::resume(&plan, played, opened.rig.as_mut(), &mut opened.watcher, journal, wall);
-    opened.finish();
+    let recorded = tape::resume(&plan, played, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
+    opened.watcher.finish();
     let (exit, _) = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
     give(&format!("{}\n", arguments.run.display()))?;
     Ok(exit)
@@ -81,7 +83,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
     }
     let (mut plan, mut header, mut texts) = (read.plan.clone(), recorded.clone(), read.played.texts.clone());
     if let Some(path) = &arguments.plan {
-        let options = PlanSettings { rig: recorded.rig.clone(), set: recorded.settings.clone(), date: recorded.date.clone() };
+        let options = real_rig::settings_of(recorded);
         let checked = plan_file::open(path, &options)?;
         let Some(given) = checked.plan else {
             return Err(Failure::command_line(format!("{} has errors: see `psd check`", path.display())));

@@ -10,13 +10,13 @@ use super::record_file::{self, Circumstances, journal_of};
 use super::run_folder::RunFolder;
 use super::settings::Settings;
 use super::watch::{Attendance, Watcher};
-use super::{plan_file, provenance};
+use super::{plan_file, provenance, real_rig};
 use crate::diagnostic::json;
-use crate::output::OutputFile;
-use crate::plan::Plan;
+use crate::output::{OutputFile, Provenance};
+use crate::plan::{Link, Plan};
 use crate::record::journal::{Durability, FileStorage, Journal};
 use crate::rig::{Rig as _, VirtualRig, Wish};
-use crate::run::tape;
+use crate::run::tape::{self, Recorded};
 
 /// Runs one plan.
 pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -29,18 +29,11 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         return Ok(Exit::Wrong);
     };
     let blessed = arguments.bless.then(|| BlessedFolder::of(&arguments.plan)).transpose()?;
-    let mut rig = VirtualRig::of_plan(plan);
     let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
-    let simulated = rig.identity().simulated;
-    let mut watcher = Watcher::new(settings, &attendance, plan, simulated, Wish::default()).map_err(Failure::Signals)?;
-    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
-    let provenance = provenance::of(plan);
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
-    let journal = begin(&folder, plan, &header)?;
-
-    let recorded = tape::record(plan, &mut rig, &mut watcher, journal, Box::new(|| None));
-    watcher.finish();
-
+    let (folder, provenance, recorded) = match plan.rig.link {
+        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, &attendance, settings)?,
+        Link::Real(_) => on_a_real_rig(plan, arguments, &attendance, settings)?,
+    };
     let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         if exit <= Exit::Missed {
@@ -55,6 +48,34 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         Format::Json => give(&String::from_utf8_lossy(summary(&files)))?,
     }
     Ok(exit)
+}
+
+type Ran = (RunFolder, Provenance, Recorded);
+
+/// Nothing is read of the machine, and no time passes.
+fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
+    let mut watcher = Watcher::new(settings, attendance, plan, true, Wish::default()).map_err(Failure::Signals)?;
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let provenance = provenance::of(plan);
+    let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
+    let journal = begin(&folder, plan, &header)?;
+    let recorded = tape::record(plan, &mut VirtualRig::of_plan(plan), &mut watcher, journal, Box::new(|| None));
+    watcher.finish();
+    Ok((folder, provenance, recorded))
+}
+
+/// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
+fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
+    let mut opened = real_rig::open(plan, attendance, settings)?;
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let circumstances = real_rig::circumstances(plan, attendance);
+    let provenance = provenance::of_real_run(plan, &circumstances);
+    let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
+    let journal = begin(&folder, plan, &header)?;
+    let wall = real_rig::wall_clock();
+    let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
+    opened.watcher.finish();
+    Ok((folder, provenance, recorded))
 }
 
 /// Opens the record of a run that is about to begin.

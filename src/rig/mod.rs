@@ -2,6 +2,7 @@
 //! degree of freedom. A virtual rig and a real one are the same to `run`, which drives them only through the guard.
 
 mod actuator;
+mod connect;
 pub mod device;
 pub mod dialect;
 pub mod failpoint;
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Dimension, display};
 
+pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
 pub use wish::Wish;

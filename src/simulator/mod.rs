@@ -2,8 +2,30 @@
 //! Out: bytes. It shares no parsing code with the drivers in `rig`, so that one cannot hide a mistake of the other.
 
 mod bench;
+mod bench_fault;
+mod faulty;
+pub mod firmware;
+mod in_process;
+mod log;
+mod of_plan;
+mod pseudo_terminal;
+pub mod script;
+pub mod serve;
+mod stand;
+mod tcp;
+#[cfg(test)]
+mod testing;
 
-pub use bench::{Bench, BenchSettings};
+pub use bench::{Bench, BenchSettings, SentMove};
+pub use bench_fault::BenchFault;
+pub use faulty::Faulty;
+pub use in_process::{InProcess, SimulatedClock, SimulatedPort};
+pub use log::Log;
+pub use of_plan::{NoStandIn, of_plan};
+pub use pseudo_terminal::PseudoTerminal;
+pub use script::Script;
+pub use stand::Stand;
+pub use tcp::TcpLine;
 
 /// What a controller's firmware does. It owns its dialect; the [`Bench`] owns motion, specimen and sensors.
 pub trait Firmware: Send {

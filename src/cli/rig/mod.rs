@@ -4,6 +4,8 @@ mod jog;
 mod list;
 mod monitor;
 mod probe;
+mod serve;
+mod simulate;
 
 use std::path::Path;
 
@@ -12,7 +14,7 @@ use super::exit::{Exit, Failure};
 use super::plan_file;
 use super::settings::Settings;
 use crate::plan::{Link, Plan};
-use crate::rig::{Rig, VirtualRig, Wish};
+use crate::rig::{Rig, VirtualRig, Wish, connect};
 
 /// Does one of the commands.
 pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
@@ -42,8 +44,13 @@ fn with_rig(
     plan_file::show(&checked, path, settings);
     let Some(plan) = &checked.plan else { return Ok(Exit::Wrong) };
     let wish = Wish::default();
-    let mut rig = open_rig(plan, &wish)?;
-    what(rig.as_mut(), plan, &wish)
+    match &plan.rig.link {
+        Link::Virtual(_) => what(&mut VirtualRig::of_plan(plan), plan, &wish),
+        Link::Real(_) => {
+            let mut connected = connect(&plan.rig, &plan.limits, &wish)?;
+            what(&mut connected.rig, plan, &wish)
+        }
+    }
 }
 
 /// The rig of the plan, which is told the wish.
@@ -54,5 +61,7 @@ fn open_rig(plan: &Plan, _wish: &Wish) -> Result<Box<dyn Rig>, Failure> {
             let message = format!("the rig `{}` is a real one; these commands open virtual rigs only", plan.rig.name);
             Err(Failure::command_line(message).help("name a virtual rig of the plan with `--rig`"))
         }
+        RigCommand::Simulate(arguments) => simulate::simulate(arguments, settings),
+        RigCommand::Serve(arguments) => serve::serve(arguments, settings),
     }
 }

@@ -1,0 +1,30 @@
+//! One stand-in controller a file, each with its dialect written from the manuals and from nothing of the drivers.
+
+mod grbl;
+mod hx711;
+mod indicator;
+mod instron;
+mod line_buffer;
+mod mark10;
+mod mark10_gauge;
+mod modbus;
+mod modbus_frame;
+mod modbus_registers;
+mod native;
+mod nees;
+mod scpi;
+#[cfg(test)]
+mod testing;
+
+pub use grbl::Grbl;
+pub use hx711::Hx711;
+pub use indicator::Indicator;
+pub use instron::Instron;
+pub use mark10::Mark10;
+pub use mark10_gauge::Mark10Gauge;
+pub use modbus::Modbus;
+#[cfg(test)]
+pub use native::sealed;
+pub use native::{Native, NativeSettings};
+pub use nees::Nees;
+pub use scpi::Scpi;

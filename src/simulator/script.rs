@@ -1,0 +1,437 @@
+//! A script of faults: text → what goes wrong, and when. In: lines such as `after 12 moves: drop replies 3`. Out: a
+//! [`Script`], or the line and the reason why there is none. It makes nothing go wrong itself.
+//!
+//! A line is `WHEN: WHAT`; `#` begins a comment. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3
+//! replies`, `each reply` or `each reading`; the last two may end with a probability, `with 0.01`. WHAT may begin with
+//! `load cell`, which is then the line it befalls. WHAT is one of
+//!
+//! ```text
+//! drop REPLIES                     split REPLIES at 5 bytes        split REPLIES every 1 bytes
+//! cut REPLIES at 5 bytes           repeat REPLIES                  replay REPLIES (the one before in its place)
+//! delay REPLIES 0.4 s              flip a bit [of REPLIES]         flip bit 17 [of REPLIES]
+//! garbage 20 bytes before [REPLIES]      (or inside, or after)     fill 1048576 bytes of 41 before [REPLIES]
+//! hang up                          hang up before reply            hang up after reply
+//! reboot                           stop reading                    freeze firmware 5 s
+//! freeze force                     freeze displacement             scale force by -1
+//! scale displacement by 25.4       clip force at 900 N             drift force 2 N/s
+//! spike 500 N                      number 9.91E37                  number ""
+//! reach 40 %                       stick                           lag 0.2 s
+//! fracture at 3 mm to 10 %
+//! ```
+//!
+//! where REPLIES is `reply`, `replies 3` or `replies for ever`. What is counted in moves or readings befalls the reply
+//! to the last of them; `after 3 replies` befalls the fourth.
+
+use super::bench_fault::BenchFault;
+
+/// What is to go wrong, in the order of its lines.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Script {
+    pub faults: Vec<Fault>,
+}
+
+/// One line of a script.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// On the line of the load cell rather than of the actuator.
+    pub on_load_cell: bool,
+    pub when: When,
+    pub what: What,
+}
+
+/// When it strikes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// s since power-up.
+    At(f64),
+    AfterMoves(u64),
+    AfterReadings(u64),
+    AfterReplies(u64),
+    /// With a probability, 0 to 1.
+    EachReply(f64),
+    EachReading(f64),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    /// This many replies, or all from then on.
+    Replies(ReplyFault, Option<u64>),
+    Line(LineFault),
+    Bench(BenchFault),
+}
+
+/// What befalls a reply on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplyFault {
+    Drop,
+    /// In two pieces, the first of this many bytes.
+    SplitAt(usize),
+    SplitEvery(usize),
+    /// Only its first bytes come.
+    CutAt(usize),
+    /// The bit, counted from the first of the reply; None: any.
+    FlipBit(Option<usize>),
+    /// So many bytes more: of this value, or of any.
+    Garbage {
+        count: usize,
+        byte: Option<u8>,
+        place: Place,
+    },
+    Repeat,
+    Replay,
+    /// ms
+    Delay(u64),
+    HangUpBefore,
+    HangUpAfter,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    Before,
+    Inside,
+    After,
+}
+
+/// What befalls a line or its controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineFault {
+    HangUp,
+    Reboot,
+    /// Takes no byte any more.
+    StopReading,
+    /// Does nothing for this long, s; what came meanwhile is heard afterwards.
+    FreezeFirmware(f64),
+}
+
+/// Why a text is no script.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {reason}")]
+pub struct ScriptError {
+    /// From 1.
+    pub line: usize,
+    pub reason: String,
+}
+
+impl Script {
+    /// Reads a script.
+    ///
+    /// # Errors
+    /// The first line that says nothing known.
+    pub fn parse(text: &str) -> Result<Self, ScriptError> {
+        let mut faults = Vec::new();
+        for (at, line) in text.lines().enumerate() {
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if !line.is_empty() {
+                faults.push(fault(line).map_err(|reason| ScriptError { line: at + 1, reason })?);
+            }
+        }
+        Ok(Self { faults })
+    }
+}
+
+fn fault(line: &str) -> Result<Fault, String> {
+    let (when, what) = line.split_once(':').ok_or("no `:` between when and what")?;
+    let mut words = Words(what.split_whitespace().collect());
+    let probability = words.probability()?;
+    let when = self::when(when, probability)?;
+    let on_load_cell = words.take(&["load", "cell"]);
+    let what = self::what(&mut words)?;
+    words.end()?;
+    match (&when, &what) {
+        (When::EachReading(_), What::Bench(BenchFault::Spike(_) | BenchFault::Number(_)))
+        | (When::EachReply(_), What::Replies(..)) => {}
+        (When::EachReading(_), _) => return Err("each reading can have a spike or a bad number only".to_owned()),
+        (When::EachReply(_), _) => return Err("each reply can have only what befalls a reply".to_owned()),
+        _ => {}
+    }
+    Ok(Fault { on_load_cell, when, what })
+}
+
+fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
+    let mut words = Words(text.split_whitespace().collect());
+    let when = if words.take(&["at"]) {
+        When::At(words.amount("s")?)
+    } else if words.take(&["after"]) {
+        let count = words.count()?;
+        match words.next()? {
+            "move" | "moves" => When::AfterMoves(count),
+            "reading" | "readings" => When::AfterReadings(count),
+            "reply" | "replies" => When::AfterReplies(count),
+            other => return Err(format!("`{other}` is not counted: moves, readings and replies are")),
+        }
+    } else if words.take(&["each", "reply"]) {
+        When::EachReply(probability.unwrap_or(1.0))
+    } else if words.take(&["each", "reading"]) {
+        When::EachReading(probability.unwrap_or(1.0))
+    } else {
+        return Err(format!("`{}` is no time: write `at`, `after`, `each reply` or `each reading`", text.trim()));
+    };
+    words.end()?;
+    if probability.is_some() && !matches!(when, When::EachReply(_) | When::EachReading(_)) {
+        return Err("a probability goes with `each reply` and `each reading`".to_owned());
+    }
+    Ok(when)
+}
+
+fn what(words: &mut Words<'_>) -> Result<What, String> {
+    let verb = words.next()?;
+    let reply = |words: &mut Words<'_>, fault| Ok(What::Replies(fault, words.replies()?));
+    match verb {
+        "drop" => reply(words, ReplyFault::Drop),
+        "repeat" => reply(words, ReplyFault::Repeat),
+        "replay" => reply(words, ReplyFault::Replay),
+        "split" => {
+            let replies = words.replies()?;
+            let at = words.next()?;
+            let bytes = words.bytes()?;
+            match at {
+                "at" => Ok(What::Replies(ReplyFault::SplitAt(bytes), replies)),
+                "every" if bytes > 0 => Ok(What::Replies(ReplyFault::SplitEvery(bytes), replies)),
+                _ => Err("split at some bytes, or every so many".to_owned()),
+            }
+        }
+        "cut" => {
+            let replies = words.replies()?;
+            words.expect("at")?;
+            Ok(What::Replies(ReplyFault::CutAt(words.bytes()?), replies))
+        }
+        "delay" => {
+            let replies = words.replies()?;
+            let seconds = words.amount("s")?;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded, and not negative")]
+            let milliseconds = (seconds.clamp(0.0, 1e6) * 1e3) as u64;
+            Ok(What::Replies(ReplyFault::Delay(milliseconds), replies))
+        }
+        "flip" => {
+            let bit = if words.take(&["a", "bit"]) {
+                None
+            } else {
+                words.expect("bit")?;
+                Some(words.size()?)
+            };
+            let replies = if words.take(&["of"]) { words.replies()? } else { Some(1) };
+            Ok(What::Replies(ReplyFault::FlipBit(bit), replies))
+        }
+        "garbage" | "fill" => {
+            let count = words.bytes()?;
+            let byte = if verb == "fill" {
+                words.expect("of")?;
+                let word = words.next()?;
+                Some(u8::from_str_radix(word, 16).map_err(|_| format!("`{word}` is no byte in hexadecimal"))?)
+            } else {
+                None
+            };
+            let place = match words.next()? {
+                "before" => Place::Before,
+                "inside" => Place::Inside,
+                "after" => Place::After,
+                other => return Err(format!("`{other}` is no place: before, inside or after")),
+            };
+            let replies = if words.ended() { Some(1) } else { words.replies()? };
+            Ok(What::Replies(ReplyFault::Garbage { count, byte, place }, replies))
+        }
+        "hang" => {
+            words.expect("up")?;
+            if words.take(&["before", "reply"]) {
+                Ok(What::Replies(ReplyFault::HangUpBefore, Some(1)))
+            } else if words.take(&["after", "reply"]) {
+                Ok(What::Replies(ReplyFault::HangUpAfter, Some(1)))
+            } else {
+                Ok(What::Line(LineFault::HangUp))
+            }
+        }
+        "reboot" => Ok(What::Line(LineFault::Reboot)),
+        "stop" => {
+            words.expect("reading")?;
+            Ok(What::Line(LineFault::StopReading))
+        }
+        "freeze" if words.take(&["firmware"]) => Ok(What::Line(LineFault::FreezeFirmware(words.amount("s")?))),
+        _ => bench_fault(verb, words).map(What::Bench),
+    }
+}
+
+fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> {
+    match verb {
+        "freeze" => match words.next()? {
+            "force" => Ok(BenchFault::FreezeForce),
+            "displacement" => Ok(BenchFault::FreezeDisplacement),
+            other => Err(format!("`{other}` does not freeze: firmware, force and displacement do")),
+        },
+        "scale" => {
+            let of = words.next()?;
+            words.expect("by")?;
+            let factor = words.number()?;
+            match of {
+                "force" => Ok(BenchFault::ScaleForce(factor)),
+                "displacement" => Ok(BenchFault::ScaleDisplacement(factor)),
+                other => Err(format!("`{other}` has no scale: force and displacement have")),
+            }
+        }
+        "clip" => {
+            words.expect("force")?;
+            words.expect("at")?;
+            Ok(BenchFault::ClipForce(words.amount("N")?))
+        }
+        "drift" => {
+            words.expect("force")?;
+            Ok(BenchFault::Drift(words.amount("N/s")?))
+        }
+        "spike" => Ok(BenchFault::Spike(words.amount("N")?)),
+        "number" => Ok(BenchFault::Number(words.next()?.trim_matches('"').to_owned())),
+        "reach" => Ok(BenchFault::Reach(words.amount("%")? / 100.0)),
+        "stick" => Ok(BenchFault::Reach(0.0)),
+        "lag" => Ok(BenchFault::Lag(words.amount("s")?)),
+        "fracture" => {
+            words.expect("at")?;
+            let displacement = words.amount("mm")? * 1e-3;
+            words.expect("to")?;
+            Ok(BenchFault::Fracture { displacement, left: words.amount("%")? / 100.0 })
+        }
+        other => Err(format!("`{other}` is no fault that is known")),
+    }
+}
+
+/// The words of half a line that are not yet read.
+struct Words<'a>(std::collections::VecDeque<&'a str>);
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Result<&'a str, String> {
+        self.0.pop_front().ok_or_else(|| "the line ends too early".to_owned())
+    }
+
+    fn take(&mut self, words: &[&str]) -> bool {
+        let found = self.0.iter().take(words.len()).eq(words);
+        if found {
+            self.0.drain(..words.len());
+        }
+        found
+    }
+
+    fn expect(&mut self, word: &str) -> Result<(), String> {
+        let found = self.next()?;
+        if found == word { Ok(()) } else { Err(format!("`{found}` stands where `{word}` is expected")) }
+    }
+
+    fn ended(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn end(&self) -> Result<(), String> {
+        self.0.front().map_or(Ok(()), |word| Err(format!("`{word}` is one word too many")))
+    }
+
+    fn count(&mut self) -> Result<u64, String> {
+        let word = self.next()?;
+        word.parse().map_err(|_| format!("`{word}` is no count"))
+    }
+
+    fn size(&mut self) -> Result<usize, String> {
+        let word = self.next()?;
+        word.parse().map_err(|_| format!("`{word}` is no count"))
+    }
+
+    fn bytes(&mut self) -> Result<usize, String> {
+        let count = self.size()?;
+        match self.next()? {
+            "byte" | "bytes" if count <= 16 << 20 => Ok(count),
+            "byte" | "bytes" => Err(format!("{count} bytes are too many: 16 MiB is the most")),
+            other => Err(format!("`{other}` stands where `bytes` is expected")),
+        }
+    }
+
+    fn number(&mut self) -> Result<f64, String> {
+        let word = self.next()?;
+        word.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| format!("`{word}` is no number"))
+    }
+
+    /// A number with its one unit.
+    fn amount(&mut self, unit: &str) -> Result<f64, String> {
+        let value = self.number()?;
+        self.expect(unit)?;
+        Ok(value)
+    }
+
+    /// `reply`, `replies 3`, `replies for ever`.
+    fn replies(&mut self) -> Result<Option<u64>, String> {
+        match self.next()? {
+            "reply" => Ok(Some(1)),
+            "replies" if self.take(&["for", "ever"]) => Ok(None),
+            "replies" => self.count().map(Some),
+            other => Err(format!("`{other}` stands where `reply` or `replies` is expected")),
+        }
+    }
+
+    /// `with 0.01` at the end.
+    fn probability(&mut self) -> Result<Option<f64>, String> {
+        let Some(at) = self.0.iter().position(|word| *word == "with") else { return Ok(None) };
+        let mut rest = Words(self.0.split_off(at));
+        rest.expect("with")?;
+        let probability = rest.number()?;
+        rest.end()?;
+        let sound = (0.0..=1.0).contains(&probability);
+        if sound { Ok(Some(probability)) } else { Err(format!("{probability} is no probability")) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(line: &str) -> Fault {
+        let script = Script::parse(line).unwrap_or_else(|error| panic!("{line}: {error}"));
+        script.faults.into_iter().next().expect("a fault")
+    }
+
+    #[test]
+    fn a_line_says_when_and_what() {
+        let fault = one("after 12 moves: drop replies 3  # and why");
+        assert_eq!(
+            fault,
+            Fault { on_load_cell: false, when: When::AfterMoves(12), what: What::Replies(ReplyFault::Drop, Some(3)) }
+        );
+        assert_eq!(one("at 4.5 s: hang up").when, When::At(4.5));
+        assert_eq!(one("after 20 readings: spike 500 N").what, What::Bench(BenchFault::Spike(500.0)));
+        assert_eq!(one("each reply: flip a bit with 0.01").when, When::EachReply(0.01));
+        assert!(one("at 0 s: load cell split replies for ever every 1 bytes").on_load_cell);
+        assert_eq!(one("at 1 s: number \"\"").what, What::Bench(BenchFault::Number(String::new())));
+        let fill = ReplyFault::Garbage { count: 3, byte: Some(255), place: Place::Inside };
+        assert_eq!(one("after 1 reply: fill 3 bytes of ff inside").what, What::Replies(fill, Some(1)));
+        assert_eq!(
+            one("at 1 s: fracture at 3 mm to 10 %").what,
+            What::Bench(BenchFault::Fracture { displacement: 0.003, left: 0.1 })
+        );
+    }
+
+    #[test]
+    fn every_line_of_the_description_is_read() {
+        let text = include_str!("script.rs");
+        let described = text.lines().skip_while(|line| *line != "//! ```text").skip(1).take_while(|line| *line != "//! ```");
+        let mut count = 0;
+        for phrase in described.flat_map(|line| line.trim_start_matches("//! ").split("  ")) {
+            let phrase = phrase.split('(').next().unwrap_or_default().trim();
+            if !phrase.is_empty() {
+                let plain = phrase.replace("[of REPLIES]", "of REPLIES").replace("[REPLIES]", "REPLIES");
+                for replies in ["reply", "replies 3", "replies for ever"] {
+                    one(&format!("at 1 s: {}", plain.replace("REPLIES", replies)));
+                }
+                count += 1;
+            }
+        }
+        assert_eq!(count, 30, "as many phrases as there are");
+    }
+
+    #[test]
+    fn a_wrong_line_is_named_with_its_reason() {
+        let reason = |text: &str| Script::parse(text).expect_err(text).to_string();
+        assert_eq!(reason("# fine\n\nat 1 s hang up"), "line 3: no `:` between when and what");
+        assert_eq!(reason("at nan s: hang up"), "line 1: `nan` is no number");
+        assert_eq!(reason("at 1 ms: hang up"), "line 1: `ms` stands where `s` is expected");
+        assert_eq!(reason("after 3 steps: reboot"), "line 1: `steps` is not counted: moves, readings and replies are");
+        assert_eq!(reason("at 1 s: explode"), "line 1: `explode` is no fault that is known");
+        assert_eq!(reason("at 1 s: reboot now"), "line 1: `now` is one word too many");
+        assert_eq!(reason("each reply: drop reply with 2"), "line 1: 2 is no probability");
+        assert_eq!(reason("at 1 s: drop reply with 0.5"), "line 1: a probability goes with `each reply` and `each reading`");
+        assert_eq!(reason("each reading: reboot"), "line 1: each reading can have a spike or a bad number only");
+        assert_eq!(reason("at 1 s: drop replies"), "line 1: the line ends too early");
+    }
+}
