@@ -15,7 +15,7 @@ use crate::diagnostic::json;
 use crate::output::{OutputFile, Provenance};
 use crate::plan::{Link, Plan};
 use crate::record::journal::{Durability, FileStorage, Journal};
-use crate::rig::{Rig as _, VirtualRig, Wish};
+use crate::rig::{VirtualRig, Wish};
 use crate::run::tape::{self, Recorded};
 
 /// Runs one plan.

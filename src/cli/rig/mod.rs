@@ -30,6 +30,8 @@ pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
             let asked = jog::Asked { to: to.as_deref(), speed: speed.as_deref(), yes: *yes };
             with_rig(plan, plan_settings, settings, |rig, plan, wish| jog::jog(rig, plan, &asked, wish, settings))
         }
+        RigCommand::Simulate(arguments) => simulate::simulate(arguments, settings),
+        RigCommand::Serve(arguments) => serve::serve(arguments, settings),
     }
 }
 
@@ -50,18 +52,5 @@ fn with_rig(
             let mut connected = connect(&plan.rig, &plan.limits, &wish)?;
             what(&mut connected.rig, plan, &wish)
         }
-    }
-}
-
-/// The rig of the plan, which is told the wish.
-fn open_rig(plan: &Plan, _wish: &Wish) -> Result<Box<dyn Rig>, Failure> {
-    match &plan.rig.link {
-        Link::Virtual(_) => Ok(Box::new(VirtualRig::of_plan(plan))),
-        Link::Real(_) => {
-            let message = format!("the rig `{}` is a real one; these commands open virtual rigs only", plan.rig.name);
-            Err(Failure::command_line(message).help("name a virtual rig of the plan with `--rig`"))
-        }
-        RigCommand::Simulate(arguments) => simulate::simulate(arguments, settings),
-        RigCommand::Serve(arguments) => serve::serve(arguments, settings),
     }
 }
