@@ -2,14 +2,26 @@
 //! does nothing else: settling, limits, medians and the record are not its business.
 
 mod asking;
+mod grbl;
+mod hx711;
+mod indicator;
 mod line;
-pub mod native;
+mod native;
+mod open;
+mod scpi;
+mod stream;
 
 use crate::plan::Limits;
 
 use super::{LastMove, Tally};
 
+pub use grbl::GrblDevice;
+pub use hx711::Hx711Device;
+pub use indicator::IndicatorDevice;
 pub use line::{Answer, LONGEST_LINE, Missed, SLICE, Talk};
+pub use native::{NativeDevice, SIMULATED};
+pub use open::open;
+pub use scpi::ScpiDevice;
 
 /// Who a device says it is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
