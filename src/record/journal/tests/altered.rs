@@ -82,6 +82,8 @@ fn a_record_of_another_run_is_refused() {
     let other = said(&[(1, EntryKind::Header, r#"{"format":1,"run":"other"}"#), (2, EntryKind::Event, "{}")]);
     let spliced = [lines(&said(&[HEADER]))[0].clone(), lines(&other)[1].clone()].concat();
     assert_eq!(recover(&spliced).unwrap_err().reason, Wrong::Chain);
+    let before_zeros = [&spliced[..], &[0; 100]].concat();
+    assert_eq!(recover(&before_zeros).unwrap_err().reason, Wrong::Chain, "a sound line is never torn, whatever follows it");
 }
 
 #[test]

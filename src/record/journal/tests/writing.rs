@@ -147,6 +147,19 @@ fn last_words_fit_on_a_full_disk_thanks_to_the_reserve() {
 }
 
 #[test]
+fn a_disk_that_fills_in_a_resumed_run_loses_nothing_of_the_first() {
+    let disk = SickDisk::new(Sickness { room: Some(700), reserve: 4096, ..Sickness::default() });
+    drop(on(&disk));
+    let found = recover(&disk.written()).unwrap();
+    let mut resumed = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &found);
+    while resumed.append(EntryKind::Resume, &json!({"who": "J. Doe"})).is_ok() {}
+    resumed.last_words(EntryKind::Fault, &json!({})).unwrap();
+    let found = recover(&disk.written()).unwrap();
+    assert_eq!(found.lines.len() as u64, resumed.len());
+    assert_eq!((found.lines[0].kind, found.torn), (EntryKind::Header, None));
+}
+
+#[test]
 fn without_a_reserve_last_words_fail_and_harm_nothing() {
     for uncuttable in [false, true] {
         let disk = SickDisk::new(Sickness { room: Some(300), uncuttable, ..Sickness::default() });
