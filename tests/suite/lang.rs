@@ -224,6 +224,33 @@ fn every_required_field_and_argument_has_a_case() {
     assert!(wanted.is_empty(), "no case in tests/lang/check_error for: {}", wanted.join(", "));
 }
 
+/// The real rigs of `plans/lib` are whole: a plan on each of them has no fault, and the beam's moves it only when named.
+#[test]
+fn the_rigs_of_the_library_are_sound() {
+    let plans = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans");
+    let on = |text: &str, rig: Option<&str>| {
+        let options = Options { rig: rig.map(str::to_owned), ..Options::default() };
+        let checked = check("plan.psd", text, &Folder(&plans), &options);
+        assert!(!checked.diagnostics.iter().any(|it| it.is_error()), "{rig:?}: {:?}", checked.diagnostics);
+        checked.plan.expect("no error stands").rig
+    };
+    let text = "use \"lib/bench_rig.psd\"\nspecimen beam { mass = 1 kg }\nmove out { to = 1 mm }\n";
+    for (rig, dialects) in
+        [("native_frame", ("native", None)), ("stepper_frame", ("grbl", Some("hx711"))), ("laboratory_frame", ("nees", None))]
+    {
+        let chosen = on(text, Some(rig));
+        let link = chosen.link.as_real().expect("a real rig");
+        let cell = link.load_cell.as_ref().map(|cell| cell.dialect.name());
+        assert_eq!((link.actuator.dialect.name(), cell), dialects);
+    }
+    let beam = fs::read_to_string(plans.join("beam.psd")).expect("the plan is there");
+    assert_eq!(on(&beam, None).name, "rehearsal");
+    assert_eq!(
+        on(&beam, Some("bench")).link.as_real().map(|link| link.actuator.port.to_string()),
+        Some("/tmp/psd-bench".to_owned())
+    );
+}
+
 #[test]
 fn every_block_has_a_case_that_is_right() {
     let cases = cases();

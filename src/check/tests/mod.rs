@@ -2,6 +2,7 @@
 
 mod faults;
 mod plan;
+mod real_rig;
 
 use super::{Checked, LoadFault, Loader, Options, check};
 
