@@ -101,12 +101,13 @@ impl Failure {
     pub const fn exit(&self) -> Exit {
         match self {
             Self::CommandLine { .. } | Self::NotAPlan { .. } => Exit::Wrong,
+            Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted) => Exit::Stopped,
             Self::File { .. }
             | Self::Output(_)
             | Self::Stdout(_)
             | Self::Record(_)
             | Self::Journal(_)
-            | Self::Rig(_)
+            | Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Refused(_)
             | Self::Signals(_) => Exit::Fault,
         }

@@ -148,6 +148,8 @@ impl Model {
             EventKind::Hold => "hold",
             EventKind::Fault => "fault",
             EventKind::Remark => "remark",
+            EventKind::Resume => "resume",
+            EventKind::Amendment => "amendment",
         }
     }
 }
