@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(&buffer[..5], b"\x00\xff\r\n\x03", "raw");
         master.write_all(b"late").unwrap();
         // The flush must find the bytes there.
-        while port._line.bytes_to_read().unwrap() < 4 {
+        while rustix::io::ioctl_fionread(&port.descriptor).unwrap() < 4 {
             std::thread::yield_now();
         }
         port.discard().unwrap();

@@ -72,7 +72,7 @@ impl RealRig {
     }
 
     /// A fault of a device, said of the rig.
-    fn told(&mut self, part: Part, fault: DeviceFault) -> RigFault {
+    fn told(&mut self, part: Part, fault: &DeviceFault) -> RigFault {
         let place = match (part, &self.link.load_cell) {
             (Part::LoadCell, Some(cell)) => format!("load cell on {}", cell.port),
             _ => format!("actuator on {}", self.link.actuator.port),
@@ -126,7 +126,7 @@ impl Rig for RealRig {
             _ => return Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", targets.len()))),
         };
         let speed = speed.unwrap_or(self.link.own_speed);
-        let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, fault))?;
+        let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
         let said = self.sign * going.target;
         // What the devices resolve is as near as they can say it.
         let allowed = WIRE_ROUNDING.max(self.link.readings.resolution / 2.0) * (1.0 + 1e-6);

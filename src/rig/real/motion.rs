@@ -110,7 +110,7 @@ impl RealRig {
     fn set_off(&mut self, from: f64) -> Result<(f64, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
         let Proposed { going, target } = self.proposed.take().ok_or_else(nothing)?;
-        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, fault))?;
+        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         self.deaf = false;
         self.look_up()?;
         Ok((target, (target - from).abs() / going.speed))

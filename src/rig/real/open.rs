@@ -50,13 +50,13 @@ impl RealRig {
 
     /// Asks who is there.
     fn meet(&mut self) -> Result<(), RigFault> {
-        let actuator = self.actuator.identify().map_err(|fault| self.told(Part::Actuator, fault))?;
+        let actuator = self.actuator.identify().map_err(|fault| self.told(Part::Actuator, &fault))?;
         let fit = pinned(&self.link.actuator, &actuator);
-        fit.map_err(|fault| self.told(Part::Actuator, fault))?;
+        fit.map_err(|fault| self.told(Part::Actuator, &fault))?;
         let mut said = vec![actuator.clone()];
         if let (Some(cell), Some(link)) = (&mut self.load_cell, &self.link.load_cell) {
             let met = cell.identify().and_then(|identity| pinned(link, &identity).map(|()| identity));
-            said.push(met.map_err(|fault| self.told(Part::LoadCell, fault))?);
+            said.push(met.map_err(|fault| self.told(Part::LoadCell, &fault))?);
         }
         let all = |field: fn(&DeviceIdentity) -> &str| {
             said.iter().map(field).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ")
@@ -79,9 +79,9 @@ impl RealRig {
             if self.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
         };
         let own = Limits { displacement: turned(limits.displacement), force: turned(limits.force), ..*limits };
-        self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, fault))?;
+        self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, &fault))?;
         if let Some(cell) = &mut self.load_cell {
-            cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, fault))?;
+            cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, &fault))?;
         }
         Ok(())
     }

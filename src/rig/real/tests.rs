@@ -201,7 +201,7 @@ impl RealRig {
     /// Sends what was offered and looks no further.
     fn execute_briefly(&mut self) -> Result<(), RigFault> {
         let going = self.proposed.take().unwrap().going;
-        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, fault))
+        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))
     }
 }
 
