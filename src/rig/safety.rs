@@ -17,7 +17,7 @@ pub type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 struct Line {
     /// Number of who armed it.
     owner: u64,
-    line: Box<dyn Emergency>,
+    sender: Box<dyn Emergency>,
     bytes: Vec<u8>,
 }
 
@@ -45,7 +45,7 @@ pub fn arm(lines: Lines) -> Armed {
     TRIPPED.store(false, Ordering::SeqCst);
     if let Some(mut armed) = take_lines() {
         let able = lines.into_iter().filter(|(_, bytes)| !bytes.is_empty());
-        armed.extend(able.map(|(line, bytes)| Line { owner: number, line, bytes }));
+        armed.extend(able.map(|(sender, bytes)| Line { owner: number, sender, bytes }));
     }
     Armed { number, watch: None }
 }
@@ -84,8 +84,8 @@ impl Drop for Armed {
 /// Sends the bytes of every armed line, without waiting for an answer.
 pub fn hold_everything() {
     if let Some(mut lines) = take_lines() {
-        for Line { line, bytes, .. } in lines.iter_mut() {
-            line.send(bytes);
+        for Line { sender, bytes, .. } in lines.iter_mut() {
+            sender.send(bytes);
         }
     }
 }
