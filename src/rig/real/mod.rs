@@ -1,6 +1,6 @@
 //! A rig that moves a real specimen. In: targets, and one or two devices. Out: settled readings in the plan's sign, each
-//! judged; whatever goes wrong holds the rig. It knows no dialect, no procedure and no limits of the plan beyond handing
-//! them to the devices.
+//! judged; whatever goes wrong holds the rig. It knows no dialect and no procedure; what a procedure may ask for is the
+//! guard's business.
 
 mod motion;
 mod open;
@@ -8,7 +8,7 @@ mod poll;
 mod settle;
 mod validity;
 
-use crate::plan::{Calibration, RealLink, Settle};
+use crate::plan::{Calibration, Limits, RealLink, Settle};
 
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
@@ -23,6 +23,7 @@ const WIRE_ROUNDING: f64 = 0.5e-9;
 pub struct RealRig {
     link: RealLink,
     settle: Settle,
+    limits: Limits,
     /// +1 or −1: how displacement and force of the devices count in the plan.
     sign: f64,
     calibration: Calibration,
@@ -36,6 +37,8 @@ pub struct RealRig {
     /// The clock when the devices were last heard, s.
     heard: f64,
     judge: Judge,
+    /// The last reading on the way was outside a limit.
+    outside: bool,
     proposed: Option<Proposed>,
     reread: u64,
     /// Why its position is not to be trusted.

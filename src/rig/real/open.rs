@@ -1,12 +1,12 @@
 //! Opening a real rig. In: the plan's rig and its devices. Out: a rig that is who the plan says, has been told the limits
 //! and has been read once, or why not. Nothing moves.
 
+use super::validity::Judge;
 use super::{Part, RealRig};
 use crate::plan::{DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
 use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::port::Clock;
-use crate::rig::real::validity::Judge;
-use crate::rig::{Identity, RigFault, Wish};
+use crate::rig::{Identity, Rig as _, RigFault, Wish};
 
 impl RealRig {
     /// Asks both devices who they are, tells them the limits, and reads once.
@@ -25,6 +25,7 @@ impl RealRig {
         let began = clock.now();
         let mut rig = Self {
             settle: plan.settle,
+            limits: *limits,
             sign: plan.sign,
             calibration: plan.calibration.clone(),
             identity: nobody(&plan.name),
@@ -35,6 +36,7 @@ impl RealRig {
             began,
             heard: began,
             judge: Judge::default(),
+            outside: false,
             proposed: None,
             reread: 0,
             untrusted: None,
@@ -44,7 +46,10 @@ impl RealRig {
         rig.meet()?;
         rig.narrow(limits)?;
         rig.heard = rig.clock.now();
-        rig.poll()?;
+        if rig.poll()?.moving == Some(true) {
+            rig.hold();
+            return Err(RigFault::Device("it was moving before it was told to: held".to_owned()));
+        }
         Ok(rig)
     }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Limits, Link, PortPlan, ReadingRules, RigPlan, SafeState};
+use crate::rig::LimitedQuantity;
 use crate::rig::device::{Force, Sample};
 use crate::rig::failpoint::without;
 use crate::rig::testing::{FakeDevice, VirtualClock};
@@ -317,6 +318,50 @@ fn a_wish_to_hold_ends_a_move_within_a_slice_and_the_rig_stands() {
     assert_eq!(stand.device.inside().position, stood);
     assert_eq!(stand.device.inside().holds, 1);
     assert!(stand.rig.read().is_ok() && stand.wish.wants_end(), "heeded, and not forgotten");
+}
+
+#[test]
+fn a_force_beyond_its_limit_stops_a_move_on_the_way_and_a_lone_spike_does_not() {
+    let stands_at = || {
+        let mut stand = stand();
+        stand.device.inside().stiffness = 1e6;
+        let fault = stand.go(0.008).err();
+        (fault, stand.device.inside().position)
+    };
+    let (fault, stood) = stands_at();
+    assert!(matches!(fault, Some(RigFault::LimitBreached { quantity: LimitedQuantity::Force, .. })), "{fault:?}");
+    assert!((0.005..0.0052).contains(&stood), "{stood}");
+    assert_eq!(without(Guarding::ReadingLimits, stands_at), (None, 0.008));
+    let mut spiked = stand();
+    spiked.device.alter(|number, sample| {
+        if number == 8 {
+            sample.force = Some(Force::Newtons(6000.0));
+        }
+        Ok(())
+    });
+    assert_eq!(spiked.go(0.002), Ok((0.002, 200.0)));
+}
+
+#[test]
+fn a_device_that_says_it_rests_before_it_has_begun_is_waited_for() {
+    let mut stand = stand();
+    stand.device.alter(|number, sample| {
+        if number < 4 {
+            sample.moving = Some(false);
+        }
+        Ok(())
+    });
+    assert_eq!(stand.go(0.012), Ok((0.012, 1200.0)));
+}
+
+#[test]
+fn a_rig_that_moves_before_it_is_told_to_is_held() {
+    let moving = |device: &FakeDevice| {
+        let mut inside = device.inside();
+        (inside.target, inside.speed) = (0.01, 0.001);
+    };
+    let refused = opened(&plan(), moving).err().unwrap();
+    assert_eq!(refused.to_string(), "it was moving before it was told to: held");
 }
 
 #[test]
