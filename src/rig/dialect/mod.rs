@@ -4,6 +4,10 @@
 pub mod grbl;
 pub mod hx711;
 pub mod indicator;
+pub mod instron;
+pub mod mark10;
+pub mod modbus;
 pub mod native;
+pub mod nees;
 pub mod number;
 pub mod scpi;

@@ -56,7 +56,8 @@ impl Judge {
 
     /// A clock that goes back is that of a device that started anew.
     fn same_device(&mut self, said: &Said) -> Result<(), Invalid> {
-        let before = std::mem::replace(&mut self.device_time, said.device_time.or(self.device_time));
+        let before = self.device_time;
+        self.device_time = said.device_time.or(before);
         match (before, said.device_time) {
             (Some(before), Some(now)) if on(Guarding::Reboot) && now < before => Err(Invalid::Untrusted(format!(
                 "its clock went back from {before} s to {now} s: it started anew, and its position is not to be trusted"

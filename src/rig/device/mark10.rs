@@ -1,0 +1,234 @@
+//! A Mark-10 stand with its gauge, and the gauge alone. In: metres and metres a second. Out: travel limits that are
+//! targets, read back before the stand sets off; readings in newtons. The travel is in hundredths of a millimetre, and
+//! so are the targets. Lines have no check: what came unasked is thrown away, and after a silence all is asked twice.
+
+use super::unnumbered::ask_line;
+use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use crate::plan::Limits;
+use crate::rig::Tally;
+use crate::rig::dialect::mark10::{self, Side, Status};
+
+/// How often a setting or an order is given before it counts as not heard.
+const TRIES: u32 = 3;
+/// Half a quantum of the travel, m: what is nearer is there.
+const THERE: f64 = 0.5e-5 * 1.01;
+/// How far past its limit the travel may be before the stand is stopped, m.
+const OVERRUN: f64 = 5e-5;
+/// Twice, since one may be taken for a digit of a setting that was cut short.
+const EMERGENCY: &[u8] = b"ss";
+
+pub struct Mark10 {
+    talk: Talk,
+    /// Travel as last read, m.
+    last: Option<f64>,
+    /// Where it is going, m.
+    going: Option<(Side, f64)>,
+}
+
+impl Mark10 {
+    #[must_use]
+    pub const fn new(talk: Talk) -> Self {
+        Self { talk, last: None, going: None }
+    }
+
+    fn ask(&mut self, question: &[u8]) -> Result<Vec<u8>, DeviceFault> {
+        ask_line(&mut self.talk, question, mark10::ENDING)
+    }
+
+    fn ask_travel(&mut self, question: &[u8]) -> Result<(f64, Vec<u8>), DeviceFault> {
+        let answer = self.ask(question)?;
+        match mark10::travel(&answer) {
+            Some(travel) => Ok((travel, answer)),
+            None => Err(no_reading(answer, "no travel in mm")),
+        }
+    }
+
+    fn ask_status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
+        let answer = self.ask(mark10::ASK_STATUS)?;
+        match mark10::status(&answer) {
+            Some(status) => Ok((status, answer)),
+            None => Err(no_reading(answer, "no status")),
+        }
+    }
+
+    /// Sends the settings until the limit is read back as it was sent. Nothing moves yet.
+    fn set_limit(&mut self, settings: &[Vec<u8>], side: Side, limit: f64) -> Result<(), DeviceFault> {
+        let question = match side {
+            Side::Lower => mark10::ASK_LOWER_LIMIT,
+            Side::Upper => mark10::ASK_UPPER_LIMIT,
+        };
+        for _ in 0..TRIES {
+            self.talk.send(&settings.concat())?;
+            match self.ask_travel(question) {
+                Ok((heard, _)) if (heard - limit).abs() <= THERE => return Ok(()),
+                Ok(_) | Err(DeviceFault::NoReading { .. }) => self.talk.tally_mut().resent += 1,
+                Err(fault) => return Err(fault),
+            }
+        }
+        Err(DeviceFault::Refused { reason: "its travel limit is not the one that was sent".to_owned() })
+    }
+
+    fn stop(&mut self) -> Result<(), DeviceFault> {
+        for _ in 0..TRIES {
+            self.talk.send(mark10::STOP)?;
+            if !self.ask_status()?.0.moving {
+                self.going = None;
+                return Ok(());
+            }
+            self.talk.tally_mut().resent += 1;
+        }
+        Err(DeviceFault::Refused { reason: "it does not stop".to_owned() })
+    }
+}
+
+impl Device for Mark10 {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.talk.send(mark10::READY)?;
+        if !self.ask_status()?.0.limit_mode {
+            return Err(DeviceFault::Unfit("the stand does not go into limit mode: does it have PC control?".to_owned()));
+        }
+        self.sample()?;
+        Ok(DeviceIdentity { model: "Mark-10 stand".to_owned(), ..DeviceIdentity::default() })
+    }
+
+    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+        let from = self.last.ok_or_else(|| DeviceFault::Unfit("where it stands is not known: read first".to_owned()))?;
+        let unsayable = || DeviceFault::Unfit(format!("the stand cannot say {target} m at {speed} m/s"));
+        let (speed_setting, speed) = mark10::speed(speed).ok_or_else(unsayable)?;
+        let side = if target < from { Side::Lower } else { Side::Upper };
+        let (limit_setting, target) = mark10::limit(side, target).ok_or_else(unsayable)?;
+        let mut frames = vec![speed_setting, limit_setting];
+        // Rounded to where it stands already, it is not sent off.
+        if (target - from).abs() > THERE {
+            frames.push(if side == Side::Lower { mark10::DOWN } else { mark10::UP }.to_vec());
+        }
+        Ok(Move { frames, target, speed, id: None })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let [speed, limit, direction @ ..] = going.frames.as_slice() else {
+            return Err(DeviceFault::Unfit("this is no move of the stand".to_owned()));
+        };
+        let side = if limit.starts_with(b"g") { Side::Lower } else { Side::Upper };
+        self.set_limit(&[speed.clone(), limit.clone()], side, going.target)?;
+        let Some(direction) = direction.first() else { return Ok(()) };
+        if !self.ask_status()?.0.limit_mode {
+            return Err(DeviceFault::Unfit("the stand left limit mode: nothing would stop it at its target".to_owned()));
+        }
+        self.going = Some((side, going.target));
+        for _ in 0..TRIES {
+            self.talk.send(direction)?;
+            if self.ask_status()?.0.moving || (self.ask_travel(mark10::ASK_TRAVEL)?.0 - going.target).abs() <= THERE {
+                return Ok(());
+            }
+            self.talk.tally_mut().resent += 1;
+        }
+        Err(DeviceFault::Refused { reason: "it does not set off".to_owned() })
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let (status, said_status) = self.ask_status()?;
+        let (travel, said_travel) = self.ask_travel(mark10::ASK_TRAVEL)?;
+        self.last = Some(travel);
+        let past = self.going.is_some_and(|(side, target)| match side {
+            Side::Lower => travel < target - OVERRUN,
+            Side::Upper => travel > target + OVERRUN,
+        });
+        if past {
+            self.stop()?;
+            return Err(DeviceFault::Unfit("the stand went past its travel limit".to_owned()));
+        }
+        let said_force = self.ask(mark10::ASK_FORCE_THROUGH_STAND)?;
+        let force = newtons(&said_force)?;
+        Ok(Sample {
+            time: None,
+            displacement: Some(travel),
+            force: Some(force),
+            moving: Some(status.moving),
+            // Its limits are its targets: to be at one is to have arrived.
+            flags: Flags::default(),
+            raw: vec![said_status, said_travel, said_force],
+        })
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        self.stop()
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        EMERGENCY.to_vec()
+    }
+
+    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+/// The gauge alone on its port: it weighs and does not move.
+pub struct Mark10Gauge {
+    talk: Talk,
+}
+
+impl Mark10Gauge {
+    #[must_use]
+    pub const fn new(talk: Talk) -> Self {
+        Self { talk }
+    }
+}
+
+impl Device for Mark10Gauge {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.sample()?;
+        Ok(DeviceIdentity { model: "Mark-10 gauge".to_owned(), ..DeviceIdentity::default() })
+    }
+
+    fn encode(&mut self, _: f64, _: f64) -> Result<Move, DeviceFault> {
+        Err(DeviceFault::Unfit("a gauge does not move".to_owned()))
+    }
+
+    fn start(&mut self, _: &Move) -> Result<(), DeviceFault> {
+        Err(DeviceFault::Unfit("a gauge does not move".to_owned()))
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let said = ask_line(&mut self.talk, mark10::ASK_FORCE, mark10::ENDING)?;
+        let force = newtons(&said)?;
+        Ok(Sample { force: Some(force), raw: vec![said], ..Sample::default() })
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
+    match mark10::force(answer) {
+        Some(mark10::Force::Newtons(newtons)) => Ok(Force::Newtons(newtons)),
+        Some(mark10::Force::Unknown) => Err(no_reading(answer.to_vec(), "the gauge did not understand")),
+        None => Err(no_reading(answer.to_vec(), "no force with a unit that is known")),
+    }
+}
+
+fn no_reading(raw: Vec<u8>, reason: &str) -> DeviceFault {
+    DeviceFault::NoReading { raw, reason: reason.to_owned() }
+}
+
+#[cfg(test)]
+#[path = "mark10_tests.rs"]
+mod tests;

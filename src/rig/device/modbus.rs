@@ -1,0 +1,260 @@
+//! A Modbus RTU drive, transmitter or both, as its register map says. In: metres and metres a second. Out: register
+//! writes, and readings of the registers there are. It keeps the silences of the line, and never takes a late answer.
+//! Over a TCP port the same RTU bytes go. A stop can also be a frame that nobody waits for; sent into the middle of
+//! another frame it may not be heard, so that it replaces no wired emergency stop.
+
+use super::unnumbered::{clear, fault, fresh, order};
+use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use crate::plan::{Limits, ModbusMap, ModbusNumber};
+use crate::rig::Tally;
+use crate::rig::dialect::modbus::{self, Fault, Table};
+
+/// Silence before a question: 3.5 characters of 11 bits, and never less than this, s.
+const SHORTEST_GAP: f64 = 0.001_75;
+const GAP_BITS: f64 = 3.5 * 11.0;
+/// Further than any actuator reaches, m.
+const IMPLAUSIBLE_POSITION: f64 = 1e3;
+/// More than any cell carries, N.
+const IMPLAUSIBLE_FORCE: f64 = 1e12;
+/// Smaller than any reading but zero: what a float becomes when its words are swapped.
+const IMPLAUSIBLY_SMALL: f64 = 1e-30;
+
+pub struct Modbus {
+    talk: Talk,
+    map: ModbusMap,
+    /// s
+    gap: f64,
+    position: Option<Register>,
+    force: Option<Register>,
+    status: Option<Register>,
+}
+
+/// A register to read, and the table it was found in.
+#[derive(Clone, Copy, Debug)]
+struct Register {
+    address: u16,
+    table: Table,
+}
+
+/// A number, as it was read.
+struct Value {
+    /// m or N
+    value: f64,
+    raw: Vec<u8>,
+}
+
+impl Modbus {
+    /// `baud` of a serial line gives the silence between frames; None: over TCP.
+    #[must_use]
+    pub fn new(talk: Talk, map: ModbusMap, baud: Option<u32>) -> Self {
+        let gap = baud.map_or(SHORTEST_GAP, |baud| (GAP_BITS / f64::from(baud)).max(SHORTEST_GAP));
+        let register = |address: Option<u16>| address.map(|address| Register { address, table: Table::Holding });
+        let (position, force, status) = (register(map.position), register(map.force), register(map.status));
+        Self { talk, map, gap, position, force, status }
+    }
+
+    /// Finds the table a register is in: where there is no such holding register, the input registers are tried.
+    fn find(&mut self, register: Option<Register>, count: u16) -> Result<Option<Register>, DeviceFault> {
+        let Some(Register { address, .. }) = register else { return Ok(None) };
+        let asked = |table| modbus::read(self.map.unit, table, address, count);
+        let (holding, input) = (asked(Table::Holding), asked(Table::Input));
+        let table = match self.words(&holding) {
+            Err(DeviceFault::Refused { .. }) => self.words(&input).map(|_| Table::Input)?,
+            said => said.map(|_| Table::Holding)?,
+        };
+        Ok(Some(Register { address, table }))
+    }
+
+    fn read(&mut self, register: Register, unit: f64, bound: f64) -> Result<Value, DeviceFault> {
+        let question = modbus::read(self.map.unit, register.table, register.address, modbus::width(self.map.number));
+        let (words, raw) = self.words(&question)?;
+        let value = modbus::from_words(self.map.number, &words).map(|value| value * unit);
+        match value.filter(|value| plausible(*value, bound)) {
+            Some(value) => Ok(Value { value, raw }),
+            None => Err(DeviceFault::NoReading { raw, reason: "no number that can be".to_owned() }),
+        }
+    }
+
+    /// The words that answer a question, and the bytes they came in.
+    fn words(&mut self, question: &[u8]) -> Result<(Vec<u16>, Vec<u8>), DeviceFault> {
+        let gap = self.gap;
+        fresh(&mut self.talk, |talk| exchange(talk, question, gap))
+    }
+
+    fn write(&mut self, frame: &[u8]) -> Result<(), DeviceFault> {
+        let gap = self.gap;
+        order(&mut self.talk, |talk| exchange(talk, frame, gap)).map(|_| ())
+    }
+
+    fn stop_frame(&self) -> Option<Vec<u8>> {
+        self.map.command.map(|command| modbus::write(self.map.unit, command, &[self.map.stop_word]))
+    }
+
+    fn target_frame(&self, target: f64) -> Result<(Vec<u8>, f64), DeviceFault> {
+        let register = self.map.target.ok_or_else(|| unfit("it has no target register: it cannot move"))?;
+        let (words, said) = self.say(target, self.map.length_unit, f64::round)?;
+        Ok((modbus::write(self.map.unit, register, &words), said))
+    }
+
+    /// The registers of a quantity, and what they say; `whole` rounds where they hold whole numbers.
+    fn say(&self, quantity: f64, unit: f64, whole: fn(f64) -> f64) -> Result<(Vec<u16>, f64), DeviceFault> {
+        let number = self.map.number;
+        let value = quantity / unit;
+        let value = if is_float(number) || same(value.round(), value) { value } else { whole(value) };
+        let words = modbus::to_words(number, value).ok_or_else(|| unfit("its registers cannot hold the number"))?;
+        let said = modbus::from_words(number, &words).ok_or_else(|| unfit("its registers cannot hold the number"))? * unit;
+        // The last bit of turning units is no part of what the registers say.
+        Ok((words, if same(said, quantity) { quantity } else { said }))
+    }
+
+    /// Registers of a speed that is not above the one asked for.
+    fn say_speed(&self, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
+        let (words, said) = self.say(speed, self.map.speed_unit, f64::floor)?;
+        if said <= speed {
+            return if said > 0.0 { Ok((words, said)) } else { Err(unfit("its registers cannot hold so low a speed")) };
+        }
+        // A short float may be above by half its last bit.
+        self.say(speed * (1.0 - f64::from(f32::EPSILON)), self.map.speed_unit, f64::floor)
+    }
+}
+
+impl Device for Modbus {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        if self.position.is_none() && self.force.is_none() {
+            return Err(unfit("its map has neither a position nor a force to read"));
+        }
+        if self.map.target.is_some() && self.position.is_none() {
+            return Err(unfit("its map has a target, but no position to read"));
+        }
+        let width = modbus::width(self.map.number);
+        self.position = self.find(self.position, width)?;
+        self.force = self.find(self.force, width)?;
+        self.status = self.find(self.status, 1)?;
+        self.sample().map_err(|fault| match fault {
+            DeviceFault::NoReading { raw, .. } if modbus::width(self.map.number) == 2 => DeviceFault::Unfit(format!(
+                "`{}` holds no number that can be: try the other word order, or another kind of number",
+                raw.escape_ascii()
+            )),
+            other => other,
+        })?;
+        Ok(DeviceIdentity { model: format!("Modbus unit {}", self.map.unit), ..DeviceIdentity::default() })
+    }
+
+    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+        let (target_frame, target) = self.target_frame(target)?;
+        let mut going = Move { frames: Vec::new(), target, speed, id: None };
+        // Before the target, since some drives set off as soon as they have one.
+        if let Some(register) = self.map.speed {
+            let (words, said) = self.say_speed(speed)?;
+            going.frames.push(modbus::write(self.map.unit, register, &words));
+            going.speed = said;
+        }
+        going.frames.push(target_frame);
+        if let Some(command) = self.map.command {
+            going.frames.push(modbus::write(self.map.unit, command, &[self.map.start_word]));
+        }
+        Ok(going)
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        going.frames.iter().try_for_each(|frame| self.write(frame))
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let mut sample = Sample { flags: Flags::default(), ..Sample::default() };
+        if let Some(register) = self.position {
+            let Value { value, raw } = self.read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?;
+            sample.displacement = Some(value);
+            sample.raw.push(raw);
+        }
+        if let Some(register) = self.force {
+            let Value { value, raw } = self.read(register, self.map.force_unit, IMPLAUSIBLE_FORCE)?;
+            sample.force = Some(Force::Newtons(value));
+            sample.raw.push(raw);
+        }
+        if let Some(register) = self.status {
+            let (words, raw) = self.words(&modbus::read(self.map.unit, register.table, register.address, 1))?;
+            sample.moving = words.first().map(|word| word & self.map.moving_mask != 0);
+            sample.raw.push(raw);
+        }
+        Ok(sample)
+    }
+
+    /// By its stop word; a drive without a command register is sent to where it is.
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        let frame = if let Some(frame) = self.stop_frame() {
+            frame
+        } else {
+            let register = self.position.ok_or_else(|| unfit("it has nothing to stop it with"))?;
+            let here = self.read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?.value;
+            self.target_frame(here)?.0
+        };
+        self.write(&frame)
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        self.stop_frame().unwrap_or_default()
+    }
+
+    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+/// One question or order and its answer, after the silence that ends whatever came before.
+fn exchange(talk: &mut Talk, question: &[u8], gap: f64) -> Result<(Vec<u16>, Vec<u8>), DeviceFault> {
+    clear(talk, gap)?;
+    talk.send(question)?;
+    let deadline = talk.now() + talk.reply_timeout();
+    let mut received = Vec::new();
+    let answer = loop {
+        let missing = match modbus::answer_length(question, &received) {
+            Ok(Some(length)) if length == received.len() => break modbus::answer(question, &received),
+            Ok(Some(length)) => length - received.len(),
+            Ok(None) => 1,
+            Err(fault) => break Err(fault),
+        };
+        match talk.exactly(missing, deadline) {
+            Ok(bytes) => received.extend(bytes),
+            Err(missed) => {
+                talk.tally_mut().ignored += u64::from(!received.is_empty());
+                return Err(fault(missed, talk));
+            }
+        }
+    };
+    match answer {
+        Ok(words) => Ok((words, received)),
+        Err(Fault::Exception(code)) => {
+            Err(DeviceFault::Refused { reason: format!("{} (exception {code})", modbus::exception(code)) })
+        }
+        Err(Fault::Broken(_)) => {
+            talk.tally_mut().ignored += 1;
+            Err(DeviceFault::Silent { seconds: talk.reply_timeout() })
+        }
+    }
+}
+
+fn plausible(value: f64, bound: f64) -> bool {
+    value == 0.0 || (IMPLAUSIBLY_SMALL <= value.abs() && value.abs() <= bound)
+}
+
+/// Equal but for the last bits of turning units.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 4.0 * f64::EPSILON * b.abs()
+}
+
+const fn is_float(number: ModbusNumber) -> bool {
+    matches!(number, ModbusNumber::Float32 { .. })
+}
+
+fn unfit(reason: &str) -> DeviceFault {
+    DeviceFault::Unfit(reason.to_owned())
+}
+
+#[cfg(test)]
+#[path = "modbus_tests.rs"]
+mod tests;

@@ -1,0 +1,168 @@
+//! NEES "LabVIEW plugin" ASCII as the coordinator: one session over one TCP connection. In: metres and metres a second.
+//! Out: a proposal that the rig may refuse, its execution, the reading of the control point. The rig answers an
+//! execution when its motion is done, and hears nothing before: `start` waits that long. There is no stop out of band:
+//! holding is `cancel`, heard when the rig next listens. The protocol has no speed: the rig's own is to be below it.
+
+use super::{Answer, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use crate::plan::Limits;
+use crate::rig::Tally;
+use crate::rig::dialect::nees::{self, Reply};
+
+/// What the session is called.
+const SESSION: &str = "psd";
+/// Steps announced when a session opens: a coordinator must say a number, and rigs only show it.
+const ANNOUNCED_STEPS: u32 = 1_000_000;
+
+pub struct Nees {
+    talk: Talk,
+    control_point: String,
+    /// Longest time that the rig takes to settle after its motion, s.
+    settling: f64,
+    /// Begins every transaction of this session, so that none is one of an earlier session.
+    prefix: String,
+    transactions: u64,
+    /// m
+    last: Option<f64>,
+    /// The transaction that was sent to be executed and has not been answered.
+    executing: Option<String>,
+    open: bool,
+}
+
+impl Nees {
+    /// A control point is `MDL-00-01` or `MDL-00-01:name`; an execution is waited for twice as long as its way takes,
+    /// and `settling` s more.
+    #[must_use]
+    pub const fn new(talk: Talk, control_point: String, settling: f64) -> Self {
+        let prefix = String::new();
+        Self { talk, control_point, settling, prefix, transactions: 0, last: None, executing: None, open: false }
+    }
+
+    fn next_transaction(&mut self) -> String {
+        self.transactions += 1;
+        format!("{SESSION}{}-{:06}", self.prefix, self.transactions)
+    }
+
+    /// Sends a request once and waits for the reply to it. A reply to another transaction is counted and left.
+    fn request(&mut self, line: &[u8], transaction: Option<&str>, wait: f64) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
+        self.talk.send(line)?;
+        let deadline = self.talk.now() + wait;
+        let mut accept = |line: &[u8]| match (nees::reply(line), transaction) {
+            (Reply::Done(fields), Some(ours)) if fields.first().map(String::as_str) != Some(ours) => Answer::Ignore,
+            (Reply::Done(fields), _) => Answer::Take((fields, line.to_vec())),
+            (Reply::Refused { transaction: Some(other), .. }, Some(ours)) if other != ours && other.starts_with(SESSION) => {
+                Answer::Ignore
+            }
+            (Reply::Refused { reason, .. }, _) => Answer::Fault(DeviceFault::Refused { reason }),
+        };
+        let answer = self.talk.answer(nees::ENDING, deadline, &mut accept)?;
+        answer.ok_or(DeviceFault::Silent { seconds: wait })
+    }
+
+    fn cancel(&mut self) -> Result<(), DeviceFault> {
+        if let Some(transaction) = self.executing.clone() {
+            let wait = self.talk.reply_timeout();
+            // The late answer to the execution has the same number, and says as well that nothing moves any more.
+            self.request(&nees::cancel(&transaction), Some(&transaction), wait)?;
+            self.executing = None;
+        }
+        Ok(())
+    }
+}
+
+impl Device for Nees {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        if !nees::is_field(&self.control_point) {
+            return Err(DeviceFault::Unfit("the name of a control point has no blanks and no control characters".to_owned()));
+        }
+        self.prefix = self.talk.clock().wall().unwrap_or_default().chars().filter(char::is_ascii_digit).collect();
+        let wait = self.talk.reply_timeout();
+        self.talk.drain()?;
+        let (said, _) = self.request(&nees::open_session(SESSION), None, wait)?;
+        self.open = true;
+        let transaction = self.next_transaction();
+        self.request(&nees::steps(&transaction, ANNOUNCED_STEPS), None, wait)?;
+        self.sample()?;
+        let model = said.first().filter(|text| !text.is_empty()).map_or_else(String::new, |text| format!(": {text}"));
+        Ok(DeviceIdentity { model: format!("NEES control point {}{model}", self.control_point), ..DeviceIdentity::default() })
+    }
+
+    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+        if !(speed > 0.0 && speed.is_finite()) {
+            return Err(DeviceFault::Unfit(format!("nothing moves at {speed} m/s")));
+        }
+        let transaction = self.next_transaction();
+        let (proposal, target) = nees::propose(&transaction, &self.control_point, target)
+            .ok_or_else(|| DeviceFault::Unfit(format!("{target} m is no target")))?;
+        Ok(Move { frames: vec![proposal, nees::execute(&transaction)], target, speed, id: None })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let ours = |frame: &[u8]| nees::transaction(frame).map(str::to_owned);
+        let ([proposal, execution], Some(transaction)) =
+            (going.frames.as_slice(), going.frames.first().and_then(|frame| ours(frame)))
+        else {
+            return Err(DeviceFault::Unfit("this is no proposal".to_owned()));
+        };
+        let wait = self.talk.reply_timeout();
+        self.request(proposal, Some(&transaction), wait)?;
+        let way = self.last.map_or(0.0, |last| (going.target - last).abs());
+        let motion = 2.0 * way / going.speed + self.settling.max(wait);
+        self.executing = Some(transaction.clone());
+        self.request(execution, Some(&transaction), motion)?;
+        self.executing = None;
+        Ok(())
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let transaction = self.next_transaction();
+        let wait = self.talk.reply_timeout();
+        let question = nees::get_control_point(&transaction, &self.control_point);
+        let (fields, raw) = self.request(&question, Some(&transaction), wait)?;
+        // It hears nothing before its motion is done, so that an answer says that nothing moves.
+        self.executing = None;
+        let measured = fields.get(1..).and_then(|fields| nees::measured(fields, &self.control_point));
+        let (Some(displacement), Some(force)) = measured.map_or((None, None), |at| (at.displacement, at.force)) else {
+            let reason = "no displacement and force along x".to_owned();
+            return Err(DeviceFault::NoReading { raw, reason });
+        };
+        self.last = Some(displacement);
+        Ok(Sample {
+            time: None,
+            displacement: Some(displacement),
+            force: Some(Force::Newtons(force)),
+            moving: Some(false),
+            flags: Flags::default(),
+            raw: vec![raw],
+        })
+    }
+
+    /// Cancels what is being executed; at rest there is nothing to say.
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        self.cancel()
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        self.executing.as_deref().map(nees::cancel).unwrap_or_default()
+    }
+
+    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+impl Drop for Nees {
+    /// Whether the rig hears it or not, the line is closed after it.
+    fn drop(&mut self) {
+        if self.open {
+            self.talk.send(&nees::close_session(SESSION)).ok();
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "nees_tests.rs"]
+mod tests;
