@@ -13,8 +13,16 @@ use super::port::{Clock as _, Emergency, MonotonicClock};
 /// Lines, each with the bytes that stop what is on it.
 pub type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 
-/// The lines of all that is armed, each with the number of who armed it.
-static LINES: Mutex<Vec<(u64, Box<dyn Emergency>, Vec<u8>)>> = Mutex::new(Vec::new());
+/// A line that is armed.
+struct Line {
+    /// Number of who armed it.
+    owner: u64,
+    sender: Box<dyn Emergency>,
+    bytes: Vec<u8>,
+}
+
+/// All that is armed.
+static LINES: Mutex<Vec<Line>> = Mutex::new(Vec::new());
 static NEXT: AtomicU64 = AtomicU64::new(0);
 static BEATS: AtomicU64 = AtomicU64::new(0);
 static TRIPPED: AtomicBool = AtomicBool::new(false);
@@ -36,7 +44,8 @@ pub fn arm(lines: Lines) -> Armed {
     let number = NEXT.fetch_add(1, Ordering::SeqCst);
     TRIPPED.store(false, Ordering::SeqCst);
     if let Some(mut armed) = take_lines() {
-        armed.extend(lines.into_iter().filter(|(_, bytes)| !bytes.is_empty()).map(|(line, bytes)| (number, line, bytes)));
+        let able = lines.into_iter().filter(|(_, bytes)| !bytes.is_empty());
+        armed.extend(able.map(|(sender, bytes)| Line { owner: number, sender, bytes }));
     }
     Armed { number, watch: None }
 }
@@ -67,7 +76,7 @@ impl Drop for Armed {
             thread.join().ok();
         }
         if let Some(mut lines) = take_lines() {
-            lines.retain(|(number, ..)| *number != self.number);
+            lines.retain(|line| line.owner != self.number);
         }
     }
 }
@@ -75,8 +84,8 @@ impl Drop for Armed {
 /// Sends the bytes of every armed line, without waiting for an answer.
 pub fn hold_everything() {
     if let Some(mut lines) = take_lines() {
-        for (_, line, bytes) in lines.iter_mut() {
-            line.send(bytes);
+        for Line { sender, bytes, .. } in lines.iter_mut() {
+            sender.send(bytes);
         }
     }
 }
@@ -93,7 +102,7 @@ pub fn tripped() -> bool {
 }
 
 /// The lines; None where somebody keeps them, as a panic in the middle of a sending does.
-fn take_lines() -> Option<MutexGuard<'static, Vec<(u64, Box<dyn Emergency>, Vec<u8>)>>> {
+fn take_lines() -> Option<MutexGuard<'static, Vec<Line>>> {
     for _ in 0..TRIES {
         match LINES.try_lock() {
             Ok(lines) => return Some(lines),

@@ -82,3 +82,30 @@ impl Emergency for Sender {
         write(self.0.as_fd(), bytes, EMERGENCY_TIMEOUT).ok();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rustix::fs::OFlags;
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+    #[test]
+    fn a_terminal_that_hung_up_after_a_line_gives_the_line_then_a_broken_pipe() {
+        let near = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&near).unwrap();
+        unlockpt(&near).unwrap();
+        rustix::fs::fcntl_setfl(&near, OFlags::NONBLOCK).unwrap();
+        let flags = OFlags::RDWR | OFlags::NOCTTY;
+        let far = rustix::fs::open(ptsname(&near, Vec::new()).unwrap(), flags, rustix::fs::Mode::empty()).unwrap();
+        write(far.as_fd(), b"last", Duration::ZERO).unwrap();
+        drop(far);
+        let (mut buffer, mut got) = ([0; 64], Vec::new());
+        let end = loop {
+            match read(near.as_fd(), &mut buffer, Duration::from_secs(5)) {
+                Ok(count) => got.extend_from_slice(&buffer[..count]),
+                Err(error) => break error.kind(),
+            }
+        };
+        assert_eq!((got.as_slice(), end), (&b"last"[..], ErrorKind::BrokenPipe));
+    }
+}

@@ -1,6 +1,6 @@
 //! A rig that moves a real specimen. In: targets, and one or two devices. Out: settled readings in the plan's sign, each
-//! judged; whatever goes wrong holds the rig. It knows no dialect, no procedure and no limits of the plan beyond handing
-//! them to the devices.
+//! judged; whatever goes wrong holds the rig. It knows no dialect and no procedure; what a procedure may ask for is the
+//! guard's business.
 
 mod motion;
 mod open;
@@ -8,7 +8,7 @@ mod poll;
 mod settle;
 mod validity;
 
-use crate::plan::{Calibration, RealLink, Settle};
+use crate::plan::{Calibration, Limits, RealLink, Settle};
 
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
@@ -23,6 +23,7 @@ const WIRE_ROUNDING: f64 = 0.5e-9;
 pub struct RealRig {
     link: RealLink,
     settle: Settle,
+    limits: Limits,
     /// +1 or −1: how displacement and force of the devices count in the plan.
     sign: f64,
     calibration: Calibration,
@@ -36,6 +37,8 @@ pub struct RealRig {
     /// The clock when the devices were last heard, s.
     heard: f64,
     judge: Judge,
+    /// The last reading on the way was outside a limit.
+    outside: bool,
     proposed: Option<Proposed>,
     reread: u64,
     /// Why its position is not to be trusted.
@@ -72,7 +75,7 @@ impl RealRig {
     }
 
     /// A fault of a device, said of the rig.
-    fn told(&mut self, part: Part, fault: DeviceFault) -> RigFault {
+    fn told(&mut self, part: Part, fault: &DeviceFault) -> RigFault {
         let place = match (part, &self.link.load_cell) {
             (Part::LoadCell, Some(cell)) => format!("load cell on {}", cell.port),
             _ => format!("actuator on {}", self.link.actuator.port),
@@ -126,7 +129,7 @@ impl Rig for RealRig {
             _ => return Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", targets.len()))),
         };
         let speed = speed.unwrap_or(self.link.own_speed);
-        let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, fault))?;
+        let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
         let said = self.sign * going.target;
         // What the devices resolve is as near as they can say it.
         let allowed = WIRE_ROUNDING.max(self.link.readings.resolution / 2.0) * (1.0 + 1e-6);

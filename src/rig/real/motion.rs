@@ -1,11 +1,12 @@
 //! Motion of a real rig. In: a move that was offered. Out: the rig at its target and settled, or why not; readings on the
 //! way. Every wait is bounded, sees a wish to hold, and keeps the devices hearing that the program lives.
 
+use super::poll::Point;
 use super::settle::Settling;
 use super::{Part, Proposed, RealRig};
 use crate::rig::device::SLICE;
 use crate::rig::failpoint::{Guarding, on};
-use crate::rig::{EachReading, Rig as _, RigFault};
+use crate::rig::{EachReading, LimitedQuantity, Rig as _, RigFault};
 
 impl RealRig {
     /// Sends the offered move and waits until settled.
@@ -18,8 +19,10 @@ impl RealRig {
         loop {
             let point = self.poll()?;
             let now = self.clock.now();
-            // A device that cannot say whether it moves is given the time that the way takes.
-            let rests = point.moving.map_or(now >= arrival, |moving| !moving);
+            self.watch(&point)?;
+            // One that cannot say whether it moves, or says so before it has begun, is given the time that the way takes.
+            let there = point.moving == Some(false) && settling.in_position(point.displacement);
+            let rests = there || point.moving != Some(true) && now >= arrival;
             if rests {
                 rested.get_or_insert(now);
             }
@@ -86,9 +89,24 @@ impl RealRig {
     pub(super) fn stay_until(&mut self, until: f64) -> Result<(), RigFault> {
         while until - self.clock.now() > self.link.watchdog / 4.0 {
             self.wait_until(self.clock.now() + self.link.watchdog / 4.0)?;
-            self.poll()?;
+            let point = self.poll()?;
+            self.watch(&point)?;
         }
         self.wait_until(until)
+    }
+
+    /// Holds a reading on the way against the limits: the settled one would come too late. One alone may be a spike.
+    fn watch(&mut self, point: &Point) -> Result<(), RigFault> {
+        let displacement = (LimitedQuantity::MeasuredDisplacement, self.limits.displacement, point.displacement);
+        let force = (LimitedQuantity::Force, self.limits.force, point.force);
+        let breach = [displacement, force].into_iter().find(|(_, limit, value)| !limit.contains(*value));
+        let again = std::mem::replace(&mut self.outside, breach.is_some());
+        match breach {
+            Some((quantity, limit, value)) if again && on(Guarding::ReadingLimits) => {
+                Err(RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Waits without asking anything.
@@ -110,8 +128,9 @@ impl RealRig {
     fn set_off(&mut self, from: f64) -> Result<(f64, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
         let Proposed { going, target } = self.proposed.take().ok_or_else(nothing)?;
-        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, fault))?;
+        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         self.deaf = false;
+        self.outside = false;
         self.look_up()?;
         Ok((target, (target - from).abs() / going.speed))
     }

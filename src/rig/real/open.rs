@@ -1,12 +1,12 @@
 //! Opening a real rig. In: the plan's rig and its devices. Out: a rig that is who the plan says, has been told the limits
 //! and has been read once, or why not. Nothing moves.
 
+use super::validity::Judge;
 use super::{Part, RealRig};
 use crate::plan::{DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
 use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::port::Clock;
-use crate::rig::real::validity::Judge;
-use crate::rig::{Identity, RigFault, Wish};
+use crate::rig::{Identity, Rig as _, RigFault, Wish};
 
 impl RealRig {
     /// Asks both devices who they are, tells them the limits, and reads once.
@@ -25,6 +25,7 @@ impl RealRig {
         let began = clock.now();
         let mut rig = Self {
             settle: plan.settle,
+            limits: *limits,
             sign: plan.sign,
             calibration: plan.calibration.clone(),
             identity: nobody(&plan.name),
@@ -35,6 +36,7 @@ impl RealRig {
             began,
             heard: began,
             judge: Judge::default(),
+            outside: false,
             proposed: None,
             reread: 0,
             untrusted: None,
@@ -44,19 +46,22 @@ impl RealRig {
         rig.meet()?;
         rig.narrow(limits)?;
         rig.heard = rig.clock.now();
-        rig.poll()?;
+        if rig.poll()?.moving == Some(true) {
+            rig.hold();
+            return Err(RigFault::Device("it was moving before it was told to: held".to_owned()));
+        }
         Ok(rig)
     }
 
     /// Asks who is there.
     fn meet(&mut self) -> Result<(), RigFault> {
-        let actuator = self.actuator.identify().map_err(|fault| self.told(Part::Actuator, fault))?;
+        let actuator = self.actuator.identify().map_err(|fault| self.told(Part::Actuator, &fault))?;
         let fit = pinned(&self.link.actuator, &actuator);
-        fit.map_err(|fault| self.told(Part::Actuator, fault))?;
+        fit.map_err(|fault| self.told(Part::Actuator, &fault))?;
         let mut said = vec![actuator.clone()];
         if let (Some(cell), Some(link)) = (&mut self.load_cell, &self.link.load_cell) {
             let met = cell.identify().and_then(|identity| pinned(link, &identity).map(|()| identity));
-            said.push(met.map_err(|fault| self.told(Part::LoadCell, fault))?);
+            said.push(met.map_err(|fault| self.told(Part::LoadCell, &fault))?);
         }
         let all = |field: fn(&DeviceIdentity) -> &str| {
             said.iter().map(field).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ")
@@ -79,9 +84,9 @@ impl RealRig {
             if self.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
         };
         let own = Limits { displacement: turned(limits.displacement), force: turned(limits.force), ..*limits };
-        self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, fault))?;
+        self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, &fault))?;
         if let Some(cell) = &mut self.load_cell {
-            cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, fault))?;
+            cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, &fault))?;
         }
         Ok(())
     }

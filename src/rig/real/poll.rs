@@ -134,7 +134,7 @@ impl RealRig {
                 } else {
                     false
                 };
-                let fault = self.told(part, fault);
+                let fault = self.told(part, &fault);
                 Err(if again { Unusable::AskAgain(fault) } else { Unusable::Fault(fault) })
             }
         }

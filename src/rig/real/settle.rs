@@ -67,7 +67,9 @@ mod tests {
 
     #[test]
     fn the_slope_is_that_of_a_line_whatever_its_noise_is_symmetric_about() {
-        let line = |noise: [f64; 4]| (0..4).map(|i| (f64::from(i), 3.0 + 2.0 * f64::from(i) + noise[i as usize])).collect();
+        let on_line = |time: f64, noise: f64| (time, 3.0 + 2.0 * time + noise);
+        let line =
+            |noise: [f64; 4]| [0.0, 1.0, 2.0, 3.0].into_iter().zip(noise).map(|(time, noise)| on_line(time, noise)).collect();
         assert!((slope(&line([0.0; 4])).unwrap() - 2.0).abs() < 1e-12);
         assert!((slope(&line([1.0, -1.0, -1.0, 1.0])).unwrap() - 2.0).abs() < 1e-12);
         assert_eq!(slope(&VecDeque::from([(1.0, 1.0)])), None);

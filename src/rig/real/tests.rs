@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Limits, Link, PortPlan, ReadingRules, RigPlan, SafeState};
+use crate::rig::LimitedQuantity;
 use crate::rig::device::{Force, Sample};
 use crate::rig::failpoint::without;
 use crate::rig::testing::{FakeDevice, VirtualClock};
@@ -142,11 +143,9 @@ fn another_device_than_the_plan_s_is_refused() {
 #[test]
 fn what_never_settles_is_held_after_the_timeout() {
     let mut stand = stand();
-    // 20 N to and fro at 1 Hz: a slope of some 80 N/s over half a second.
-    let mut settled = 0.0;
-    stand.device.alter(move |_, sample| {
-        settled += 0.06;
-        sample.force = Some(Force::Newtons(20.0 * f64::sin(std::f64::consts::TAU * settled)));
+    // 6 N/s for ever, where 5 are allowed.
+    stand.device.alter(|_, sample| {
+        sample.force = sample.time.map(|time| Force::Newtons(6.0 * time));
         Ok(())
     });
     let began = stand.rig.time();
@@ -203,7 +202,7 @@ impl RealRig {
     /// Sends what was offered and looks no further.
     fn execute_briefly(&mut self) -> Result<(), RigFault> {
         let going = self.proposed.take().unwrap().going;
-        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, fault))
+        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))
     }
 }
 
@@ -316,8 +315,53 @@ fn a_wish_to_hold_ends_a_move_within_a_slice_and_the_rig_stands() {
     let stood = stand.device.inside().position;
     assert!(stood > 1e-4 && stood < 1e-3, "in mid-move, {stood}");
     clock.advance(1.0);
-    assert_eq!((stand.device.inside().position, stand.device.inside().holds), (stood, 1));
+    assert_eq!(stand.device.inside().position, stood);
+    assert_eq!(stand.device.inside().holds, 1);
     assert!(stand.rig.read().is_ok() && stand.wish.wants_end(), "heeded, and not forgotten");
+}
+
+#[test]
+fn a_force_beyond_its_limit_stops_a_move_on_the_way_and_a_lone_spike_does_not() {
+    let stands_at = || {
+        let mut stand = stand();
+        stand.device.inside().stiffness = 1e6;
+        let fault = stand.go(0.008).err();
+        (fault, stand.device.inside().position)
+    };
+    let (fault, stood) = stands_at();
+    assert!(matches!(fault, Some(RigFault::LimitBreached { quantity: LimitedQuantity::Force, .. })), "{fault:?}");
+    assert!((0.005..0.0052).contains(&stood), "{stood}");
+    assert_eq!(without(Guarding::ReadingLimits, stands_at), (None, 0.008));
+    let mut spiked = stand();
+    spiked.device.alter(|number, sample| {
+        if number == 8 {
+            sample.force = Some(Force::Newtons(6000.0));
+        }
+        Ok(())
+    });
+    assert_eq!(spiked.go(0.002), Ok((0.002, 200.0)));
+}
+
+#[test]
+fn a_device_that_says_it_rests_before_it_has_begun_is_waited_for() {
+    let mut stand = stand();
+    stand.device.alter(|number, sample| {
+        if number < 4 {
+            sample.moving = Some(false);
+        }
+        Ok(())
+    });
+    assert_eq!(stand.go(0.012), Ok((0.012, 1200.0)));
+}
+
+#[test]
+fn a_rig_that_moves_before_it_is_told_to_is_held() {
+    let moving = |device: &FakeDevice| {
+        let mut inside = device.inside();
+        (inside.target, inside.speed) = (0.01, 0.001);
+    };
+    let refused = opened(&plan(), moving).err().unwrap();
+    assert_eq!(refused.to_string(), "it was moving before it was told to: held");
 }
 
 #[test]

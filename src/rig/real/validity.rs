@@ -229,6 +229,7 @@ mod tests {
         for i in 0..50 {
             judge.judge(&at(1e-6 * f64::from(i % 5), 5.0), &RULES).unwrap();
         }
+        let mut judge = Judge::default();
         for i in 0..50 {
             judge.judge(&at(1e-5 * f64::from(i), 5.0 + f64::from(i / 3)), &RULES).unwrap();
         }
