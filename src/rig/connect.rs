@@ -45,13 +45,13 @@ type Attached = (Box<dyn Device>, Vec<(Box<dyn Emergency>, Vec<u8>)>);
 /// One device on its port, with the line and the bytes that stop it.
 fn attach(link: &DeviceLink, plan: &RigPlan, wish: &Wish) -> Result<Attached, RigFault> {
     let failed = |error: std::io::Error| RigFault::Device(format!("{}: {error}", link.port));
-    let (port, baud): (Box<dyn Port>, Option<u32>) = match &link.port {
-        PortPlan::Serial { path, baud } => (Box::new(SerialPort::open(path, *baud).map_err(failed)?), Some(*baud)),
-        PortPlan::Tcp { address } => (Box::new(TcpPort::connect(address, CONNECTING).map_err(failed)?), None),
+    let port: Box<dyn Port> = match &link.port {
+        PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud).map_err(failed)?),
+        PortPlan::Tcp { address } => Box::new(TcpPort::connect(address, CONNECTING).map_err(failed)?),
     };
     let emergency = port.emergency().map_err(failed)?;
     let clock: Box<dyn Clock> = Box::new(MonotonicClock::start());
-    let device = device::open(link, plan.settle.timeout, baud, port, clock, wish.clone());
+    let device = device::open(link, port, clock, wish.clone(), plan.settle.timeout);
     let bytes = device.emergency();
     Ok((device, vec![(emergency, bytes)]))
 }

@@ -121,7 +121,7 @@ mod tests {
         let (mut talk, port) = talk();
         say(&port, 1.05, b"old\n");
         say(&port, 0.1, b"new\n");
-        for _ in 0..2 {
+        for _ in 0..3 {
             say(&port, 0.1, b"new\n");
         }
         assert_eq!(ask(&mut Asking::default(), &mut talk).unwrap(), b"new");

@@ -157,7 +157,7 @@ fn what_it_refuses_is_said_in_words() {
 #[test]
 fn a_hold_ends_a_jog_and_the_next_jog_begins_at_once() {
     let (mut device, port) = identified();
-    reply(&port, "");
+    port.reply(&[]);
     status(&port, "Jog", 0.5);
     status(&port, "Idle", 0.52);
     device.hold().unwrap();
@@ -176,11 +176,11 @@ fn an_axis_held_at_rest_is_let_go_of_by_who_held_it_and_only_then() {
     let going = device.encode(0.001, 1e-3).unwrap();
     status(&port, "Hold:0", 0.0);
     assert!(reason(device.start(&going)).contains("somebody else"));
-    reply(&port, "");
+    port.reply(&[]);
     status(&port, "Hold:0", 0.0);
     device.hold().unwrap();
     status(&port, "Hold:0", 0.0);
-    reply(&port, "");
+    port.reply(&[]);
     status(&port, "Idle", 0.0);
     reply(&port, "ok\r\n");
     status(&port, "Jog", 0.0);
@@ -194,7 +194,7 @@ fn a_jog_without_answer_is_never_let_loose() {
     let going = device.encode(0.001, 1e-3).unwrap();
     status(&port, "Idle", 0.0);
     assert_eq!(device.start(&going), Err(DeviceFault::Silent { seconds: 2.0 }));
-    reply(&port, "");
+    port.reply(&[]);
     status(&port, "Hold:0", 0.0);
     device.hold().unwrap();
     status(&port, "Hold:0", 0.0);

@@ -97,7 +97,7 @@ mod tests {
         let (mut device, port, clock) = device();
         say(&port, 0.0, "-81");
         clock.advance(0.05);
-        say(&port, 0.0, "2344\r\n");
+        say(&port, 0.01, "2344\r\n");
         say(&port, 0.1, "-8123");
         say(&port, 0.1, "45\r\n");
         assert_eq!(count(&device.sample().unwrap()), -812_345);
