@@ -116,7 +116,8 @@ fn hold_watchdog<'d>(
 ) -> Option<()> {
     let slowest = devices.max_by(|one, other| one.link.reply_timeout.total_cmp(&other.link.reply_timeout))?;
     let silence = PATIENCE * slowest.link.reply_timeout;
-    if watchdog >= silence {
+    // 7 · 0.4 s is 2.8 s also where the last bit of the product says more.
+    if watchdog >= silence * (1.0 - 4.0 * f64::EPSILON) {
         return Some(());
     }
     let given = checker.given(block, "watchdog").map(|(_, entry)| entry.value.span);

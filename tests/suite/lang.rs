@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use psd::check::{Checked, LoadFault, Loader, Options, check};
 use psd::diagnostic::render::{Appearance, render_all};
-use psd::diagnostic::{Code, Severity};
+use psd::diagnostic::{Code, Diagnostic, Severity};
 use psd::quantity::display::readable;
 use psd::record::{Outcome, Record};
 use psd::rig::VirtualRig;
@@ -231,7 +231,7 @@ fn the_rigs_of_the_library_are_sound() {
     let on = |text: &str, rig: Option<&str>| {
         let options = Options { rig: rig.map(str::to_owned), ..Options::default() };
         let checked = check("plan.psd", text, &Folder(&plans), &options);
-        assert!(!checked.diagnostics.iter().any(|it| it.is_error()), "{rig:?}: {:?}", checked.diagnostics);
+        assert!(!checked.diagnostics.iter().any(Diagnostic::is_error), "{rig:?}: {:?}", checked.diagnostics);
         checked.plan.expect("no error stands").rig
     };
     let text = "use \"lib/bench_rig.psd\"\nspecimen beam { mass = 1 kg }\nmove out { to = 1 mm }\n";

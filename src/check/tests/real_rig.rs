@@ -113,6 +113,15 @@ fn a_real_rig_moves_only_when_named() {
 }
 
 #[test]
+fn a_watchdog_as_long_as_a_request_is_long_enough() {
+    let rig =
+        |watchdog: &str| text(&format!("link = serial(\"/dev/ttyUSB0\", native)\nsafe_state = hold\nwatchdog = {watchdog}"));
+    assert_eq!(real(&rig("2.8 s")).watchdog, 2.8);
+    let options = Options { rig: Some("frame".to_owned()), ..Options::default() };
+    assert!(check("plan.psd", &rig("2.799 s"), &Files(&[]), &options).plan.is_none());
+}
+
+#[test]
 fn a_file_that_is_no_device_is_found_when_it_is_opened_not_here() {
     let link = real(&text("link = serial(\"Cargo.toml\", native)\nsafe_state = hold"));
     assert_eq!(link.actuator.port.to_string(), "Cargo.toml");
