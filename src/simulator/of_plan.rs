@@ -27,15 +27,16 @@ pub enum NoStandIn {
 }
 
 /// The stand in place of the plan's rig; its lines are the actuator's and, where it has one of its own, the load cell's.
+/// `boot` is the word of this power-up; None: drawn from the seed.
 ///
 /// # Errors
 /// The plan's rig is virtual, or its specimen has no behaviour.
-pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64) -> Result<Stand, NoStandIn> {
+pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u16>) -> Result<Stand, NoStandIn> {
     let link = plan.rig.link.as_real().ok_or(NoStandIn::Virtual)?;
     let bench = bench(plan, link, seed)?;
-    let mut controllers = vec![("actuator", controller(plan, link, &link.actuator, &bench))];
+    let mut controllers = vec![("actuator", controller(plan, link, &link.actuator, &bench, boot))];
     if let Some(load_cell) = &link.load_cell {
-        controllers.push(("load cell", controller(plan, link, load_cell, &bench)));
+        controllers.push(("load cell", controller(plan, link, load_cell, &bench, boot)));
     }
     Ok(Stand::of(bench, log, script, controllers))
 }
@@ -80,12 +81,12 @@ fn at_rig(plan: &Plan, interval: Interval) -> Interval {
     if plan.rig.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
 }
 
-fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench) -> Box<dyn Firmware> {
+fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench, boot: Option<u16>) -> Box<dyn Firmware> {
     let serial_number = device.serial_number.clone().unwrap_or_else(|| "0042".to_owned());
     match &device.dialect {
         Dialect::Native => {
             let force_limits = at_rig(plan, plan.limits.force);
-            let settings = NativeSettings { serial_number, force_limits, watchdog: link.watchdog, boot: None };
+            let settings = NativeSettings { serial_number, force_limits, watchdog: link.watchdog, boot };
             Box::new(Native::new(settings, bench))
         }
         Dialect::Grbl => Box::new(Grbl::new(SIMULATED)),
@@ -165,7 +166,7 @@ move to_half {
     }
 
     fn stand(plan: &Plan) -> InProcess {
-        InProcess::new(of_plan(plan, &Script::default(), Log::none(), 1).expect("a stand"))
+        InProcess::new(of_plan(plan, &Script::default(), Log::none(), 1, None).expect("a stand"))
     }
 
     /// All that comes within a second.
@@ -239,7 +240,7 @@ move to_half {
     #[test]
     fn a_virtual_rig_and_a_specimen_of_nothing_need_none() {
         let mut plan = plan(Dialect::Native, None);
-        let reason = |plan: &Plan| of_plan(plan, &Script::default(), Log::none(), 1).err();
+        let reason = |plan: &Plan| of_plan(plan, &Script::default(), Log::none(), 1, None).err();
         assert_eq!(reason(&plan), None);
         plan.specimens[0].behaviour = None;
         assert_eq!(reason(&plan), Some(NoStandIn::NoBehaviour));
