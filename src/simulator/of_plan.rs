@@ -27,15 +27,16 @@ pub enum NoStandIn {
 }
 
 /// The stand in place of the plan's rig; its lines are the actuator's and, where it has one of its own, the load cell's.
+/// `boot` is the word of this power-up; None: drawn from the seed.
 ///
 /// # Errors
 /// The plan's rig is virtual, or its specimen has no behaviour.
-pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64) -> Result<Stand, NoStandIn> {
+pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u16>) -> Result<Stand, NoStandIn> {
     let link = plan.rig.link.as_real().ok_or(NoStandIn::Virtual)?;
     let bench = bench(plan, link, seed)?;
-    let mut controllers = vec![("actuator", controller(plan, link, &link.actuator, &bench))];
+    let mut controllers = vec![("actuator", controller(plan, link, &link.actuator, &bench, boot))];
     if let Some(load_cell) = &link.load_cell {
-        controllers.push(("load cell", controller(plan, link, load_cell, &bench)));
+        controllers.push(("load cell", controller(plan, link, load_cell, &bench, boot)));
     }
     Ok(Stand::of(bench, log, script, controllers))
 }
@@ -80,12 +81,12 @@ fn at_rig(plan: &Plan, interval: Interval) -> Interval {
     if plan.rig.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
 }
 
-fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench) -> Box<dyn Firmware> {
+fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench, boot: Option<u16>) -> Box<dyn Firmware> {
     let serial_number = device.serial_number.clone().unwrap_or_else(|| "0042".to_owned());
     match &device.dialect {
         Dialect::Native => {
             let force_limits = at_rig(plan, plan.limits.force);
-            let settings = NativeSettings { serial_number, force_limits, watchdog: link.watchdog, boot: None };
+            let settings = NativeSettings { serial_number, force_limits, watchdog: link.watchdog, boot };
             Box::new(Native::new(settings, bench))
         }
         Dialect::Grbl => Box::new(Grbl::new(SIMULATED)),
@@ -97,5 +98,153 @@ fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench) 
         Dialect::Mark10Gauge => Box::new(Mark10Gauge::new(1.0)),
         Dialect::Modbus(map) => Box::new(Modbus::new(*map)),
         Dialect::Nees { control_point } => Box::new(Nees::new(control_point.as_str(), link.own_speed)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::InProcess;
+    use super::super::firmware::sealed;
+    use super::*;
+    use crate::check::{LoadFault, Loader, Options, check};
+    use crate::plan::{Calibration, Gate, Link, PortPlan, ReadingRules, SafeState};
+    use crate::rig::port::{Clock as _, Port as _};
+    use std::time::Duration;
+
+    const PLAN: &str = "
+specimen beam {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 100 kN/m)
+}
+
+limits {
+  displacement = -1 mm .. 25 mm
+  force        = -2 kN .. 12 kN
+  speed        = 10 mm/s
+}
+
+move to_half {
+  to    = 0.5 mm
+  speed = 1 mm/s
+}
+";
+
+    struct NoFiles;
+
+    impl Loader for NoFiles {
+        fn load(&self, _: &str) -> Result<String, LoadFault> {
+            unreachable!("the plan uses no file")
+        }
+    }
+
+    fn device(dialect: Dialect) -> DeviceLink {
+        let port = PortPlan::Serial { path: "/dev/none".to_owned(), baud: 115_200 };
+        DeviceLink { port, dialect, reply_timeout: 0.2, serial_number: None }
+    }
+
+    /// The plan above on a real rig of these devices.
+    fn plan(actuator: Dialect, load_cell: Option<Dialect>) -> Plan {
+        let checked = check("plan.psd", PLAN, &NoFiles, &Options::default());
+        let mut plan = checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+        plan.rig.link = Link::Real(RealLink {
+            actuator: device(actuator),
+            load_cell: load_cell.map(device),
+            safe_state: SafeState::Hold,
+            gate: Gate { zero: 1.0, probe: 1e-4, stiffness: Interval::ALL },
+            readings: ReadingRules {
+                samples: 1,
+                rate: 50.0,
+                resolution: 0.0,
+                noise: 0.0,
+                force_range: Interval { low: -15e3, high: 15e3 },
+                frozen_after: 10,
+            },
+            watchdog: 3.0,
+            own_speed: 1e-3,
+        });
+        plan
+    }
+
+    fn stand(plan: &Plan) -> InProcess {
+        InProcess::new(of_plan(plan, &Script::default(), Log::none(), 1, None).expect("a stand"))
+    }
+
+    /// All that comes within a second.
+    fn heard(shared: &InProcess, line: usize, sent: &[u8]) -> String {
+        let mut port = shared.port(line);
+        port.write(sent, Duration::from_secs(1)).expect("sent");
+        let mut text = String::new();
+        let mut buffer = [0; 256];
+        let until = shared.clock().now() + 1.0;
+        while shared.clock().now() < until {
+            if let Ok(count) = port.read(&mut buffer, Duration::from_millis(10)) {
+                text.push_str(&String::from_utf8_lossy(&buffer[..count]));
+            }
+        }
+        text
+    }
+
+    #[test]
+    fn an_axis_and_a_cell_hang_on_one_specimen() {
+        let mut plan = plan(Dialect::Grbl, Some(Dialect::Hx711));
+        plan.rig.calibration = Calibration { newtons_per_count: Some(0.01), zero_count: 500.0, ..Calibration::default() };
+        let shared = stand(&plan);
+        assert!(heard(&shared, 0, b"$J=G21G90G53X2.000F600\n").starts_with("ok\r\n"));
+        let counts = heard(&shared, 1, b"");
+        assert_eq!(counts.lines().last(), Some("20500"), "200 N at 2 mm");
+    }
+
+    #[test]
+    fn a_rig_that_counts_the_other_way_has_its_limits_turned() {
+        let mut plan = plan(Dialect::Native, None);
+        plan.rig.sign = -1.0;
+        let hello = heard(&stand(&plan), 0, &sealed("HELLO 1"));
+        assert!(hello.contains(" -25.000000 1.000000 -12000.000 2000.000 10.000000 0 "), "{hello}");
+    }
+
+    #[test]
+    fn every_dialect_has_a_stand_in() {
+        let map = crate::plan::ModbusMap {
+            unit: 1,
+            number: crate::plan::ModbusNumber::Int16,
+            target: Some(0),
+            speed: None,
+            position: Some(1),
+            force: Some(2),
+            status: None,
+            moving_mask: 0,
+            command: None,
+            start_word: 0,
+            stop_word: 0,
+            length_unit: 1e-6,
+            speed_unit: 1e-6,
+            force_unit: 1.0,
+        };
+        let asked: [(Dialect, &[u8], &str); 8] = [
+            (Dialect::Grbl, b"?", "<Idle|MPos:0.000,"),
+            (Dialect::Indicator, b"", "ST,GS,+0000.00,kg\r\n"),
+            (Dialect::Scpi { newtons_per_unit: 1.0 }, b"READ?\n", "E+00\n"),
+            (Dialect::Instron, b"Q1\r\n", "0"),
+            (Dialect::Mark10, b"p", "S"),
+            (Dialect::Mark10Gauge, b"?\r\n", "N"),
+            (Dialect::Modbus(map), &[1, 3, 0, 0, 0, 2, 0xc4, 0x0b], "\u{1}\u{3}\u{4}"),
+            (Dialect::Nees { control_point: "MDL-00-01".to_owned() }, b"open-session\tpsd\n", "OK\t0\t"),
+        ];
+        for (dialect, question, answer) in asked {
+            let plan = plan(dialect.clone(), None);
+            let said = heard(&stand(&plan), 0, question);
+            assert!(said.contains(answer), "{dialect:?}: `{}`", said.escape_debug());
+        }
+    }
+
+    #[test]
+    fn a_virtual_rig_and_a_specimen_of_nothing_need_none() {
+        let mut plan = plan(Dialect::Native, None);
+        let reason = |plan: &Plan| of_plan(plan, &Script::default(), Log::none(), 1, None).err();
+        assert_eq!(reason(&plan), None);
+        plan.specimens[0].behaviour = None;
+        assert_eq!(reason(&plan), Some(NoStandIn::NoBehaviour));
+        plan.rig.link = Link::Virtual(crate::plan::VirtualLink::default());
+        assert_eq!(reason(&plan), Some(NoStandIn::Virtual));
     }
 }

@@ -25,11 +25,11 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
     let stopped = stopped_by_signals().map_err(Failure::Signals)?;
     let unfit = |reason: String| Failure::command_line(format!("{}: {reason}", arguments.plan.display()));
     // Nothing is made where there is nothing to stand in for.
-    of_plan(plan, &script, Log::none(), arguments.seed)
+    of_plan(plan, &script, Log::none(), arguments.seed, None)
         .map_err(|error| unfit(error.to_string()).help("name the real rig with --rig NAME, and give its specimen a behaviour"))?;
     let mut carriers = devices(plan).map(|(_, device)| carrier(device)).collect::<Result<Vec<_>, _>>()?;
     let log = arguments.log.as_deref().map_or_else(|| Ok(Log::none()), log)?;
-    let mut stand = of_plan(plan, &script, log, arguments.seed).map_err(|error| unfit(error.to_string()))?;
+    let mut stand = of_plan(plan, &script, log, arguments.seed, Some(power_up())).map_err(|error| unfit(error.to_string()))?;
 
     for (name, device) in devices(plan) {
         tell(&escape(&format!("  {name} of `{}`: {} at {}\n", plan.rig.name, device.dialect.name(), device.port)));
@@ -80,6 +80,15 @@ fn stopped_by_signals() -> std::io::Result<Arc<AtomicBool>> {
         signal_hook::flag::register(signal, Arc::clone(&stopped))?;
     }
     Ok(stopped)
+}
+
+/// A word that is another at every start: a simulator that was started anew has lost its position, and must not seem to
+/// be the one before.
+fn power_up() -> u16 {
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    let mixed = u64::from(now.subsec_nanos()) ^ now.as_secs() ^ u64::from(std::process::id());
+    let bytes = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15).to_be_bytes();
+    u16::from_be_bytes([bytes[0], bytes[1]])
 }
 
 /// Says how it went.

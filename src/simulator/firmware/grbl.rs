@@ -325,7 +325,7 @@ mod tests {
         for (line, answer) in [
             ("$J=X1", "error:22"),
             ("$J=F60", "error:16"),
-            ("$J=X1e0F60", "error:2"),
+            ("$J=X1e0F60", "error:20"),
             ("$J=X-F60", "error:2"),
             ("$Q", "error:3"),
             ("", "ok"),
