@@ -27,6 +27,7 @@ pub mod rig;
 pub mod simulator;
 
 pub mod run;
+pub mod serve;
 
 pub mod verdict;
 

@@ -42,6 +42,51 @@ pub enum Command {
 pub enum RigCommand {
     /// Lists the serial ports of this machine
     List,
+    /// Lets a coordinator or OpenSees drive the plan's rig, inside the plan's limits
+    Serve(ServeArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Prints `ready` once it listens, and after each session what it asked of the specimen.\n\
+    Exit codes: 0 closed by the client, 2 the plan or the command line is wrong, 3 the client or the rig\n\
+    failed, 4 stopped by a limit or by a person. The worst session counts.")]
+pub struct ServeArguments {
+    /// The plan, a `.psd` file: its rig, specimen and limits count
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// What the client speaks
+    #[arg(long, value_enum)]
+    pub protocol: ServedProtocol,
+    /// Where to listen; port 0: any free one. Other machines reach only another address than the loopback's
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8090")]
+    pub listen: std::net::SocketAddr,
+    /// The constant stiffness that a generic client is told [default: the specimen's initial one]
+    #[arg(long, value_name = "STIFFNESS")]
+    pub stiffness: Option<String>,
+    /// Ends after the first session
+    #[arg(long)]
+    pub once: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ServedProtocol {
+    /// NEES "LabVIEW plugin" ASCII, of OpenFresco and UI-SimCor
+    Nees,
+    /// The socket of OpenSees' `genericClient` and of OpenFresco's `GenericTCP`
+    GenericClient,
+}
+
+impl ServedProtocol {
+    /// The word of the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nees => "nees",
+            Self::GenericClient => "generic-client",
+        }
+    }
 }
 
 #[derive(Debug, Args)]

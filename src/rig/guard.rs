@@ -13,6 +13,8 @@ pub struct Guard<'rig> {
     commanded: Vec<f64>,
     /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
     settled: bool,
+    /// Checked, and not yet carried out, m.
+    proposed: Option<Vec<f64>>,
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -28,7 +30,7 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// It cannot be read, or stands outside a limit already.
     pub fn new(rig: &'rig mut dyn Rig, limits: Limits) -> Result<Self, RigFault> {
-        let mut guard = Self { rig, limits, commanded: Vec::new(), settled: false };
+        let mut guard = Self { rig, limits, commanded: Vec::new(), settled: false, proposed: None };
         guard.commanded = guard.read()?.displacement;
         Ok(guard)
     }
@@ -56,6 +58,16 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// A limit stands in the way, or the rig fails.
     pub fn move_to(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        self.propose(targets, speed)?;
+        self.execute()
+    }
+
+    /// The first half of [`Guard::move_to`]: everything is checked, nothing moves. What was proposed before is forgotten.
+    ///
+    /// # Errors
+    /// A limit stands in the way, or the rig refuses.
+    pub fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        self.proposed = None;
         let speed = speed.or_else(|| Some(self.limits.speed.high).filter(|high| high.is_finite()));
         self.check_targets(targets)?;
         let increments = targets.iter().zip(&self.commanded).map(|(to, from)| increment(*from, *to));
@@ -64,15 +76,28 @@ impl<'rig> Guard<'rig> {
         if let Some(speed) = speed {
             self.check(LimitedQuantity::Speed, self.limits.speed, speed)?;
         }
-        self.settled = false;
         let proposed = self.rig.propose(targets, speed);
         let offer = self.or_hold(proposed)?;
         // What the bytes say is what moves: they are held against the limits once more, as they will be sent.
         self.check_targets(&offer.targets)?;
         self.check(LimitedQuantity::Speed, self.limits.speed, offer.speed)?;
+        self.proposed = Some(targets.to_vec());
+        Ok(())
+    }
+
+    /// The other half: carries out what was proposed last, and settles.
+    ///
+    /// # Errors
+    /// The rig fails, or nothing was proposed that may be carried out.
+    pub fn execute(&mut self) -> Result<(), RigFault> {
+        let Some(targets) = self.proposed.take() else {
+            self.hold();
+            return Err(RigFault::Device("nothing was proposed to execute".to_owned()));
+        };
+        self.settled = false;
         let executed = self.rig.execute();
         self.or_hold(executed)?;
-        self.commanded.copy_from_slice(targets);
+        self.commanded = targets;
         self.settled = true;
         Ok(())
     }
@@ -160,8 +185,9 @@ impl<'rig> Guard<'rig> {
         self.check(LimitedQuantity::EnergyError, self.limits.energy_error, fraction.abs())
     }
 
-    /// Stops all motion and keeps the load.
+    /// Stops all motion and keeps the load. What was proposed is forgotten.
     pub fn hold(&mut self) {
+        self.proposed = None;
         self.rig.hold();
     }
 
@@ -319,6 +345,25 @@ mod tests {
     }
 
     #[test]
+    fn what_was_refused_or_carried_out_is_not_carried_out_again() {
+        let mut rig = Scripted::default();
+        let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+        assert!(guard.execute().is_err(), "nothing was proposed");
+        guard.propose(&[0.0005], None).unwrap();
+        assert_eq!(guard.commanded(), [0.0], "nothing moved yet");
+        assert!(guard.propose(&[0.03], None).is_err());
+        assert!(guard.execute().is_err(), "the proposal before it is forgotten");
+        guard.propose(&[0.0005], None).unwrap();
+        guard.hold();
+        assert!(guard.execute().is_err(), "held in between");
+        guard.propose(&[0.0005], None).unwrap();
+        guard.execute().unwrap();
+        assert_eq!(guard.commanded(), [0.0005]);
+        assert!(guard.execute().is_err());
+        assert_eq!(rig.displacement, 0.0005);
+    }
+
+    #[test]
     fn without_limits_a_target_that_is_no_number_still_never_passes() {
         for target in [f64::NAN, f64::INFINITY] {
             let mut rig = Scripted::default();
@@ -339,7 +384,7 @@ mod tests {
             let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
-            let mut guard = Guard { rig: &mut rig, limits: LIMITS, commanded: vec![0.001], settled: true };
+            let mut guard = Guard { rig: &mut rig, limits: LIMITS, commanded: vec![0.001], settled: true, proposed: None };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

@@ -65,14 +65,20 @@ impl VirtualRig {
     #[must_use]
     pub fn of_plan(plan: &Plan) -> Self {
         let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
+        let specimen = Self::specimen_of(plan);
+        Self { name: plan.rig.name.clone(), ..Self::new(link, plan.rig.settle, specimen, plan.rig.sign) }
+    }
+
+    /// The specimen that stands on the plan's rig: the one that the first procedure names, else the first.
+    #[must_use]
+    pub fn specimen_of(plan: &Plan) -> Option<&Specimen> {
         let named = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
             ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
             ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
             ProcedureKind::Impact(impact) => Some(impact.specimen),
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
         });
-        let specimen = plan.specimens.get(named.unwrap_or(0));
-        Self { name: plan.rig.name.clone(), ..Self::new(link, plan.rig.settle, specimen, plan.rig.sign) }
+        plan.specimens.get(named.unwrap_or(0))
     }
 
     /// Target at the rig, m.

@@ -2,8 +2,11 @@
 //! Out: bytes. It shares no parsing code with the drivers in `rig`, so that one cannot hide a mistake of the other.
 
 mod bench;
+mod bench_fault;
+pub mod firmware;
 
-pub use bench::{Bench, BenchSettings};
+pub use bench::{Bench, BenchSettings, SentMove};
+pub use bench_fault::BenchFault;
 
 /// What a controller's firmware does. It owns its dialect; the [`Bench`] owns motion, specimen and sensors.
 pub trait Firmware: Send {

@@ -1,0 +1,196 @@
+//! psd as a rig for others: a coordinator or a finite-element program drives the specimen behind the guard. In: a
+//! listener, a guard, a protocol. Out: how each session ended, and what it asked of the specimen. It reads no plan and opens no port.
+
+mod connection;
+mod generic_client;
+mod generic_header;
+mod nees;
+pub mod nees_message;
+mod specimen;
+#[cfg(test)]
+mod tests;
+
+use std::io::{self, ErrorKind};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use crate::rig::{Guard, RigFault};
+use connection::{Broken, Connection};
+pub use specimen::Driven;
+use specimen::Specimen;
+
+/// How often a wait looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// What the client speaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Protocol {
+    Nees,
+    /// With the constant stiffness it is told, N/m.
+    GenericClient {
+        stiffness: f64,
+    },
+}
+
+/// How a session ended. The rig holds in every case.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    /// The client said so.
+    Closed,
+    /// The client went away without a word.
+    HungUp,
+    /// A person wanted the end.
+    Stopped,
+    /// The client does not speak the protocol, or wants what cannot be served.
+    Misspoken(String),
+    Lost(String),
+    Limit(RigFault),
+    Rig(RigFault),
+}
+
+impl Ended {
+    /// Whether another client may come: not once the rig was stopped by a limit or by its own fault.
+    const fn allows_another(&self) -> bool {
+        matches!(self, Self::Closed | Self::HungUp | Self::Misspoken(_) | Self::Lost(_))
+    }
+}
+
+impl std::fmt::Display for Ended {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Closed => f.write_str("closed by the client"),
+            Self::HungUp => f.write_str("the client went away without closing"),
+            Self::Stopped => f.write_str("stopped by a person"),
+            Self::Misspoken(reason) => write!(f, "the client cannot be served: {reason}"),
+            Self::Lost(reason) => write!(f, "the connection was lost: {reason}"),
+            Self::Limit(fault) | Self::Rig(fault) => write!(f, "{fault}"),
+        }
+    }
+}
+
+impl From<RigFault> for Ended {
+    fn from(fault: RigFault) -> Self {
+        match fault {
+            RigFault::LimitBreached { .. } => Self::Limit(fault),
+            RigFault::Interrupted => Self::Stopped,
+            RigFault::NotSettled { .. } | RigFault::Device(_) => Self::Rig(fault),
+        }
+    }
+}
+
+impl From<Broken> for Ended {
+    fn from(broken: Broken) -> Self {
+        match broken {
+            Broken::HungUp => Self::HungUp,
+            Broken::Stopped => Self::Stopped,
+            Broken::Lost(error) => Self::Lost(error.to_string()),
+        }
+    }
+}
+
+/// One client, from its coming to its going.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    pub ended: Ended,
+    pub driven: Driven,
+}
+
+/// What happens while serving, for who tells it.
+#[derive(Debug)]
+pub enum Event<'a> {
+    Connected(SocketAddr),
+    Ended(&'a Session),
+}
+
+/// Serves one client after the other, or only `once`; a second one at the same time is refused. Ends when `stop` says so,
+/// and after a session that a limit or the rig ended.
+///
+/// # Errors
+/// The listener fails.
+pub fn serve(
+    listener: &TcpListener,
+    protocol: Protocol,
+    guard: &mut Guard<'_>,
+    once: bool,
+    stop: &(dyn Fn() -> bool + Sync),
+    told: &mut dyn FnMut(Event<'_>),
+) -> io::Result<()> {
+    listener.set_nonblocking(true)?;
+    let (busy, closing) = (AtomicBool::new(false), AtomicBool::new(false));
+    std::thread::scope(|scope| {
+        let (sender, clients) = channel();
+        let door = scope.spawn(|| keep_door(listener, &busy, &closing, sender));
+        loop {
+            let Some((stream, address)) = next_client(&clients, stop) else { break };
+            told(Event::Connected(address));
+            let session = session(stream, protocol, guard, &|| stop());
+            told(Event::Ended(&session));
+            if once || !session.ended.allows_another() {
+                break;
+            }
+            busy.store(false, Ordering::Release);
+        }
+        closing.store(true, Ordering::Release);
+        door.join().unwrap_or_else(|_| Err(io::Error::other("who keeps the door fell over")))
+    })
+}
+
+/// Serves one client.
+pub fn session(stream: TcpStream, protocol: Protocol, guard: &mut Guard<'_>, stop: &dyn Fn() -> bool) -> Session {
+    let mut specimen = match Specimen::new(guard) {
+        Ok(specimen) => specimen,
+        Err(fault) => return Session { ended: fault.into(), driven: Driven::default() },
+    };
+    let ended = match Connection::new(stream, stop) {
+        Err(error) => Ended::Lost(error.to_string()),
+        Ok(mut connection) => match protocol {
+            Protocol::Nees => nees::session(&mut connection, &mut specimen),
+            Protocol::GenericClient { stiffness } => generic_client::session(&mut connection, &mut specimen, stiffness),
+        },
+    };
+    Session { ended, driven: specimen.driven() }
+}
+
+/// Lets one client in while there is none, and turns the others away.
+fn keep_door(
+    listener: &TcpListener,
+    busy: &AtomicBool,
+    closing: &AtomicBool,
+    clients: Sender<(TcpStream, SocketAddr)>,
+) -> io::Result<()> {
+    let look = Timespec { tv_sec: 0, tv_nsec: 100_000_000 };
+    while !closing.load(Ordering::Acquire) {
+        match poll(&mut [PollFd::new(listener, PollFlags::IN)], Some(&look)) {
+            Ok(0) | Err(rustix::io::Errno::INTR) => continue,
+            Ok(_) => {}
+            Err(error) => return Err(error.into()),
+        }
+        match listener.accept() {
+            // Who is not sent on is closed by being dropped.
+            Ok(client) if !busy.swap(true, Ordering::AcqRel) => {
+                if clients.send(client).is_err() {
+                    return Ok(());
+                }
+            }
+            Ok(_) => {}
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::ConnectionAborted) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+fn next_client(clients: &Receiver<(TcpStream, SocketAddr)>, stop: &dyn Fn() -> bool) -> Option<(TcpStream, SocketAddr)> {
+    while !stop() {
+        match clients.recv_timeout(LOOK) {
+            Ok(client) => return Some(client),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return None,
+        }
+    }
+    None
+}
