@@ -18,7 +18,14 @@ const STIFFNESS: f64 = 1e5;
 #[derive(Clone)]
 struct Controller {
     clock: VirtualClock,
-    shared: Arc<Mutex<(Box<dyn Firmware>, Bench, Vec<u8>)>>,
+    shared: Arc<Mutex<Shared>>,
+}
+
+struct Shared {
+    firmware: Box<dyn Firmware>,
+    bench: Bench,
+    /// Said and not yet read.
+    coming: Vec<u8>,
 }
 
 impl Controller {
@@ -34,7 +41,7 @@ impl Controller {
             limits: Interval { low: -0.02, high: 0.06 },
             top_speed: 0.05,
         });
-        Self { clock: VirtualClock::default(), shared: Arc::new(Mutex::new((firmware, bench, Vec::new()))) }
+        Self { clock: VirtualClock::default(), shared: Arc::new(Mutex::new(Shared { firmware, bench, coming: Vec::new() })) }
     }
 
     fn talk(&self) -> Talk {
@@ -43,14 +50,14 @@ impl Controller {
 
     fn targets(&self) -> Vec<f64> {
         let shared = self.shared.lock().unwrap();
-        assert!(shared.1.violations().is_empty());
-        shared.1.targets().to_vec()
+        assert!(shared.bench.violations().is_empty());
+        shared.bench.targets().to_vec()
     }
 }
 
 impl Port for Controller {
     fn write(&mut self, bytes: &[u8], _: Duration) -> io::Result<()> {
-        let (firmware, bench, coming) = &mut *self.shared.lock().unwrap();
+        let Shared { firmware, bench, coming } = &mut *self.shared.lock().unwrap();
         bench.advance(self.clock.now());
         coming.extend(firmware.tick(bench));
         coming.extend(firmware.receive(bytes, bench));
@@ -58,7 +65,7 @@ impl Port for Controller {
     }
 
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        let (firmware, bench, coming) = &mut *self.shared.lock().unwrap();
+        let Shared { firmware, bench, coming } = &mut *self.shared.lock().unwrap();
         if coming.is_empty() {
             self.clock.advance(timeout.as_secs_f64());
             bench.advance(self.clock.now());
@@ -71,7 +78,7 @@ impl Port for Controller {
     }
 
     fn discard(&mut self) -> io::Result<()> {
-        self.shared.lock().unwrap().2.clear();
+        self.shared.lock().unwrap().coming.clear();
         Ok(())
     }
 
@@ -149,7 +156,7 @@ fn the_mark_10_stand_and_the_gauge_alone() {
     goes_there_and_back(&mut device, &controller, 1e-9);
     stays_where_it_is_stopped(&mut device, &controller);
     let alone = Controller::new(Box::new(firmware::Mark10Gauge::new(-1.0)));
-    alone.shared.lock().unwrap().1.go(0.001, 0.01);
+    alone.shared.lock().unwrap().bench.go(0.001, 0.01);
     alone.clock.advance(1.0);
     let sample = Mark10Gauge::new(alone.talk()).sample().unwrap();
     assert_eq!((sample.force, sample.displacement), (Some(Force::Newtons(-100.0)), None));
@@ -191,8 +198,8 @@ fn a_nees_rig() {
     let mut device = Nees::new(controller.talk(), "MDL-00-01".to_owned(), 5.0);
     goes_there_and_back(&mut device, &controller, 1e-12);
     let beyond = device.encode(0.07, 0.001).unwrap();
-    let targets = controller.shared.lock().unwrap().1.targets().len();
+    let targets = controller.shared.lock().unwrap().bench.targets().len();
     assert!(matches!(device.start(&beyond), Err(DeviceFault::Refused { .. })));
-    assert_eq!(controller.shared.lock().unwrap().1.targets().len(), targets, "the rig itself refuses, and nothing moves");
+    assert_eq!(controller.shared.lock().unwrap().bench.targets().len(), targets, "the rig itself refuses, and nothing moves");
     assert!(device.hold().is_ok());
 }
