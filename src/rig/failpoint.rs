@@ -10,6 +10,8 @@ pub enum Guarding {
     Following,
     Settling,
     Invalid,
+    /// What a device says of itself: emergency stop, watchdog, no reference.
+    Flags,
     Saturation,
     Frozen,
     Median,

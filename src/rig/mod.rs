@@ -8,6 +8,8 @@ pub mod failpoint;
 mod guard;
 mod load_cell;
 pub mod port;
+pub mod real;
+pub mod safety;
 mod settling;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -84,6 +86,9 @@ pub enum RigFault {
     LimitBreached { quantity: LimitedQuantity, value: f64, low: f64, high: f64 },
     #[error("the rig did not settle within {timeout} s")]
     NotSettled { timeout: f64 },
+    /// The rig says that it has arrived, and stands elsewhere, m.
+    #[error("following error: it stopped {:.6} mm from its target, the band is {:.6} mm", .error * 1e3, .band * 1e3)]
+    Following { error: f64, band: f64 },
     /// A person wants the rig held now, not at the end of the step.
     #[error("held on request in the middle of a step")]
     Interrupted,

@@ -32,7 +32,9 @@ impl Stop {
         match self {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
             | Self::Person { .. } => Outcome::Aborted { reason },
-            Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Faulted { reason },
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::NoInput { .. } | Self::BadInput { .. } => {
+                Outcome::Faulted { reason }
+            }
         }
     }
 
@@ -40,7 +42,9 @@ impl Stop {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
             Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
-            Self::Rig(RigFault::Device(_)) | Self::NoInput { .. } | Self::BadInput { .. } => EventKind::Fault,
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::NoInput { .. } | Self::BadInput { .. } => {
+                EventKind::Fault
+            }
         }
     }
 }

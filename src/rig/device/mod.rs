@@ -1,22 +1,36 @@
 //! What a real rig is made of: devices on ports, each speaking a dialect. A [`Device`] turns SI into bytes and back, and
 //! does nothing else: settling, limits, medians and the record are not its business.
 
+mod asking;
+mod grbl;
+mod hx711;
+mod indicator;
 mod instron;
 mod line;
 mod mark10;
 mod modbus;
+mod native;
 mod nees;
+mod open;
+mod scpi;
+mod stream;
 mod unnumbered;
 
 use crate::plan::Limits;
 
 use super::{LastMove, Tally};
 
+pub use grbl::GrblDevice;
+pub use hx711::Hx711Device;
+pub use indicator::IndicatorDevice;
 pub use instron::Instron;
 pub use line::{Answer, LONGEST_LINE, Missed, SLICE, Talk};
 pub use mark10::{Mark10, Mark10Gauge};
 pub use modbus::Modbus;
+pub use native::{NativeDevice, SIMULATED};
 pub use nees::Nees;
+pub use open::open;
+pub use scpi::ScpiDevice;
 
 /// Who a device says it is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

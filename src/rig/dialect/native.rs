@@ -140,6 +140,13 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
     (frame.len() <= LONGEST_FRAME).then(|| frame.into_bytes())
 }
 
+/// The sequence number of a frame to be sent.
+#[must_use]
+pub fn sequence(frame: &[u8]) -> Option<u32> {
+    let word = frame.split(|byte| matches!(byte, b' ' | b'*')).nth(1)?;
+    number::count(word).and_then(|count| u32::try_from(count).ok())
+}
+
 /// m or m/s as it is written: mm or mm/s.
 pub(crate) fn length(value: f64) -> Option<String> {
     number::write(value * 1e3, 6)

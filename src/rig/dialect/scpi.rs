@@ -20,7 +20,9 @@ pub struct Identification {
 pub enum Answer {
     Number(f64),
     /// 9.9E37 of either sign: infinity.
-    Overload,
+    Overload {
+        negative: bool,
+    },
 }
 
 /// Infinity, as SCPI writes it; 9.91E37 is "not a number".
@@ -44,7 +46,7 @@ pub fn answer(line: &[u8]) -> Result<Answer, &'static str> {
     if value.abs() < INFINITY {
         Ok(Answer::Number(value))
     } else if value.abs() == INFINITY {
-        Ok(Answer::Overload)
+        Ok(Answer::Overload { negative: value < 0.0 })
     } else {
         Err("it says itself that it is no number")
     }
@@ -58,8 +60,8 @@ mod tests {
     fn an_answer_is_one_number() {
         assert_eq!(answer(b"+5.12375000E+02"), Ok(Answer::Number(512.375)));
         assert_eq!(answer(b"-12"), Ok(Answer::Number(-12.0)));
-        assert_eq!(answer(b"9.9E37"), Ok(Answer::Overload));
-        assert_eq!(answer(b"-9.90000000E+37"), Ok(Answer::Overload));
+        assert_eq!(answer(b"9.9E37"), Ok(Answer::Overload { negative: false }));
+        assert_eq!(answer(b"-9.90000000E+37"), Ok(Answer::Overload { negative: true }));
         for line in [
             "9.91E37",
             "9.91000000E+37",

@@ -1,8 +1,33 @@
 //! Bytes to a device and back, and the time they take. In: bytes and a time-out. Out: bytes, or why there are none.
 //! It knows no dialect.
 
+mod clock;
+mod descriptor;
+mod serial;
+mod tcp;
+
 use std::io;
 use std::time::Duration;
+
+use crate::plan::PortPlan;
+
+pub use clock::MonotonicClock;
+pub use serial::SerialPort;
+pub use tcp::TcpPort;
+
+/// Longest wait for a connection, s.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// Opens the port of a plan. Nothing is sent.
+///
+/// # Errors
+/// It is not there, is no line, or is in use.
+pub fn open(port: &PortPlan) -> io::Result<Box<dyn Port>> {
+    Ok(match port {
+        PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud)?),
+        PortPlan::Tcp { address } => Box::new(TcpPort::connect(address, CONNECT_TIMEOUT)?),
+    })
+}
 
 /// A line to one device. Every call ends within its time-out; `ErrorKind::TimedOut` says that it was used up.
 pub trait Port: Send {

@@ -1,12 +1,16 @@
 //! What tests of real rigs stand on: a clock that only moves when someone waits, a port that says what it is told to
 //! say. In: a script. Out: bytes at their times. No test of a rig sleeps.
 
+mod device;
+
 use std::collections::VecDeque;
 use std::io;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::port::{Clock, Emergency, Port};
+
+pub use device::FakeDevice;
 
 /// Time that all clones share, s.
 #[derive(Clone, Debug, Default)]

@@ -1,0 +1,264 @@
+//! A stepper frame with Grbl 1.1, axis X. In: moves in SI. Out: jogs in absolute machine millimetres, and where the
+//! controller counts the axis to be. It measures nothing: without a transducer the loop is open.
+
+use std::collections::BTreeMap;
+
+use super::asking::Asking;
+use super::{Answer, Device, DeviceFault, DeviceIdentity, Move, Sample, Talk};
+use crate::plan::Limits;
+use crate::rig::Tally;
+use crate::rig::dialect::grbl::{self, State, Status, Word};
+
+/// Settings without which a specimen is not safe: number, value, why.
+const REQUIRED: [(u64, &str, &str); 6] = [
+    (1, "255", "the motor must keep holding"),
+    (10, "1", "it must report machine positions"),
+    (13, "0", "it must report millimetres"),
+    (20, "1", "targets outside its travel must be refused"),
+    (21, "1", "end switches must stop it"),
+    (22, "1", "it must know where it is"),
+];
+
+/// Fastest X may go, mm/min.
+const TOP_SPEED: u64 = 110;
+/// Steps per mm of X.
+const STEPS: u64 = 100;
+
+pub struct GrblDevice {
+    talk: Talk,
+    asking: Asking,
+    settings: BTreeMap<u64, f64>,
+    /// Has said who it is: a start from now on loses the position.
+    known: bool,
+    /// A jog was sent and not answered: it may wait in the controller.
+    unanswered: bool,
+    /// Held by this driver.
+    held: bool,
+}
+
+impl GrblDevice {
+    #[must_use]
+    pub fn new(talk: Talk) -> Self {
+        let asking = Asking::default();
+        Self { talk, asking, settings: BTreeMap::new(), known: false, unanswered: false, held: false }
+    }
+
+    /// Where it is, with the bytes that say so. A status asked for earlier agrees with one asked for now where both say
+    /// the same, or that it moves.
+    fn status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
+        let known = self.known;
+        let accept = |line: &[u8]| find(line, known, |word| if let Word::Status(status) = word { Some(*status) } else { None });
+        let same = |a: &(Status, Vec<u8>), b: &(Status, Vec<u8>)| a.0 == b.0 || a.0.state.is_moving() && b.0.state.is_moving();
+        self.asking.ask(&mut self.talk, grbl::ASK, accept, same)
+    }
+
+    /// Its status, where it can move or is moving.
+    fn fit_status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
+        let (status, raw) = self.status()?;
+        let reason = match status.state {
+            State::Alarm => "it is in alarm and does not know where it is: home it (`$H`)",
+            State::Door => "its safety door is open",
+            State::Check => "it only checks what it is told (`$C`)",
+            State::Sleep => "it is asleep and its motor holds nothing",
+            _ => return Ok((status, raw)),
+        };
+        Err(DeviceFault::Refused { reason: reason.to_owned() })
+    }
+
+    /// Sends a line that acts once however often it is heard, and collects what comes before its `ok`.
+    fn command(&mut self, line: &[u8], mut each: impl FnMut(&Word), enough: impl Fn(&[Word]) -> bool) -> Result<(), DeviceFault> {
+        let known = self.known;
+        let mut seen = Vec::new();
+        self.talk.exchange(line, b"\n", |line| {
+            for word in grbl::words(line) {
+                if let Some(fault) = fault(&word, known) {
+                    return Answer::Fault(fault);
+                }
+                if word == Word::Ok && enough(&seen) {
+                    seen.iter().for_each(&mut each);
+                    return Answer::Take(());
+                }
+                seen.push(word);
+            }
+            Answer::Ignore
+        })
+    }
+
+    /// Waits until it is in this state, a few time-outs long.
+    fn until(&mut self, wanted: impl Fn(State) -> bool) -> Result<Status, DeviceFault> {
+        let give_up = self.talk.now() + 8.0 * self.talk.reply_timeout();
+        loop {
+            let (status, _) = self.status()?;
+            if wanted(status.state) {
+                return Ok(status);
+            }
+            if self.talk.now() >= give_up {
+                return Err(DeviceFault::Unfit(format!("it stays in the state {:?}", status.state)));
+            }
+            self.talk.sleep(self.talk.reply_timeout() / 4.0)?;
+        }
+    }
+
+    /// Makes sure that a jog begins at once: a line sent to a held axis waits, and moves it when somebody lets go of it.
+    fn make_ready(&mut self) -> Result<(), DeviceFault> {
+        let refused = |reason: &str| Err(DeviceFault::Refused { reason: reason.to_owned() });
+        match self.fit_status()?.0.state {
+            State::Idle => Ok(()),
+            State::Held if self.unanswered => {
+                refused("a move that was never answered may wait in it: reset it while it is at rest (Ctrl-X), then begin again")
+            }
+            State::Held if self.held => {
+                // Nothing waits in it, so that nothing moves when it is let go of.
+                self.talk.send(grbl::RESUME)?;
+                self.until(|state| state == State::Idle)?;
+                self.held = false;
+                Ok(())
+            }
+            State::Held => refused("it is held by somebody else"),
+            _ => refused("it is still moving"),
+        }
+    }
+
+    /// One step, m.
+    fn quantum(&self) -> f64 {
+        let steps = self.settings.get(&STEPS).copied().filter(|steps| *steps > 0.0);
+        // Its report has 3 decimals.
+        steps.map_or(0.0, |steps| 1e-3 / steps) + 0.5e-6
+    }
+}
+
+/// The first word of a line that `pick` takes, with the line.
+fn find<T>(line: &[u8], known: bool, pick: impl Fn(&Word) -> Option<T>) -> Answer<(T, Vec<u8>)> {
+    let words = grbl::words(line);
+    // An `ok`, `error:` or `ALARM:` that comes here answers something older; only a start concerns every question.
+    let begun = words.iter().find(|word| matches!(word, Word::Banner(_)));
+    if let Some(fault) = begun.and_then(|word| fault(word, known)) {
+        return Answer::Fault(fault);
+    }
+    words.iter().find_map(pick).map_or(Answer::Ignore, |found| Answer::Take((found, line.to_vec())))
+}
+
+/// What a word that is bad news means.
+fn fault(word: &Word, known: bool) -> Option<DeviceFault> {
+    let refused = |reason: String| Some(DeviceFault::Refused { reason });
+    match word {
+        Word::Error(code) => refused(format!("{} (`error:{code}`)", grbl::error(*code))),
+        Word::Alarm(code) => refused(format!("{} (`ALARM:{code}`)", grbl::alarm(*code))),
+        Word::Banner(banner) if known => Some(DeviceFault::Rebooted { was: "running".to_owned(), is: banner.clone() }),
+        _ => None,
+    }
+}
+
+impl Device for GrblDevice {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.known = false;
+        // It may start anew when its port is opened, and then hears nothing for a while: the question is sent again.
+        self.talk.drain()?;
+        let accept = |line: &[u8]| find(line, false, |word| matches!(word, Word::Status(_)).then_some(()));
+        self.talk.exchange(grbl::ASK, b"\n", accept)?;
+        self.asking.doubt();
+        match self.fit_status()?.0.state {
+            State::Idle => {}
+            State::Held => {
+                let help =
+                    "it is held: look at it, then reset it while it is at rest (Ctrl-X keeps the position) and begin again";
+                return Err(DeviceFault::Unfit(help.to_owned()));
+            }
+            _ => return Err(DeviceFault::Unfit("it is moving already".to_owned())),
+        }
+        let mut who = None;
+        let keep = |word: &Word| {
+            if let Word::Version(version, text) = word {
+                who = Some((version.clone(), text.clone()));
+            }
+        };
+        self.command(grbl::BUILD, keep, |seen| seen.iter().any(|word| matches!(word, Word::Version(..))))?;
+        let mut settings = BTreeMap::new();
+        let keep = |word: &Word| {
+            if let Word::Setting(number, value) = word {
+                settings.extend(value.parse::<f64>().map(|value| (*number, value)));
+            }
+        };
+        self.command(grbl::SETTINGS, keep, |seen| seen.iter().any(|word| matches!(word, Word::Setting(..))))?;
+        check(&settings)?;
+        self.settings = settings;
+        (self.known, self.unanswered, self.held) = (true, false, false);
+        let (firmware, serial) = who.unwrap_or_default();
+        let simulated = serial.starts_with(super::SIMULATED);
+        Ok(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot: None, simulated })
+    }
+
+    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+        let jog = grbl::jog(target, speed).map_err(DeviceFault::Unfit)?;
+        let top = self.settings.get(&TOP_SPEED).copied().unwrap_or(f64::INFINITY);
+        // Grbl would go slower and say nothing.
+        if jog.speed * 6e4 <= top * (1.0 + 1e-12) {
+            return Ok(Move { frames: vec![jog.line], target: jog.target, speed: jog.speed, id: None });
+        }
+        Err(DeviceFault::Refused { reason: format!("{:.3} mm/min is faster than its `${TOP_SPEED}={top}`", jog.speed * 6e4) })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        self.make_ready()?;
+        for frame in &going.frames {
+            self.unanswered = true;
+            self.talk.drain()?;
+            let answered = self.command(frame, |_| (), |_| true);
+            self.unanswered = !matches!(answered, Ok(()) | Err(DeviceFault::Refused { .. } | DeviceFault::Rebooted { .. }));
+            answered?;
+        }
+        // An `ok` may answer something older: only the axis itself shows that the move was taken.
+        let (status, _) = self.fit_status()?;
+        let arrived = (status.position - going.target).abs() <= self.quantum();
+        if status.state == State::Jog || status.state == State::Idle && arrived {
+            return Ok(());
+        }
+        self.unanswered = true;
+        Err(DeviceFault::Refused { reason: format!("it said `ok` and did not move: it is in the state {:?}", status.state) })
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let (status, raw) = self.fit_status()?;
+        let moving = Some(status.state.is_moving());
+        Ok(Sample { displacement: Some(status.position), moving, raw: vec![raw], ..Sample::default() })
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        // While it jogs this ends the jog and leaves it idle; at rest it leaves it held. A reset would lose the position.
+        self.talk.send(grbl::HOLD)?;
+        self.held = true;
+        self.until(|state| !state.is_moving()).map(drop)
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        grbl::HOLD.to_vec()
+    }
+
+    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+        // Its travel is a setting of the machine, written to memory that wears: a run does not touch it.
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+/// Every setting that is not as it must be, with the line that mends it.
+fn check(settings: &BTreeMap<u64, f64>) -> Result<(), DeviceFault> {
+    let mut wrong = Vec::new();
+    for (number, required, why) in REQUIRED {
+        let value = settings.get(&number);
+        // Of the report mask only the bit of machine positions matters.
+        let right = value.is_some_and(|value| if number == 10 { value % 2.0 == 1.0 } else { Ok(*value) == required.parse() });
+        if !right {
+            let is = value.map_or("missing".to_owned(), |value| format!("{value}"));
+            wrong.push(format!("${number} is {is}, but {why}: send `${number}={required}`"));
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(DeviceFault::Unfit(wrong.join("; "))) }
+}
+
+#[cfg(test)]
+#[path = "grbl_tests.rs"]
+mod tests;

@@ -1,0 +1,277 @@
+//! A rig that speaks psd's own line protocol. In: moves and questions in SI. Out: replies that are whole, in order and
+//! from the same power-up. The bytes are `dialect::native`'s; it judges no reading.
+
+use super::{Answer, Device, DeviceFault, DeviceIdentity, Force, Move, Sample, Talk};
+use crate::plan::Limits;
+use crate::rig::dialect::native::{self, Bounds, Hello, Kind, Reply, Request, State};
+use crate::rig::dialect::number;
+use crate::rig::failpoint::{Guarding, on};
+use crate::rig::{LastMove, Tally};
+
+/// How the model of a simulator begins.
+pub const SIMULATED: &str = "PSD-SIM";
+
+pub struct NativeDevice {
+    talk: Talk,
+    /// Of the last request.
+    sequence: u32,
+    boot: Option<String>,
+    hello: Option<Hello>,
+    /// The limits of this run, as they were told.
+    narrowed: Option<Bounds>,
+    /// A request was not answered: rig and program may disagree on its number.
+    out_of_step: bool,
+    /// Held by this driver: the hold is latched.
+    held: bool,
+    /// Number of the next move, where none is proposed.
+    next_id: u64,
+    proposed: Option<Proposed>,
+}
+
+/// A move that has not been accepted.
+struct Proposed {
+    id: u64,
+    /// As it is written.
+    target: String,
+    sent: bool,
+}
+
+/// A reply and its bytes.
+struct Answered {
+    reply: Reply,
+    line: Vec<u8>,
+}
+
+impl NativeDevice {
+    #[must_use]
+    pub const fn new(talk: Talk) -> Self {
+        Self {
+            talk,
+            sequence: 0,
+            boot: None,
+            hello: None,
+            narrowed: None,
+            out_of_step: false,
+            held: false,
+            next_id: 1,
+            proposed: None,
+        }
+    }
+
+    /// Tells the rig that its position is to be trusted from now on; `token` says by whose word (letters, digits, `-`).
+    ///
+    /// # Errors
+    /// It refuses or is not heard.
+    pub fn reference(&mut self, token: &str) -> Result<(), DeviceFault> {
+        self.request(&Request::Reference { token }, Kind::Ack).map(drop)
+    }
+
+    fn hello(&self) -> Result<&Hello, DeviceFault> {
+        self.hello.as_ref().ok_or_else(|| DeviceFault::Unfit("the rig has not been asked who it is".to_owned()))
+    }
+
+    /// Asks and waits for the reply of this kind, having taken up the conversation again where it was broken off.
+    fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Answered, DeviceFault> {
+        if self.out_of_step {
+            self.say_hello()?;
+            if let Some(bounds) = self.narrowed {
+                self.request(&Request::Limits(&bounds), Kind::Ack)?;
+            }
+        }
+        let frame = self.frame(self.sequence.wrapping_add(1), request)?;
+        self.exchange(&frame, kind)
+    }
+
+    fn frame(&self, sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> {
+        native::frame(sequence, request).ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be said in a frame")))
+    }
+
+    /// Sends the frame of the next sequence number.
+    fn exchange(&mut self, frame: &[u8], kind: Kind) -> Result<Answered, DeviceFault> {
+        self.sequence = self.sequence.wrapping_add(1);
+        self.out_of_step = true;
+        let (sequence, boot) = (self.sequence, self.boot.as_deref());
+        let answered = self.talk.exchange(frame, b"\n", |line| judge(line, sequence, kind, boot))?;
+        let refused = answered.reply.kind == Kind::Err;
+        self.out_of_step = refused && answered.reply.words.first().is_some_and(|code| code == "SEQ");
+        if refused {
+            return Err(DeviceFault::Refused { reason: native::refusal(&answered.reply.words) });
+        }
+        Ok(answered)
+    }
+
+    fn say_hello(&mut self) -> Result<(), DeviceFault> {
+        let frame = self.frame(self.sequence.wrapping_add(1), &Request::Hello)?;
+        let Answered { reply, line } = self.exchange(&frame, Kind::Ack)?;
+        let hello = native::hello(&reply.words).filter(|hello| {
+            let Bounds { displacement, force, top_speed } = hello.bounds;
+            displacement.low <= displacement.high && force.low <= force.high && top_speed > 0.0
+        });
+        let strange = || DeviceFault::Unfit(format!("`{}` does not say what rig it is", line.escape_ascii()));
+        self.hello = Some(hello.ok_or_else(strange)?);
+        self.boot = Some(reply.boot);
+        Ok(())
+    }
+
+    /// A request that is answered by the state alone.
+    fn command(&mut self, request: &Request<'_>) -> Result<State, DeviceFault> {
+        let Answered { reply, line } = self.request(request, Kind::Ack)?;
+        state(&reply, &line)
+    }
+}
+
+/// What a line is to the request that is open.
+fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Answered> {
+    let Ok(reply) = native::reply(line) else { return Answer::Ignore };
+    if let Some(was) = boot.filter(|was| **was != *reply.boot)
+        && on(Guarding::Reboot)
+    {
+        return Answer::Fault(DeviceFault::Rebooted { was: was.to_owned(), is: reply.boot });
+    }
+    if reply.sequence != sequence && on(Guarding::Sequence) || reply.kind != kind && reply.kind != Kind::Err {
+        return Answer::Ignore;
+    }
+    Answer::Take(Answered { reply, line: line.to_vec() })
+}
+
+fn state(reply: &Reply, line: &[u8]) -> Result<State, DeviceFault> {
+    let word = reply.words.first().and_then(|word| native::state(word));
+    word.ok_or_else(|| DeviceFault::NoReading { raw: line.to_vec(), reason: "it names no state".to_owned() })
+}
+
+impl Device for NativeDevice {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.talk.drain()?;
+        self.narrowed = None;
+        self.say_hello()?;
+        let Answered { reply, line } = self.request(&Request::Status, Kind::Ack)?;
+        let flags = reply.words.get(1).and_then(|word| native::flags(word));
+        let strange = || DeviceFault::NoReading { raw: line.clone(), reason: "it has no flags".to_owned() };
+        if flags.ok_or_else(strange)?.emergency_stop {
+            return Err(DeviceFault::Unfit("the emergency stop is pressed".to_owned()));
+        }
+        // Between two runs nothing is said to the rig, so that its watchdog has tripped: beginning a run is the
+        // operator's act that lets go of it. Within a run it is never let go of.
+        if state(&reply, &line)? == State::Held {
+            self.command(&Request::Clear)?;
+        }
+        (self.held, self.proposed) = (false, None);
+        let hello = self.hello()?.clone();
+        self.next_id = hello.last.map_or(0, |last| last.id) + 1;
+        let simulated = hello.model.starts_with(SIMULATED);
+        let Hello { model, serial, firmware, .. } = hello;
+        Ok(DeviceIdentity { model, serial, firmware, boot: self.boot.clone(), simulated })
+    }
+
+    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+        let bounds = self.hello()?.bounds;
+        if self.out_of_step {
+            return Err(DeviceFault::Unfit("an answer is missing: the rig must be read before it moves again".to_owned()));
+        }
+        let said = |meant: f64| {
+            let written = native::length(meant)?;
+            let heard = number::read_back(&written, 1e3, meant)?;
+            Some((written, heard))
+        };
+        let unsaid = || DeviceFault::Unfit(format!("a move to {target} m at {speed} m/s cannot be said"));
+        let ((written, target), (_, speed)) = said(target).zip(said(speed)).ok_or_else(unsaid)?;
+        if !bounds.displacement.contains(target) {
+            return Err(DeviceFault::Refused { reason: format!("{written} mm is outside the limits the rig says it has") });
+        }
+        // A speed that is written as nothing would never arrive.
+        if !(0.0 < speed && speed <= bounds.top_speed) {
+            return Err(DeviceFault::Refused { reason: format!("{} mm/s is no speed of this rig", speed * 1e3) });
+        }
+        let id = match &self.proposed {
+            Some(proposed) if proposed.target == written || !proposed.sent => proposed.id,
+            // The rig may have heard the other target under this number.
+            Some(proposed) => proposed.id + 1,
+            None => self.next_id,
+        };
+        let moving = Request::Move { id, target, speed };
+        let requests = if self.held { vec![Request::Clear, moving] } else { vec![moving] };
+        let mut sequence = self.sequence;
+        let frames = requests.iter().map(|request| {
+            sequence = sequence.wrapping_add(1);
+            self.frame(sequence, request)
+        });
+        let frames = frames.collect::<Result<_, _>>()?;
+        let sent = self.proposed.as_ref().is_some_and(|proposed| proposed.sent && proposed.id == id);
+        self.proposed = Some(Proposed { id, target: written, sent });
+        Ok(Move { frames, target, speed, id: Some(id) })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        // The bytes are on record before they are sent: they are never made anew with another number.
+        let next = self.sequence.wrapping_add(1);
+        if self.out_of_step || going.frames.first().and_then(|frame| native::sequence(frame)) != Some(next) {
+            return Err(DeviceFault::Unfit("the rig was asked something else since this move was made".to_owned()));
+        }
+        if let Some(proposed) = &mut self.proposed {
+            proposed.sent = true;
+        }
+        for frame in &going.frames {
+            let Answered { reply, line } = self.exchange(frame, Kind::Ack)?;
+            state(&reply, &line)?;
+        }
+        self.next_id = going.id.map_or(self.next_id, |id| id + 1);
+        (self.held, self.proposed) = (false, None);
+        Ok(())
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let Answered { reply, line } = self.request(&Request::Measure { readings: 1 }, Kind::Data)?;
+        let Some(data) = native::data(&reply.words) else {
+            return Err(DeviceFault::NoReading { raw: line, reason: "a field is missing, too many or no number".to_owned() });
+        };
+        Ok(Sample {
+            time: Some(data.time),
+            displacement: Some(data.displacement),
+            force: Some(Force::Newtons(data.force)),
+            moving: Some(data.state == State::Moving),
+            flags: data.flags,
+            raw: vec![line],
+        })
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        self.talk.send(&self.emergency())?;
+        self.held = true;
+        match self.command(&Request::Stop)? {
+            State::Held => Ok(()),
+            other => Err(DeviceFault::Unfit(format!("told to stop, the rig says it is {other:?}"))),
+        }
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        b"!".to_vec()
+    }
+
+    fn narrow_limits(&mut self, limits: &Limits) -> Result<(), DeviceFault> {
+        let own = self.hello()?.bounds;
+        let bounds = Bounds {
+            displacement: own.displacement.intersection(limits.displacement),
+            force: own.force.intersection(limits.force),
+            top_speed: own.top_speed.min(limits.speed.high),
+        };
+        let Bounds { displacement, force, top_speed } = bounds;
+        if !(displacement.low <= displacement.high && force.low <= force.high && top_speed > 0.0) {
+            return Err(DeviceFault::Unfit("the limits of the plan and those of the rig have nothing in common".to_owned()));
+        }
+        self.command(&Request::Limits(&bounds))?;
+        self.narrowed = Some(bounds);
+        Ok(())
+    }
+
+    fn last_move(&self) -> Option<LastMove> {
+        self.hello.as_ref().and_then(|hello| hello.last)
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+#[cfg(test)]
+#[path = "native_tests.rs"]
+mod tests;

@@ -1,0 +1,207 @@
+//! A transducer that is asked `READ?`. In: nothing. Out: a force, by the plan's N per reading unit. After a silence it is
+//! asked who it is until it says so: whatever was late has then come before. It moves nothing.
+
+use super::{Answer, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use crate::plan::Limits;
+use crate::rig::Tally;
+use crate::rig::dialect::scpi;
+
+/// How often a question is put before it is given up.
+const ATTEMPTS: u32 = 3;
+
+pub struct ScpiDevice {
+    talk: Talk,
+    newtons_per_unit: f64,
+    /// As it says who it is.
+    name: Vec<u8>,
+    /// An earlier answer may still come.
+    doubtful: bool,
+}
+
+impl ScpiDevice {
+    #[must_use]
+    pub const fn new(talk: Talk, newtons_per_unit: f64) -> Self {
+        Self { talk, newtons_per_unit, name: Vec::new(), doubtful: false }
+    }
+
+    /// Asks who it is; every other line is thrown away.
+    fn say_name(&mut self) -> Result<Vec<u8>, DeviceFault> {
+        let expected = std::mem::take(&mut self.name);
+        let named = self.talk.exchange(scpi::IDENTIFY, b"\n", |line| {
+            let line = stripped(line);
+            let fits = scpi::identification(line).is_some() && (expected.is_empty() || line == expected);
+            if fits { Answer::Take(line.to_vec()) } else { Answer::Ignore }
+        });
+        self.name = named.as_ref().map_or(expected, Clone::clone);
+        named
+    }
+
+    /// Of several questions one answer came: the others are waited for no longer than a time-out.
+    fn catch_up(&mut self) -> Result<(), DeviceFault> {
+        self.talk.drain()?;
+        let before = self.talk.tally().resent;
+        self.say_name()?;
+        if self.talk.tally().resent > before {
+            self.talk.until_quiet(self.talk.reply_timeout())?;
+        }
+        self.doubtful = false;
+        Ok(())
+    }
+
+    /// The answer to a question put now.
+    fn read(&mut self) -> Result<Vec<u8>, DeviceFault> {
+        let began = self.talk.now();
+        for attempt in 0..ATTEMPTS {
+            if attempt > 0 {
+                self.talk.tally_mut().resent += 1;
+            }
+            if self.doubtful {
+                self.catch_up()?;
+            }
+            self.talk.drain()?;
+            let name = &self.name;
+            let accept = |line: &[u8]| {
+                let line = stripped(line);
+                if line == name { Answer::Ignore } else { Answer::Take(line.to_vec()) }
+            };
+            match self.talk.exchange_once(scpi::READ, b"\n", accept) {
+                Ok(line) => return Ok(line),
+                Err(DeviceFault::Silent { .. }) => self.doubtful = true,
+                Err(fault) => {
+                    // An interrupted question may be answered yet.
+                    self.doubtful = true;
+                    return Err(fault);
+                }
+            }
+        }
+        Err(DeviceFault::Silent { seconds: self.talk.now() - began })
+    }
+}
+
+fn stripped(line: &[u8]) -> &[u8] {
+    line.strip_suffix(b"\r").unwrap_or(line)
+}
+
+impl Device for ScpiDevice {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.name = Vec::new();
+        self.catch_up()?;
+        let who = scpi::identification(&self.name);
+        let who = who.ok_or_else(|| DeviceFault::Unfit("it does not say who it is".to_owned()))?;
+        let simulated = who.maker.starts_with(super::SIMULATED) || who.model.starts_with(super::SIMULATED);
+        let model = format!("{} {}", who.maker, who.model);
+        Ok(DeviceIdentity { model, serial: who.serial, firmware: who.firmware, boot: None, simulated })
+    }
+
+    fn encode(&mut self, _: f64, _: f64) -> Result<Move, DeviceFault> {
+        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
+    }
+
+    fn start(&mut self, _: &Move) -> Result<(), DeviceFault> {
+        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let line = self.read()?;
+        let (value, saturated) = match scpi::answer(&line) {
+            Ok(scpi::Answer::Number(value)) => (value, false),
+            // Past every limit.
+            Ok(scpi::Answer::Overload { negative }) => (if negative { f64::NEG_INFINITY } else { f64::INFINITY }, true),
+            Err(reason) => return Err(DeviceFault::NoReading { raw: line, reason: reason.to_owned() }),
+        };
+        let force = Some(Force::Newtons(value * self.newtons_per_unit));
+        Ok(Sample { force, flags: Flags { saturated, ..Flags::default() }, raw: vec![line], ..Sample::default() })
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+
+    const NAME: &str = "PSD-SIM,DMM 7,1234,A.02";
+
+    fn device() -> (ScpiDevice, ScriptedPort) {
+        let clock = VirtualClock::default();
+        let port = ScriptedPort::new(&clock);
+        (ScpiDevice::new(Talk::new(Box::new(port.clone()), Box::new(clock), 0.5), -100.0), port)
+    }
+
+    fn reply(port: &ScriptedPort, seconds: f64, line: &str) {
+        port.reply(&[Say::After(seconds, format!("{line}\r\n").into_bytes())]);
+    }
+
+    fn identified() -> (ScpiDevice, ScriptedPort) {
+        let (mut device, port) = device();
+        reply(&port, 0.1, NAME);
+        device.identify().unwrap();
+        (device, port)
+    }
+
+    fn sent(port: &ScriptedPort) -> Vec<Vec<u8>> {
+        port.sent().into_iter().map(|(_, bytes)| bytes).collect()
+    }
+
+    #[test]
+    fn it_says_who_it_is_and_what_it_reads() {
+        let (mut device, port) = device();
+        reply(&port, 0.1, NAME);
+        let identity = device.identify().unwrap();
+        assert_eq!((identity.model.as_str(), identity.serial.as_str(), identity.simulated), ("PSD-SIM DMM 7", "1234", true));
+        reply(&port, 0.1, "+5.12375E+00");
+        let sample = device.sample().unwrap();
+        assert_eq!(sample.force, Some(Force::Newtons(-512.375)));
+        assert_eq!((sample.raw, sent(&port)), (vec![b"+5.12375E+00".to_vec()], vec![b"*IDN?\n".to_vec(), b"READ?\n".to_vec()]));
+    }
+
+    #[test]
+    fn overload_is_saturated_and_what_is_no_number_no_reading() {
+        let (mut device, port) = identified();
+        for (line, force) in [("9.9E37", f64::NEG_INFINITY), ("-9.9E37", f64::INFINITY)] {
+            reply(&port, 0.1, line);
+            let sample = device.sample().unwrap();
+            assert_eq!((sample.force, sample.flags.saturated), (Some(Force::Newtons(force)), true), "turned by the plan's sign");
+        }
+        for line in ["9.91E37", "1e400", "nan", "OVL", "1,5", ""] {
+            reply(&port, 0.1, line);
+            assert!(matches!(device.sample(), Err(DeviceFault::NoReading { .. })), "{line}");
+        }
+    }
+
+    #[test]
+    fn after_a_silence_what_is_late_comes_before_its_name_and_is_thrown_away() {
+        let (mut device, port) = identified();
+        reply(&port, 0.8, "6.66");
+        // The name is asked for while the old answer is still on its way; it comes behind it.
+        reply(&port, 0.1, NAME);
+        reply(&port, 0.1, "1.5");
+        assert_eq!(device.sample().unwrap().force, Some(Force::Newtons(-150.0)));
+        assert_eq!(sent(&port)[1..], [&b"READ?\n"[..], b"*IDN?\n", b"READ?\n"]);
+        assert_eq!(device.tally(), Tally { resent: 1, ignored: 1, reread: 0 });
+    }
+
+    #[test]
+    fn silence_ends_within_a_bounded_time() {
+        let (mut device, _) = identified();
+        let began = device.talk.now();
+        assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
+        assert!(device.talk.now() - began < 10.0 * 0.5);
+        assert!(device.encode(0.0, 1.0).is_err());
+    }
+}

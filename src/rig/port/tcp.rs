@@ -1,0 +1,115 @@
+//! A line over the network. In: `host:port`. Out: a [`Port`]. The other side is not authenticated: a rig belongs on
+//! loopback, a tunnel or a wire of its own. It knows no dialect.
+
+use std::io::{self, ErrorKind};
+use std::net::{TcpStream, ToSocketAddrs as _};
+use std::os::fd::{AsFd as _, OwnedFd};
+use std::time::Duration;
+
+use super::descriptor::{self, Sender};
+use super::{Emergency, Port};
+
+/// Bytes thrown away by one discard, so that a flood does not keep it busy for ever.
+const MOST_DISCARDED: usize = 1 << 20;
+
+/// An open connection.
+pub struct TcpPort(OwnedFd);
+
+impl TcpPort {
+    /// Connects to `address`; each of its addresses is tried for `timeout`.
+    ///
+    /// # Errors
+    /// Nobody answers there.
+    pub fn connect(address: &str, timeout: Duration) -> io::Result<Self> {
+        let told = |error: &io::Error| io::Error::new(error.kind(), format!("`{address}` cannot be reached: {error}"));
+        let mut last = io::Error::new(ErrorKind::NotFound, format!("`{address}` is no address"));
+        for place in address.to_socket_addrs().map_err(|error| told(&error))? {
+            match TcpStream::connect_timeout(&place, timeout) {
+                Ok(stream) => {
+                    stream.set_nodelay(true)?;
+                    stream.set_nonblocking(true)?;
+                    return Ok(Self(stream.into()));
+                }
+                Err(error) => last = told(&error),
+            }
+        }
+        Err(last)
+    }
+}
+
+impl Port for TcpPort {
+    fn write(&mut self, bytes: &[u8], timeout: Duration) -> io::Result<()> {
+        descriptor::write(self.0.as_fd(), bytes, timeout)
+    }
+
+    fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        descriptor::read(self.0.as_fd(), buffer, timeout)
+    }
+
+    fn discard(&mut self) -> io::Result<()> {
+        let (mut buffer, mut discarded) = ([0; 4096], 0);
+        while discarded < MOST_DISCARDED {
+            match descriptor::read(self.0.as_fd(), &mut buffer, Duration::ZERO) {
+                Ok(count) => discarded += count,
+                Err(error) if error.kind() == ErrorKind::TimedOut => return Ok(()),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    fn emergency(&self) -> io::Result<Box<dyn Emergency>> {
+        Sender::of(&self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Read as _, Write as _};
+    use std::net::TcpListener;
+
+    const LONG: Duration = Duration::from_secs(5);
+    const SHORT: Duration = Duration::from_millis(30);
+
+    fn pair() -> (TcpStream, TcpPort) {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = TcpPort::connect(&listener.local_addr().unwrap().to_string(), LONG).unwrap();
+        (listener.accept().unwrap().0, port)
+    }
+
+    #[test]
+    fn bytes_go_both_ways_and_a_hangup_gives_what_came_first() {
+        let (mut peer, mut port) = pair();
+        port.write(b"open-session\tpsd\n", LONG).unwrap();
+        port.emergency().unwrap().send(b"!");
+        let mut heard = [0; 18];
+        peer.read_exact(&mut heard).unwrap();
+        assert_eq!(&heard, b"open-session\tpsd\n!");
+        let mut buffer = [0; 64];
+        assert_eq!(port.read(&mut buffer, SHORT).unwrap_err().kind(), ErrorKind::TimedOut);
+        peer.write_all(b"OK\t0\n").unwrap();
+        drop(peer);
+        let mut got = Vec::new();
+        let end = loop {
+            match port.read(&mut buffer, LONG) {
+                Ok(count) => got.extend_from_slice(&buffer[..count]),
+                Err(error) => break error.kind(),
+            }
+        };
+        assert_eq!((got.as_slice(), end), (&b"OK\t0\n"[..], ErrorKind::BrokenPipe));
+        assert_eq!(port.discard().unwrap_err().kind(), ErrorKind::BrokenPipe);
+    }
+
+    #[test]
+    fn a_peer_that_never_reads_makes_a_write_end_in_time_and_nobody_there_is_told() {
+        let (_peer, mut port) = pair();
+        let end = (0..100_000).find_map(|_| port.write(&[b'x'; 4096], SHORT).err());
+        assert_eq!(end.unwrap().kind(), ErrorKind::TimedOut);
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap().to_string();
+        drop(listener);
+        let nobody = TcpPort::connect(&address, LONG).err().unwrap();
+        assert!(nobody.to_string().starts_with(&format!("`{address}` cannot be reached")), "{nobody}");
+    }
+}

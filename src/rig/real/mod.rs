@@ -1,0 +1,198 @@
+//! A rig that moves a real specimen. In: targets, and one or two devices. Out: settled readings in the plan's sign, each
+//! judged; whatever goes wrong holds the rig. It knows no dialect and no procedure; what a procedure may ask for is the
+//! guard's business.
+
+mod motion;
+mod open;
+mod poll;
+mod settle;
+mod validity;
+
+use crate::plan::{Calibration, Limits, RealLink, Settle};
+
+use super::device::{Device, DeviceFault, Move};
+use super::failpoint::{Guarding, on};
+use super::port::Clock;
+use super::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+use validity::Judge;
+
+/// What six decimals of a millimetre cannot say, m.
+const WIRE_ROUNDING: f64 = 0.5e-9;
+
+/// An actuator and what weighs what it bends.
+pub struct RealRig {
+    link: RealLink,
+    settle: Settle,
+    limits: Limits,
+    /// +1 or −1: how displacement and force of the devices count in the plan.
+    sign: f64,
+    calibration: Calibration,
+    identity: Identity,
+    actuator: Box<dyn Device>,
+    load_cell: Option<Box<dyn Device>>,
+    clock: Box<dyn Clock>,
+    wish: Wish,
+    /// The clock when it was opened, s.
+    began: f64,
+    /// The clock when the devices were last heard, s.
+    heard: f64,
+    judge: Judge,
+    /// The last reading on the way was outside a limit.
+    outside: bool,
+    proposed: Option<Proposed>,
+    reread: u64,
+    /// Why its position is not to be trusted.
+    untrusted: Option<String>,
+    /// The words that hold it found no ear: only those that need no answer are left.
+    deaf: bool,
+}
+
+/// A move that was offered and not yet sent.
+#[derive(Clone, Debug)]
+struct Proposed {
+    going: Move,
+    /// m, in the plan's sign.
+    target: f64,
+}
+
+impl RealRig {
+    /// Whether its position and readings are still to be trusted: no device started anew or lost its reference.
+    #[must_use]
+    pub const fn trusted(&self) -> bool {
+        self.untrusted.is_none()
+    }
+
+    /// Whether its displacement is what was commanded and nothing measures it.
+    #[must_use]
+    pub fn open_loop(&self) -> bool {
+        open::commands_only(&self.link)
+    }
+
+    /// The wall clock, for the record.
+    #[must_use]
+    pub fn wall(&self) -> Option<String> {
+        self.clock.wall()
+    }
+
+    /// A fault of a device, said of the rig.
+    fn told(&mut self, part: Part, fault: &DeviceFault) -> RigFault {
+        let place = match (part, &self.link.load_cell) {
+            (Part::LoadCell, Some(cell)) => format!("load cell on {}", cell.port),
+            _ => format!("actuator on {}", self.link.actuator.port),
+        };
+        let told = format!("{place}: {fault}");
+        match fault {
+            DeviceFault::Interrupted => return RigFault::Interrupted,
+            DeviceFault::Rebooted { .. } => self.untrusted = Some(told.clone()),
+            _ => {}
+        }
+        RigFault::Device(told)
+    }
+
+    /// Holds where `result` is a fault.
+    fn or_hold<T>(&mut self, result: Result<T, RigFault>) -> Result<T, RigFault> {
+        if result.is_err() {
+            self.hold();
+        }
+        result
+    }
+}
+
+/// Which device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Actuator,
+    LoadCell,
+}
+
+impl Rig for RealRig {
+    fn identity(&self) -> Identity {
+        self.identity.clone()
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        1
+    }
+
+    fn time(&self) -> f64 {
+        self.clock.now() - self.began
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        self.proposed = None;
+        if let Some(reason) = &self.untrusted {
+            return Err(RigFault::Device(format!("not moved any more: {reason}")));
+        }
+        let target = match targets {
+            [target] if target.is_finite() => *target,
+            [target] => return Err(RigFault::Device(format!("the target {target} m is no place"))),
+            _ => return Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", targets.len()))),
+        };
+        let speed = speed.unwrap_or(self.link.own_speed);
+        let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let said = self.sign * going.target;
+        // What the devices resolve is as near as they can say it.
+        let allowed = WIRE_ROUNDING.max(self.link.readings.resolution / 2.0) * (1.0 + 1e-6);
+        let error = (said - target).abs();
+        let apt = error <= allowed && going.speed > 0.0 && going.speed.is_finite();
+        if on(Guarding::WireNumber) && !apt {
+            let reason = format!("asked for {target} m, the bytes say {said} m at {} m/s: not sent", going.speed);
+            return Err(RigFault::Device(reason));
+        }
+        let offer = Offer { targets: vec![said], speed: going.speed, wire: going.frames.concat(), move_id: going.id };
+        self.proposed = Some(Proposed { going, target });
+        Ok(offer)
+    }
+
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let executed = self.carry_out();
+        self.or_hold(executed)
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        let paused = self.stay_until(self.clock.now() + seconds);
+        self.or_hold(paused)
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        let read = self.settled_reading();
+        self.or_hold(read)
+    }
+
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let traversed = self.stroke(targets, velocity, samples, each);
+        self.or_hold(traversed)
+    }
+
+    /// Says so, and where that finds no ear sends what needs no answer.
+    fn hold(&mut self) {
+        self.wish.heed();
+        self.proposed = None;
+        if self.deaf || self.actuator.hold().is_err() {
+            self.deaf = true;
+            safety::hold_everything();
+        }
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        DeclaredNoise { force: self.link.readings.noise, resolution: self.link.readings.resolution }
+    }
+
+    fn last_move(&self) -> Option<LastMove> {
+        let last = self.actuator.last_move()?;
+        Some(LastMove { target: self.sign * last.target, ..last })
+    }
+
+    fn tally(&self) -> Tally {
+        let cell = self.load_cell.as_ref().map_or_else(Tally::default, |cell| cell.tally());
+        let actuator = self.actuator.tally();
+        Tally {
+            resent: actuator.resent + cell.resent,
+            ignored: actuator.ignored + cell.ignored,
+            reread: actuator.reread + cell.reread + self.reread,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,114 @@
+//! Opening a real rig. In: the plan's rig and its devices. Out: a rig that is who the plan says, has been told the limits
+//! and has been read once, or why not. Nothing moves.
+
+use super::validity::Judge;
+use super::{Part, RealRig};
+use crate::plan::{DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
+use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
+use crate::rig::port::Clock;
+use crate::rig::{Identity, Rig as _, RigFault, Wish};
+
+impl RealRig {
+    /// Asks both devices who they are, tells them the limits, and reads once.
+    ///
+    /// # Errors
+    /// A device does not answer, is another one than the plan's, or is not fit; or the reading is not to be used.
+    pub fn open(
+        plan: &RigPlan,
+        limits: &Limits,
+        actuator: Box<dyn Device>,
+        load_cell: Option<Box<dyn Device>>,
+        clock: Box<dyn Clock>,
+        wish: Wish,
+    ) -> Result<Self, RigFault> {
+        let link = plan.link.as_real().ok_or_else(|| RigFault::Device("the plan's rig is not a real one".to_owned()))?.clone();
+        let began = clock.now();
+        let mut rig = Self {
+            settle: plan.settle,
+            limits: *limits,
+            sign: plan.sign,
+            calibration: plan.calibration.clone(),
+            identity: nobody(&plan.name),
+            actuator,
+            load_cell,
+            clock,
+            wish,
+            began,
+            heard: began,
+            judge: Judge::default(),
+            outside: false,
+            proposed: None,
+            reread: 0,
+            untrusted: None,
+            deaf: false,
+            link,
+        };
+        rig.meet()?;
+        rig.narrow(limits)?;
+        rig.heard = rig.clock.now();
+        if rig.poll()?.moving == Some(true) {
+            rig.hold();
+            return Err(RigFault::Device("it was moving before it was told to: held".to_owned()));
+        }
+        Ok(rig)
+    }
+
+    /// Asks who is there.
+    fn meet(&mut self) -> Result<(), RigFault> {
+        let actuator = self.actuator.identify().map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let fit = pinned(&self.link.actuator, &actuator);
+        fit.map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let mut said = vec![actuator.clone()];
+        if let (Some(cell), Some(link)) = (&mut self.load_cell, &self.link.load_cell) {
+            let met = cell.identify().and_then(|identity| pinned(link, &identity).map(|()| identity));
+            said.push(met.map_err(|fault| self.told(Part::LoadCell, &fault))?);
+        }
+        let all = |field: fn(&DeviceIdentity) -> &str| {
+            said.iter().map(field).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ")
+        };
+        let loop_open = if commands_only(&self.link) { " (open loop: displacement as commanded)" } else { "" };
+        self.identity = Identity {
+            name: self.identity.name.clone(),
+            model: all(|identity| &identity.model) + loop_open,
+            serial: all(|identity| &identity.serial),
+            firmware: all(|identity| &identity.firmware),
+            boot: actuator.boot,
+            simulated: said.iter().any(|identity| identity.simulated),
+        };
+        Ok(())
+    }
+
+    /// Tells the devices the limits, in their own sign.
+    fn narrow(&mut self, limits: &Limits) -> Result<(), RigFault> {
+        let turned = |interval: Interval| {
+            if self.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
+        };
+        let own = Limits { displacement: turned(limits.displacement), force: turned(limits.force), ..*limits };
+        self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        if let Some(cell) = &mut self.load_cell {
+            cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, &fault))?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether nothing measures where the actuator is.
+pub(super) const fn commands_only(link: &RealLink) -> bool {
+    matches!(link.actuator.dialect, Dialect::Grbl)
+}
+
+fn nobody(name: &str) -> Identity {
+    let unknown = String::new;
+    let name = name.to_owned();
+    Identity { name, model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: false }
+}
+
+/// The plan may say which device it must be.
+fn pinned(link: &DeviceLink, identity: &DeviceIdentity) -> Result<(), DeviceFault> {
+    match &link.serial_number {
+        Some(wanted) if *wanted != identity.serial => {
+            Err(DeviceFault::Unfit(format!("the plan wants serial number `{wanted}`, this one is `{}`", identity.serial)))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,194 @@
+//! One reading of a real rig. In: what actuator and load cell say. Out: displacement and force in the plan's sign, judged,
+//! with the bytes they were made of; what is no reading is asked for again a few times. It moves nothing.
+
+use super::validity::{Invalid, Said};
+use super::{Part, RealRig};
+use crate::rig::device::{DeviceFault, Flags, Force, Sample};
+use crate::rig::failpoint::{Guarding, on};
+use crate::rig::{Reading, RigFault, safety};
+
+/// How often a reading that is none is asked for again.
+const REREADS: u32 = 3;
+
+/// One usable reading, in the plan's sign.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Point {
+    /// Rig time, s.
+    pub(super) time: f64,
+    /// m
+    pub(super) displacement: f64,
+    /// N
+    pub(super) force: f64,
+    /// Whether the actuator says it still moves.
+    pub(super) moving: Option<bool>,
+    /// A device itself says its reading has not settled.
+    pub(super) unsettled: bool,
+    /// Also of replies that were no reading.
+    pub(super) raw: Vec<Vec<u8>>,
+}
+
+impl RealRig {
+    /// Reads once, as the rig stands.
+    pub(super) fn poll(&mut self) -> Result<Point, RigFault> {
+        let mut raw = Vec::new();
+        let mut left = REREADS;
+        loop {
+            let asked = self.ask(&mut raw);
+            if let Err(Unusable::Fault(fault)) = asked {
+                return Err(fault);
+            }
+            self.look_up()?;
+            match asked {
+                Ok(point) => return Ok(Point { raw, ..point }),
+                Err(Unusable::AskAgain(_)) if left > 0 => {
+                    left -= 1;
+                    self.reread += 1;
+                }
+                Err(Unusable::AskAgain(fault) | Unusable::Fault(fault)) => return Err(fault),
+            }
+        }
+    }
+
+    /// The median of as many readings as the plan wants.
+    pub(super) fn settled_reading(&mut self) -> Result<Reading, RigFault> {
+        let (mut displacements, mut forces, mut raw) = (Vec::new(), Vec::new(), Vec::new());
+        let mut time = self.clock.now() - self.began;
+        for sample in 0..self.link.readings.samples.max(1) {
+            if sample > 0 {
+                self.wait_until(self.heard + self.period())?;
+            }
+            let point = self.poll()?;
+            time = point.time;
+            displacements.push(point.displacement);
+            forces.push(point.force);
+            raw.extend(point.raw);
+        }
+        Ok(Reading { time, displacement: vec![representative(displacements)], force: vec![representative(forces)], raw })
+    }
+
+    /// A reading on the way: one, not a median.
+    pub(super) fn reading_now(&mut self) -> Result<Reading, RigFault> {
+        let Point { time, displacement, force, raw, .. } = self.poll()?;
+        Ok(Reading { time, displacement: vec![displacement], force: vec![force], raw })
+    }
+
+    /// s between two polls.
+    pub(super) fn period(&self) -> f64 {
+        (1.0 / self.link.readings.rate).min(self.link.watchdog / 4.0)
+    }
+
+    /// The devices were heard, or should have been. Longer ago than the watchdog, and the rig holds by itself by now:
+    /// what it does is not what the program thinks.
+    pub(super) fn look_up(&mut self) -> Result<(), RigFault> {
+        let now = self.clock.now();
+        let away = now - std::mem::replace(&mut self.heard, now);
+        safety::beat();
+        if on(Guarding::Away) && (away.is_nan() || away > self.link.watchdog) {
+            return Err(RigFault::Device(format!(
+                "the program was away for {away:.1} s: nothing went between it and the rig for longer than the watchdog's \
+                 {} s, and it does not go on by itself",
+                self.link.watchdog
+            )));
+        }
+        if self.wish.wants_hold() { Err(RigFault::Interrupted) } else { Ok(()) }
+    }
+
+    fn ask(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Point, Unusable> {
+        let moved = self.actuator.sample();
+        let moved = self.sampled(Part::Actuator, moved, raw)?;
+        let weighed = match &mut self.load_cell {
+            Some(cell) => {
+                let weighed = cell.sample();
+                self.sampled(Part::LoadCell, weighed, raw)?
+            }
+            None => Sample { force: moved.force, ..Sample::default() },
+        };
+        let lacks = |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
+        let displacement = moved.displacement.ok_or_else(|| lacks("displacement"))?;
+        let original = weighed.force.ok_or_else(|| lacks("force"))?;
+        let force = self.newtons(original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
+        let flags = either(moved.flags, weighed.flags);
+        let said = Said { displacement, force, original, flags, device_time: moved.time };
+        self.judge.judge(&said, &self.link.readings).map_err(|invalid| self.refuse(invalid))?;
+        Ok(Point {
+            time: self.clock.now() - self.began,
+            displacement: self.sign * displacement,
+            force: self.sign * force,
+            moving: moved.moving,
+            unsettled: flags.unsettled,
+            raw: Vec::new(),
+        })
+    }
+
+    /// Keeps the bytes, also of what is no reading.
+    fn sampled(&mut self, part: Part, sample: Result<Sample, DeviceFault>, raw: &mut Vec<Vec<u8>>) -> Result<Sample, Unusable> {
+        match sample {
+            Ok(mut sample) => {
+                raw.append(&mut sample.raw);
+                Ok(sample)
+            }
+            Err(fault) => {
+                let again = if let DeviceFault::NoReading { raw: bytes, .. } = &fault {
+                    raw.push(bytes.clone());
+                    true
+                } else {
+                    false
+                };
+                let fault = self.told(part, &fault);
+                Err(if again { Unusable::AskAgain(fault) } else { Unusable::Fault(fault) })
+            }
+        }
+    }
+
+    /// N, in the cell's sign.
+    fn newtons(&self, force: Force) -> Option<f64> {
+        match force {
+            Force::Newtons(force) => Some(force),
+            #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
+            Force::Counts { count, .. } => {
+                self.calibration.newtons_per_count.map(|factor| (count as f64 - self.calibration.zero_count) * factor)
+            }
+        }
+    }
+
+    fn refuse(&mut self, invalid: Invalid) -> Unusable {
+        match invalid {
+            Invalid::AskAgain(reason) => Unusable::AskAgain(RigFault::Device(reason)),
+            Invalid::Hold(reason) => Unusable::Fault(RigFault::Device(reason)),
+            Invalid::Untrusted(reason) => {
+                self.untrusted = Some(reason.clone());
+                Unusable::Fault(RigFault::Device(reason))
+            }
+        }
+    }
+}
+
+/// Why an answer is no reading.
+enum Unusable {
+    AskAgain(RigFault),
+    Fault(RigFault),
+}
+
+/// What either device says.
+const fn either(one: Flags, other: Flags) -> Flags {
+    Flags {
+        saturated: one.saturated || other.saturated,
+        stale: one.stale || other.stale,
+        limit_high: one.limit_high || other.limit_high,
+        limit_low: one.limit_low || other.limit_low,
+        emergency_stop: one.emergency_stop || other.emergency_stop,
+        unreferenced: one.unreferenced || other.unreferenced,
+        unsettled: one.unsettled || other.unsettled,
+        watchdog_tripped: one.watchdog_tripped || other.watchdog_tripped,
+    }
+}
+
+/// The median, which a single spike does not move; of an even count the mean of the middle two.
+fn representative(mut values: Vec<f64>) -> f64 {
+    if !on(Guarding::Median) {
+        return values[0];
+    }
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 { values[middle] } else { f64::midpoint(values[middle - 1], values[middle]) }
+}

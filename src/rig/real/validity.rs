@@ -1,0 +1,237 @@
+//! Whether one reading may be used. In: what the devices said, already in SI. Out: yes, "ask again", or why the rig must
+//! hold. It moves nothing and keeps only what shows a sensor that no longer follows.
+
+use crate::plan::ReadingRules;
+use crate::rig::device::{Flags, Force};
+use crate::rig::failpoint::{Guarding, on};
+
+/// Nearness to an end of the range at which a reading is saturated, as a fraction of that end.
+const SATURATION: f64 = 1e-3;
+
+/// Resolutions of displacement over which a force that does not change is frozen.
+const FROZEN_OVER: f64 = 5.0;
+
+/// One answer of the rig, in its own sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Said {
+    /// m
+    pub(super) displacement: f64,
+    /// N
+    pub(super) force: f64,
+    /// As the converter gave it.
+    pub(super) original: Force,
+    pub(super) flags: Flags,
+    /// The device's own clock, s.
+    pub(super) device_time: Option<f64>,
+}
+
+/// Why a reading may not be used.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Invalid {
+    /// The next may be good.
+    AskAgain(String),
+    /// The rig holds.
+    Hold(String),
+    /// The rig holds, and where it stands is not known any more.
+    Untrusted(String),
+}
+
+/// What earlier readings tell of this one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Judge {
+    /// How many readings in a row gave this force, N, and where the displacement was then, lowest and highest, m.
+    same: Option<(u32, f64, f64, f64)>,
+    /// The device's own clock, s.
+    device_time: Option<f64>,
+}
+
+impl Judge {
+    pub(super) fn judge(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
+        self.same_device(said)?;
+        flags(said.flags)?;
+        number(said)?;
+        saturation(said, rules)?;
+        self.frozen(said, rules)
+    }
+
+    /// A clock that goes back is that of a device that started anew.
+    fn same_device(&mut self, said: &Said) -> Result<(), Invalid> {
+        let before = self.device_time;
+        self.device_time = said.device_time.or(before);
+        match (before, said.device_time) {
+            (Some(before), Some(now)) if on(Guarding::Reboot) && now < before => Err(Invalid::Untrusted(format!(
+                "its clock went back from {before} s to {now} s: it started anew, and its position is not to be trusted"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// The force stays the very same while the specimen is bent.
+    fn frozen(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
+        let x = said.displacement;
+        let (count, low, high) = match self.same {
+            Some((count, force, low, high)) if force == said.force => (count.saturating_add(1), low.min(x), high.max(x)),
+            _ => (1, x, x),
+        };
+        self.same = Some((count, said.force, low, high));
+        let moved = high - low > FROZEN_OVER * rules.resolution;
+        if on(Guarding::Frozen) && count >= rules.frozen_after.max(2) && moved {
+            return Err(Invalid::Hold(format!(
+                "the force sensor is frozen: {count} readings of {} N while the displacement changed by {:.6} mm",
+                said.force,
+                (high - low) * 1e3
+            )));
+        }
+        Ok(())
+    }
+}
+
+fn flags(flags: Flags) -> Result<(), Invalid> {
+    if on(Guarding::Flags) {
+        for (set, what) in [
+            (flags.emergency_stop, "the emergency stop is pressed"),
+            (flags.watchdog_tripped, "its watchdog tripped: it heard nothing for too long and holds by itself"),
+        ] {
+            if set {
+                return Err(Invalid::Hold(what.to_owned()));
+            }
+        }
+        if flags.unreferenced {
+            return Err(Invalid::Untrusted("its position is not referenced".to_owned()));
+        }
+    }
+    if on(Guarding::Invalid) && flags.stale {
+        return Err(Invalid::AskAgain("the reading is an old one".to_owned()));
+    }
+    Ok(())
+}
+
+fn number(said: &Said) -> Result<(), Invalid> {
+    let (x, force) = (said.displacement, said.force);
+    if !on(Guarding::Invalid) || x.is_finite() && force.is_finite() {
+        return Ok(());
+    }
+    Err(Invalid::AskAgain(format!("{x} m and {force} N are no reading")))
+}
+
+/// At an end of what converter or cell can say, the truth may lie anywhere beyond. A force that is no number is not
+/// this guard's business.
+fn saturation(said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
+    if !on(Guarding::Saturation) {
+        return Ok(());
+    }
+    let hold = |what: String| Err(Invalid::Hold(format!("the force reading is saturated: {what}")));
+    if said.flags.saturated {
+        return hold("the device says so".to_owned());
+    }
+    if let Force::Counts { count, low, high } = said.original {
+        #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
+        let (value, low, high) = (count as f64, low as f64, high as f64);
+        let margin = SATURATION * (high - low) / 2.0;
+        if value <= low + margin || value >= high - margin {
+            return hold(format!("{count} counts of {low} .. {high}"));
+        }
+    }
+    let range = rules.force_range;
+    let (low, high) = (range.low + SATURATION * range.low.abs(), range.high - SATURATION * range.high.abs());
+    // An end that is not given is infinite, and the margin makes it no number: then nothing is held against it.
+    if said.force <= low || said.force >= high {
+        return hold(format!("{} N of {} .. {} N", said.force, range.low, range.high));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Interval;
+    use crate::rig::failpoint::without;
+
+    const RULES: ReadingRules = ReadingRules {
+        samples: 1,
+        rate: 10.0,
+        resolution: 1e-6,
+        noise: 1.0,
+        force_range: Interval { low: -1000.0, high: 1000.0 },
+        frozen_after: 4,
+    };
+
+    fn said(force: f64) -> Said {
+        Said { displacement: 0.001, force, original: Force::Newtons(force), flags: Flags::default(), device_time: None }
+    }
+
+    /// The last of these is refused with `guard` on, and is missed without it.
+    fn only_caught_by(guard: Guarding, rules: ReadingRules, readings: &[Said]) -> Invalid {
+        let last = || {
+            let mut judge = Judge::default();
+            let (last, before) = readings.split_last().unwrap();
+            for said in before {
+                judge.judge(said, &rules).unwrap();
+            }
+            judge.judge(last, &rules)
+        };
+        assert_eq!(without(guard, last), Ok(()), "{guard:?}");
+        last().unwrap_err()
+    }
+
+    #[test]
+    fn what_is_no_number_or_old_is_asked_again() {
+        let unbounded = ReadingRules { force_range: Interval::ALL, ..RULES };
+        let stale = Said { flags: Flags { stale: true, ..Flags::default() }, ..said(1.0) };
+        let nowhere = Said { displacement: f64::NAN, ..said(1.0) };
+        for bad in [said(f64::NAN), nowhere, stale] {
+            assert!(matches!(only_caught_by(Guarding::Invalid, unbounded, &[bad]), Invalid::AskAgain(_)));
+        }
+        let infinite = Judge::default().judge(&said(f64::INFINITY), &unbounded);
+        assert!(matches!(infinite, Err(Invalid::AskAgain(_))));
+    }
+
+    #[test]
+    fn an_end_of_the_range_is_saturated_and_what_lies_inside_is_not() {
+        let counts = |count| Said { original: Force::Counts { count, low: -8_388_608, high: 8_388_607 }, ..said(10.0) };
+        let flagged = Said { flags: Flags { saturated: true, ..Flags::default() }, ..said(1.0) };
+        for bad in [said(999.1), said(-5000.0), counts(8_388_607), counts(-8_380_300), flagged] {
+            assert!(matches!(only_caught_by(Guarding::Saturation, RULES, &[bad]), Invalid::Hold(_)));
+        }
+        for good in [said(998.9), said(-998.9), said(0.0), counts(8_380_000)] {
+            assert_eq!(Judge::default().judge(&good, &RULES), Ok(()));
+        }
+    }
+
+    #[test]
+    fn what_the_device_says_of_itself_holds_the_rig() {
+        let flagged = |flags| Said { flags, ..said(1.0) };
+        let none = Flags::default();
+        for (flags, untrusted) in [
+            (Flags { emergency_stop: true, ..none }, false),
+            (Flags { watchdog_tripped: true, ..none }, false),
+            (Flags { unreferenced: true, ..none }, true),
+        ] {
+            let invalid = only_caught_by(Guarding::Flags, RULES, &[flagged(flags)]);
+            assert_eq!(matches!(invalid, Invalid::Untrusted(_)), untrusted);
+        }
+    }
+
+    #[test]
+    fn a_clock_that_goes_back_is_that_of_a_device_that_started_anew() {
+        let at = |time| Said { device_time: Some(time), ..said(time) };
+        let invalid = only_caught_by(Guarding::Reboot, RULES, &[at(100.0), said(3.0), at(0.5)]);
+        assert!(matches!(invalid, Invalid::Untrusted(_)));
+    }
+
+    #[test]
+    fn a_force_that_stays_while_the_specimen_is_bent_is_frozen() {
+        let at = |displacement, force| Said { displacement, ..said(force) };
+        let stuck: Vec<Said> = (0..4).map(|i| at(f64::from(i) * 3e-6, 5.0)).collect();
+        assert!(matches!(only_caught_by(Guarding::Frozen, RULES, &stuck), Invalid::Hold(_)));
+        // At rest, or with a force that moves, nothing is frozen.
+        let mut judge = Judge::default();
+        for i in 0..50 {
+            judge.judge(&at(1e-6 * f64::from(i % 5), 5.0), &RULES).unwrap();
+        }
+        let mut judge = Judge::default();
+        for i in 0..50 {
+            judge.judge(&at(1e-5 * f64::from(i), 5.0 + f64::from(i / 3)), &RULES).unwrap();
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The last resort: whatever happens to the program, the rig is told to hold. In: lines that can still send, and beats
+//! of whoever drives the rig. Out: the bytes that stop it, from a panic or when the beats stay away. It waits for no
+//! answer and knows no dialect. A killed program sends nothing: the rig's own watchdog and the wired stop are for that.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, MutexGuard, Once, TryLockError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use super::port::{Clock as _, Emergency, MonotonicClock};
+
+/// Lines, each with the bytes that stop what is on it.
+pub type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
+
+/// A line that is armed.
+struct Line {
+    /// Number of who armed it.
+    owner: u64,
+    sender: Box<dyn Emergency>,
+    bytes: Vec<u8>,
+}
+
+/// All that is armed.
+static LINES: Mutex<Vec<Line>> = Mutex::new(Vec::new());
+static NEXT: AtomicU64 = AtomicU64::new(0);
+static BEATS: AtomicU64 = AtomicU64::new(0);
+static TRIPPED: AtomicBool = AtomicBool::new(false);
+
+/// How often the watch looks, and a panic tries for the lines, s.
+const LOOK: Duration = Duration::from_millis(50);
+const TRIES: u32 = 20;
+
+/// The lines are armed as long as it lives.
+#[must_use = "dropping it disarms the lines"]
+pub struct Armed {
+    number: u64,
+    watch: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+/// Arms lines: from now on a panic in any thread sends their bytes. Lines without bytes are left out.
+pub fn arm(lines: Lines) -> Armed {
+    hook();
+    let number = NEXT.fetch_add(1, Ordering::SeqCst);
+    TRIPPED.store(false, Ordering::SeqCst);
+    if let Some(mut armed) = take_lines() {
+        let able = lines.into_iter().filter(|(_, bytes)| !bytes.is_empty());
+        armed.extend(able.map(|(sender, bytes)| Line { owner: number, sender, bytes }));
+    }
+    Armed { number, watch: None }
+}
+
+impl Armed {
+    /// Also sends the bytes, once, when no [`beat`] came for `watchdog` seconds.
+    pub fn watched(mut self, watchdog: f64) -> Self {
+        let (stop, stopped) = channel();
+        let thread = std::thread::spawn(move || {
+            let clock = MonotonicClock::start();
+            let mut pulse = Pulse::new(watchdog, BEATS.load(Ordering::SeqCst), clock.now());
+            while stopped.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+                if pulse.stopped(BEATS.load(Ordering::SeqCst), clock.now()) {
+                    hold_everything();
+                    TRIPPED.store(true, Ordering::SeqCst);
+                }
+            }
+        });
+        self.watch = Some((stop, thread));
+        self
+    }
+}
+
+impl Drop for Armed {
+    fn drop(&mut self) {
+        if let Some((stop, thread)) = self.watch.take() {
+            drop(stop);
+            thread.join().ok();
+        }
+        if let Some(mut lines) = take_lines() {
+            lines.retain(|line| line.owner != self.number);
+        }
+    }
+}
+
+/// Sends the bytes of every armed line, without waiting for an answer.
+pub fn hold_everything() {
+    if let Some(mut lines) = take_lines() {
+        for Line { sender, bytes, .. } in lines.iter_mut() {
+            sender.send(bytes);
+        }
+    }
+}
+
+/// A sign of life of whoever drives the rig.
+pub fn beat() {
+    BEATS.fetch_add(1, Ordering::SeqCst);
+}
+
+/// Whether the beats stayed away since the lines were armed, so that the rig was told to hold.
+#[must_use]
+pub fn tripped() -> bool {
+    TRIPPED.load(Ordering::SeqCst)
+}
+
+/// The lines; None where somebody keeps them, as a panic in the middle of a sending does.
+fn take_lines() -> Option<MutexGuard<'static, Vec<Line>>> {
+    for _ in 0..TRIES {
+        match LINES.try_lock() {
+            Ok(lines) => return Some(lines),
+            Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LOOK / TRIES),
+        }
+    }
+    None
+}
+
+/// Before anything else a panic holds the rig.
+fn hook() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let before = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            hold_everything();
+            before(info);
+        }));
+    });
+}
+
+/// Tells from counted beats and a clock when they stop.
+struct Pulse {
+    watchdog: f64,
+    beats: u64,
+    /// s
+    last: f64,
+    told: bool,
+}
+
+impl Pulse {
+    const fn new(watchdog: f64, beats: u64, now: f64) -> Self {
+        Self { watchdog, beats, last: now, told: false }
+    }
+
+    /// Whether they have just stopped; said once.
+    fn stopped(&mut self, beats: u64, now: f64) -> bool {
+        if beats != self.beats {
+            (self.beats, self.last) = (beats, now);
+        }
+        let late = now - self.last > self.watchdog;
+        late && !std::mem::replace(&mut self.told, late)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    #[derive(Clone, Default)]
+    struct Recorder(Arc<Mutex<Vec<u8>>>);
+
+    impl Emergency for Recorder {
+        fn send(&mut self, bytes: &[u8]) {
+            self.0.lock().unwrap().extend_from_slice(bytes);
+        }
+    }
+
+    #[test]
+    fn a_panic_in_any_thread_stops_every_armed_line_and_no_other() {
+        let (first, second, without_words) = (Recorder::default(), Recorder::default(), Recorder::default());
+        let armed = arm(vec![
+            (Box::new(first.clone()), b"!".to_vec()),
+            (Box::new(second.clone()), b"\x85".to_vec()),
+            (Box::new(without_words.clone()), Vec::new()),
+        ]);
+        let panicked = std::thread::spawn(|| panic!("on purpose, to see the rig held")).join();
+        assert!(panicked.is_err());
+        assert!(first.0.lock().unwrap().starts_with(b"!") && second.0.lock().unwrap().starts_with(b"\x85"));
+        assert!(without_words.0.lock().unwrap().is_empty());
+        drop(armed);
+        let sent = first.0.lock().unwrap().len();
+        hold_everything();
+        assert_eq!(first.0.lock().unwrap().len(), sent, "disarmed");
+    }
+
+    #[test]
+    fn beats_that_stay_away_are_told_once() {
+        let mut pulse = Pulse::new(3.0, 7, 0.0);
+        assert!(!pulse.stopped(7, 2.9));
+        assert!(!pulse.stopped(8, 3.5), "it lives");
+        assert!(!pulse.stopped(8, 6.5));
+        assert!(pulse.stopped(8, 6.6));
+        assert!(!pulse.stopped(8, 60.0));
+    }
+
+    #[test]
+    fn the_watch_sends_the_bytes_when_nobody_beats() {
+        let recorder = Recorder::default();
+        let armed = arm(vec![(Box::new(recorder.clone()), b"!".to_vec())]).watched(-1.0);
+        while !tripped() {
+            std::thread::yield_now();
+        }
+        assert!(recorder.0.lock().unwrap().starts_with(b"!"));
+        drop(armed);
+    }
+}

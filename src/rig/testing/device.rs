@@ -1,0 +1,167 @@
+//! A device that moves evenly on a virtual clock and bends a spring, with faults on demand. In: moves, and a script of
+//! what goes wrong. Out: samples. It speaks no bytes worth reading.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use super::VirtualClock;
+use crate::plan::Limits;
+use crate::rig::device::{Device, DeviceFault, DeviceIdentity, Force, Move, Sample};
+use crate::rig::port::Clock as _;
+use crate::rig::{LastMove, Tally};
+
+/// What becomes of the n-th sample, counted from 0, on its way out.
+pub type Alteration = Box<dyn FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send>;
+
+/// What the device is and has been through; a test reads and sets it at any time.
+pub struct Inside {
+    pub identity: DeviceIdentity,
+    /// m
+    pub position: f64,
+    pub target: f64,
+    /// m/s
+    pub speed: f64,
+    /// N/m
+    pub stiffness: f64,
+    /// Force as raw counts of so many N each.
+    pub newtons_per_count: Option<f64>,
+    /// Where it stops on its way to a target, as a fraction of the target: 1 arrives.
+    pub reaches: f64,
+    /// Added to a target on its way into the bytes, m.
+    pub misspoken: f64,
+    /// Whether it says that it moves.
+    pub tells_motion: bool,
+    /// How long every answer takes, s.
+    pub answer_time: f64,
+    pub alter: Option<Alteration>,
+    pub samples: u64,
+    /// Targets it was sent to, m.
+    pub started: Vec<f64>,
+    pub holds: u32,
+    pub narrowed: Option<Limits>,
+    pub last_move: Option<LastMove>,
+    /// s
+    time: f64,
+}
+
+/// Clones share all.
+#[derive(Clone)]
+pub struct FakeDevice {
+    clock: VirtualClock,
+    inside: Arc<Mutex<Inside>>,
+}
+
+impl FakeDevice {
+    /// At zero on a spring of 1e5 N/m, and well.
+    #[must_use]
+    pub fn new(clock: &VirtualClock) -> Self {
+        let identity = DeviceIdentity { model: "fake".to_owned(), serial: "F-1".to_owned(), ..DeviceIdentity::default() };
+        let inside = Inside {
+            identity,
+            position: 0.0,
+            target: 0.0,
+            speed: 0.0,
+            stiffness: 1e5,
+            newtons_per_count: None,
+            reaches: 1.0,
+            misspoken: 0.0,
+            tells_motion: true,
+            answer_time: 0.01,
+            alter: None,
+            samples: 0,
+            started: Vec::new(),
+            holds: 0,
+            narrowed: None,
+            last_move: None,
+            time: clock.now(),
+        };
+        Self { clock: clock.clone(), inside: Arc::new(Mutex::new(inside)) }
+    }
+
+    /// What it is by now.
+    pub fn inside(&self) -> MutexGuard<'_, Inside> {
+        let mut inside = self.inside.lock().unwrap();
+        let way = inside.speed * (self.clock.now() - inside.time);
+        let left = inside.target - inside.position;
+        inside.position = if left.abs() <= way { inside.target } else { inside.position + way.copysign(left) };
+        inside.time = self.clock.now();
+        inside
+    }
+
+    /// What becomes of its samples from now on, counted from 0.
+    pub fn alter(&self, alter: impl FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send + 'static) {
+        let mut inside = self.inside();
+        inside.samples = 0;
+        inside.alter = Some(Box::new(alter));
+    }
+}
+
+impl Device for FakeDevice {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        Ok(self.inside().identity.clone())
+    }
+
+    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+        let target = target + self.inside().misspoken;
+        Ok(Move { frames: vec![format!("{target} {speed}").into_bytes()], target, speed, id: None })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let mut inside = self.inside();
+        inside.started.push(going.target);
+        inside.target = going.target * inside.reaches;
+        inside.speed = going.speed;
+        Ok(())
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let answer_time = self.inside().answer_time;
+        self.clock.advance(answer_time);
+        let mut inside = self.inside();
+        let force = inside.stiffness * inside.position;
+        let force = inside.newtons_per_count.map_or(Force::Newtons(force), |factor| {
+            #[expect(clippy::cast_possible_truncation, reason = "a test's force")]
+            let count = (force / factor).round() as i64;
+            Force::Counts { count, low: -8_388_608, high: 8_388_607 }
+        });
+        let mut sample = Sample {
+            time: Some(inside.time),
+            displacement: Some(inside.position),
+            force: Some(force),
+            moving: inside.tells_motion.then(|| inside.position != inside.target),
+            raw: vec![format!("sample {}", inside.samples).into_bytes()],
+            ..Sample::default()
+        };
+        let number = inside.samples;
+        inside.samples += 1;
+        // The script may look inside.
+        let Some(mut alter) = inside.alter.take() else { return Ok(sample) };
+        drop(inside);
+        let altered = alter(number, &mut sample);
+        self.inside().alter.get_or_insert(alter);
+        altered.map(|()| sample)
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        let mut inside = self.inside();
+        inside.holds += 1;
+        inside.target = inside.position;
+        Ok(())
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        b"!".to_vec()
+    }
+
+    fn narrow_limits(&mut self, limits: &Limits) -> Result<(), DeviceFault> {
+        self.inside().narrowed = Some(*limits);
+        Ok(())
+    }
+
+    fn last_move(&self) -> Option<LastMove> {
+        self.inside().last_move
+    }
+
+    fn tally(&self) -> Tally {
+        Tally::default()
+    }
+}
