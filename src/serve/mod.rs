@@ -156,6 +156,7 @@ pub fn session(stream: TcpStream, protocol: Protocol, guard: &mut Guard<'_>, sto
 }
 
 /// Lets one client in while there is none, and turns the others away.
+#[expect(clippy::needless_pass_by_value, reason = "who waits for clients is to see that nobody keeps the door any more")]
 fn keep_door(
     listener: &TcpListener,
     busy: &AtomicBool,

@@ -277,7 +277,7 @@ fn a_line_without_end_is_not_gathered_for_ever_and_what_is_no_message_is_answere
     let (closed, session) = served(Protocol::Nees, LIMITS, |address| {
         let mut stream = TcpStream::connect(address).unwrap();
         // The other side may close before all is written.
-        let _ = stream.write_all(&[b'A'; 100_000]);
+        let _ = stream.write_all(&vec![b'A'; 100_000]);
         !matches!(stream.read(&mut [0; 8]), Ok(1..))
     });
     assert!(closed && matches!(session.ended, Ended::Misspoken(_)), "{session:?}");

@@ -9,3 +9,4 @@ mod outputs;
 mod physics;
 mod plans;
 mod reference;
+mod serve;

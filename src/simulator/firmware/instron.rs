@@ -26,6 +26,7 @@ pub struct Instron {
 
 /// What is forgotten when the power goes.
 #[derive(Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own on the console")]
 struct Console {
     /// `P909,1`: the computer has control.
     computer: bool,

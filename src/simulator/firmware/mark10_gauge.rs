@@ -87,7 +87,7 @@ mod tests {
     fn it_reads_zeroes_and_keeps_its_peaks() {
         let (mut gauge, mut bench) = (Mark10Gauge::new(1.0), spring());
         assert_eq!(said(&mut gauge, &mut bench, b"?\r\n?"), "0.00 N\r\n");
-        bench.go(0.0051234, 0.01);
+        bench.go(0.005_123_4, 0.01);
         bench.advance(1.0);
         // 100 N/mm × 5.1234 mm.
         assert_eq!(said(&mut gauge, &mut bench, b"\r"), "512.34 N\r\n");

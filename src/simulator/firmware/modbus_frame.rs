@@ -77,8 +77,7 @@ impl Assembler {
 /// Bytes of the whole frame, where its beginning tells.
 fn length(begun: &[u8]) -> Option<usize> {
     match *begun {
-        [] | [_] => Some(8),
-        [_, 3 | 4 | 6, ..] => Some(8),
+        [] | [_] | [_, 3 | 4 | 6, ..] => Some(8),
         [_, 16, _, _, _, _, bytes, ..] => Some(9 + usize::from(bytes)),
         [_, 16, ..] => Some(9),
         _ => None,

@@ -1,0 +1,113 @@
+//! `psd rig serve` as it is started from a shell: it says when it listens, serves one client, and ends with its code.
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+
+const PLAN: &str = "\
+specimen spring {
+  mass      = 20 kg
+  behaviour = elastic(stiffness: 300 kN/m)
+}
+
+limits {
+  displacement = -20 mm .. 20 mm
+}
+";
+
+/// The program, waiting for one client.
+struct Server {
+    _folder: tempfile::TempDir,
+    program: Child,
+    stdout: BufReader<std::process::ChildStdout>,
+    address: String,
+}
+
+impl Server {
+    fn start(protocol: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("spring.psd"), PLAN).unwrap();
+        let mut program = Command::new(env!("CARGO_BIN_EXE_psd"))
+            .args(["rig", "serve", "spring.psd", "--protocol", protocol, "--listen", "127.0.0.1:0", "--once"])
+            .current_dir(folder.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut stdout = BufReader::new(program.stdout.take().unwrap());
+        let mut ready = String::new();
+        stdout.read_line(&mut ready).unwrap();
+        let address = ready.trim_end().strip_prefix(&format!("ready: {protocol} on ")).expect("it is ready").to_owned();
+        Self { _folder: folder, program, stdout, address }
+    }
+
+    fn connect(&self) -> TcpStream {
+        TcpStream::connect(&self.address).unwrap()
+    }
+
+    /// What it printed, and its exit code.
+    fn end(mut self) -> (String, i32) {
+        let mut printed = String::new();
+        self.stdout.read_to_string(&mut printed).unwrap();
+        (printed, self.program.wait().unwrap().code().unwrap())
+    }
+}
+
+fn words(words: &[f64]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+fn generic_client(server: &Server) -> TcpStream {
+    let mut stream = server.connect();
+    let header = [1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2_i32].map(i32::to_le_bytes);
+    stream.write_all(header.as_flattened()).unwrap();
+    stream
+}
+
+#[test]
+fn a_generic_client_gets_its_force_and_the_session_is_summed_up() {
+    let server = Server::start("generic-client");
+    let mut client = generic_client(&server);
+    client.write_all(&words(&[3.0, -0.002, 10.0, 0.0])).unwrap();
+    let mut answer = [0; 16];
+    client.read_exact(&mut answer).unwrap();
+    assert_eq!(answer[..], words(&[-600.0, 0.0]));
+    client.write_all(&words(&[99.0, 0.0])).unwrap();
+    let (printed, code) = server.end();
+    assert_eq!(printed, "session: closed by the client\ntargets: 1\nlargest |x|: 2.000 mm\nlargest |F|: 0.6000 kN\n");
+    assert_eq!(code, 0);
+}
+
+#[test]
+fn a_limit_ends_the_session_with_its_own_code() {
+    let server = Server::start("generic-client");
+    let mut client = generic_client(&server);
+    client.write_all(&words(&[3.0, 0.0201])).unwrap();
+    let (printed, code) = server.end();
+    assert!(printed.starts_with("session: target displacement 20.1 mm is outside its limit"), "{printed}");
+    assert_eq!(code, 4);
+}
+
+#[test]
+fn a_refused_proposal_leaves_the_session_to_the_coordinator_but_not_the_code() {
+    let server = Server::start("nees");
+    let mut client = server.connect();
+    client.write_all(b"open-session\tc\npropose\tt1\tMDL-00-01\tx\tdisplacement\t0.0201\nclose-session\tc\n").unwrap();
+    let mut answers = String::new();
+    client.read_to_string(&mut answers).unwrap();
+    let firsts: Vec<&str> = answers.lines().filter_map(|line| line.split('\t').next()).collect();
+    assert_eq!(firsts, ["OK", "NOT OK", "OK"]);
+    let (printed, code) = server.end();
+    assert!(printed.contains("targets: 0, 1 refused by a limit"), "{printed}");
+    assert_eq!(code, 4);
+}
+
+#[test]
+fn a_client_that_goes_away_is_a_fault() {
+    let server = Server::start("nees");
+    drop(server.connect());
+    let (printed, code) = server.end();
+    assert!(printed.starts_with("session: the client went away without closing\n"), "{printed}");
+    assert_eq!(code, 3);
+}
