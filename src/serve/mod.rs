@@ -77,7 +77,7 @@ impl From<RigFault> for Ended {
         match fault {
             RigFault::LimitBreached { .. } => Self::Limit(fault),
             RigFault::Interrupted => Self::Stopped,
-            RigFault::NotSettled { .. } | RigFault::Device(_) => Self::Rig(fault),
+            RigFault::NotSettled { .. } | RigFault::Following { .. } | RigFault::Device(_) => Self::Rig(fault),
         }
     }
 }

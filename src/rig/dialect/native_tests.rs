@@ -112,9 +112,15 @@ fn a_whole_line_with_a_false_field_is_no_reading() {
         let body = String::from_utf8(DATA[1..DATA.len() - 5].to_vec()).unwrap().replacen(right, false_field, 1);
         assert_eq!(data(&reply(&framed(&body)).unwrap().words), None, "{body}");
     }
-    for body in
-        ["DATA 42 7F3A 1\02", "DATA 42 7F3A 1  2", "DATA -1 7F3A", "DATA 4294967296 7F3A", "DATA 4 7f3a", "DATA 4", "NACK 1 7F3A"]
-    {
+    for body in [
+        "DATA 42 7F3A 1\x002",
+        "DATA 42 7F3A 1  2",
+        "DATA -1 7F3A",
+        "DATA 4294967296 7F3A",
+        "DATA 4 7f3a",
+        "DATA 4",
+        "NACK 1 7F3A",
+    ] {
         assert_eq!(reply(&framed(body)), Err(Broken::Shape), "{body}");
     }
 }
