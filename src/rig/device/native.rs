@@ -78,12 +78,8 @@ impl NativeDevice {
                 self.request(&Request::Limits(&bounds), Kind::Ack)?;
             }
         }
-        let frame = self.frame(self.sequence.wrapping_add(1), request)?;
+        let frame = framed(self.sequence.wrapping_add(1), request)?;
         self.exchange(&frame, kind)
-    }
-
-    fn frame(&self, sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> {
-        native::frame(sequence, request).ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be said in a frame")))
     }
 
     /// Sends the frame of the next sequence number.
@@ -101,7 +97,7 @@ impl NativeDevice {
     }
 
     fn say_hello(&mut self) -> Result<(), DeviceFault> {
-        let frame = self.frame(self.sequence.wrapping_add(1), &Request::Hello)?;
+        let frame = framed(self.sequence.wrapping_add(1), &Request::Hello)?;
         let Answered { reply, line } = self.exchange(&frame, Kind::Ack)?;
         let hello = native::hello(&reply.words).filter(|hello| {
             let Bounds { displacement, force, top_speed } = hello.bounds;
@@ -118,6 +114,10 @@ impl NativeDevice {
         let Answered { reply, line } = self.request(request, Kind::Ack)?;
         state(&reply, &line)
     }
+}
+
+fn framed(sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> {
+    native::frame(sequence, request).ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be said in a frame")))
 }
 
 /// What a line is to the request that is open.
@@ -193,7 +193,7 @@ impl Device for NativeDevice {
         let mut sequence = self.sequence;
         let frames = requests.iter().map(|request| {
             sequence = sequence.wrapping_add(1);
-            self.frame(sequence, request)
+            framed(sequence, request)
         });
         let frames = frames.collect::<Result<_, _>>()?;
         let sent = self.proposed.as_ref().is_some_and(|proposed| proposed.sent && proposed.id == id);
