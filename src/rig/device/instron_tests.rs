@@ -58,7 +58,7 @@ fn readings_are_fractions_of_full_scale_and_polls_keep_their_distance() {
     let (mut console, mut script) = opened();
     script.round("1", "0.02500000", "-0.005");
     let sample = console.sample().unwrap();
-    assert_eq!((sample.displacement, sample.force), (Some(0.0025), Some(Force::Newtons(-250.0))));
+    assert_eq!((sample.displacement, sample.force), (Some(0.025 * 0.1), Some(Force::Newtons(-250.0))));
     assert_eq!((sample.moving, sample.raw.len()), (Some(true), 4));
     script.done();
     let polls: Vec<f64> = script.port.sent().iter().filter(|(_, frame)| frame == b"Q22\r\n").map(|(time, _)| *time).collect();

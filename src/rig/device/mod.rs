@@ -173,3 +173,6 @@ pub trait Device: Send {
     /// What was mended on the line so far.
     fn tally(&self) -> Tally;
 }
+
+#[cfg(test)]
+mod meeting_tests;

@@ -46,25 +46,47 @@ impl Nees {
     fn request(&mut self, line: &[u8], transaction: Option<&str>, wait: f64) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
         self.talk.send(line)?;
         let deadline = self.talk.now() + wait;
+        let executing = self.executing.clone();
+        let mut ended = false;
         let mut accept = |line: &[u8]| match (nees::reply(line), transaction) {
-            (Reply::Done(fields), Some(ours)) if fields.first().map(String::as_str) != Some(ours) => Answer::Ignore,
+            (Reply::Done(fields), Some(ours)) if fields.first().map(String::as_str) != Some(ours) => {
+                ended |= fields.first() == executing.as_ref();
+                Answer::Ignore
+            }
             (Reply::Done(fields), _) => Answer::Take((fields, line.to_vec())),
             (Reply::Refused { transaction: Some(other), .. }, Some(ours)) if other != ours && other.starts_with(SESSION) => {
+                ended |= Some(&other) == executing.as_ref();
                 Answer::Ignore
             }
             (Reply::Refused { reason, .. }, _) => Answer::Fault(DeviceFault::Refused { reason }),
         };
-        let answer = self.talk.answer(nees::ENDING, deadline, &mut accept)?;
-        answer.ok_or(DeviceFault::Silent { seconds: wait })
-    }
-
-    fn cancel(&mut self) -> Result<(), DeviceFault> {
-        if let Some(transaction) = self.executing.clone() {
-            let wait = self.talk.reply_timeout();
-            // The late answer to the execution has the same number, and says as well that nothing moves any more.
-            self.request(&nees::cancel(&transaction), Some(&transaction), wait)?;
+        let answer = self.talk.answer(nees::ENDING, deadline, &mut accept);
+        if ended {
+            // The late answer to an execution: whatever it says, nothing moves any more.
             self.executing = None;
         }
+        answer?.ok_or(DeviceFault::Silent { seconds: wait })
+    }
+
+    /// An execution that is cancelled may first be answered itself, with the same transaction and a `NOT OK`.
+    fn cancel(&mut self) -> Result<(), DeviceFault> {
+        let Some(transaction) = self.executing.clone() else { return Ok(()) };
+        self.talk.send(&nees::cancel(&transaction))?;
+        let wait = self.talk.reply_timeout();
+        let deadline = self.talk.now() + wait;
+        let mut refusal = None;
+        let mut accept = |line: &[u8]| match nees::reply(line) {
+            Reply::Done(fields) if fields.first() == Some(&transaction) => Answer::Take(()),
+            Reply::Done(_) => Answer::Ignore,
+            Reply::Refused { reason, .. } => {
+                refusal = Some(reason);
+                Answer::Ignore
+            }
+        };
+        if self.talk.answer(nees::ENDING, deadline, &mut accept)?.is_none() {
+            return Err(refusal.map_or(DeviceFault::Silent { seconds: wait }, |reason| DeviceFault::Refused { reason }));
+        }
+        self.executing = None;
         Ok(())
     }
 }
@@ -118,8 +140,6 @@ impl Device for Nees {
         let wait = self.talk.reply_timeout();
         let question = nees::get_control_point(&transaction, &self.control_point);
         let (fields, raw) = self.request(&question, Some(&transaction), wait)?;
-        // It hears nothing before its motion is done, so that an answer says that nothing moves.
-        self.executing = None;
         let measured = fields.get(1..).and_then(|fields| nees::measured(fields, &self.control_point));
         let (Some(displacement), Some(force)) = measured.map_or((None, None), |at| (at.displacement, at.force)) else {
             let reason = "no displacement and force along x".to_owned();
@@ -130,7 +150,7 @@ impl Device for Nees {
             time: None,
             displacement: Some(displacement),
             force: Some(Force::Newtons(force)),
-            moving: Some(false),
+            moving: Some(self.executing.is_some()),
             flags: Flags::default(),
             raw: vec![raw],
         })

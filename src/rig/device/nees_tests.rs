@@ -119,10 +119,25 @@ fn holding_cancels_what_is_being_executed_and_says_nothing_at_rest() {
     let going = rig.encode(0.011, 0.001).unwrap();
     port.reply(&[after(0.1, "OK 0 psd-000003"), after(0.1, "OK 0 psd-000004")]);
     assert!(matches!(rig.start(&going), Err(DeviceFault::Silent { .. })));
-    port.reply(&[after(0.1, "OK 0 psd-000004")]);
+    assert_eq!(rig.sample(), Err(DeviceFault::Silent { seconds: T }), "it hears nothing yet");
+    // The execution is answered first.
+    port.reply(&[after(0.1, "NOTOK 5 psd-000004 cancelled"), after(0.1, "OK 0 psd-000004")]);
     rig.hold().unwrap();
     assert_eq!(sent(&port).last().unwrap(), "cancel psd-000004\n");
     assert!(rig.emergency().is_empty());
+}
+
+#[test]
+fn the_late_answer_to_an_execution_says_that_it_is_over() {
+    let (mut rig, port, ..) = opened();
+    let going = rig.encode(0.002, 0.001).unwrap();
+    port.reply(&[after(0.1, "OK 0 psd-000003")]);
+    assert!(matches!(rig.start(&going), Err(DeviceFault::Silent { .. })));
+    let reading = "OK 0 psd-000004 MDL-00-01 x displacement 2.0E-03 x force 2.0E+02";
+    port.reply(&[after(0.1, "OK 0 psd-000003"), after(0.1, reading)]);
+    assert_eq!(rig.sample().unwrap().moving, Some(false));
+    assert!(rig.emergency().is_empty() && rig.hold().is_ok());
+    assert_eq!(port.sent().len(), 6, "nothing to cancel");
 }
 
 #[test]

@@ -41,8 +41,8 @@ pub enum Side {
 pub struct Status {
     pub moving: bool,
     pub limit_mode: bool,
-    pub at_upper: bool,
-    pub at_lower: bool,
+    /// The limit it stands at.
+    pub at: Option<Side>,
 }
 
 /// What the gauge said.
@@ -57,7 +57,7 @@ pub enum Force {
 #[must_use]
 pub fn limit(side: Side, target: f64) -> Option<(Vec<u8>, f64)> {
     let millimetres = target * MILLIMETRES;
-    if !(-FURTHEST <= millimetres && millimetres <= FURTHEST) {
+    if !(-FURTHEST..=FURTHEST).contains(&millimetres) {
         return None;
     }
     let written = number::write(millimetres, 2)?;
@@ -75,7 +75,7 @@ pub fn limit(side: Side, target: f64) -> Option<(Vec<u8>, f64)> {
 pub fn speed(speed: f64) -> Option<(Vec<u8>, f64)> {
     // Down to a tenth of a millimetre a minute; not for the last bit of a float.
     let tenths = (speed * MILLIMETRES_A_MINUTE * 10.0 * (1.0 + 4.0 * f64::EPSILON)).floor();
-    if !(1.0 <= tenths && tenths <= FASTEST * 10.0) {
+    if !(1.0..=FASTEST * 10.0).contains(&tenths) {
         return None;
     }
     let written = format!("{:06.1}", tenths / 10.0);
@@ -92,13 +92,13 @@ pub fn status(answer: &[u8]) -> Option<Status> {
         _ => return None,
     };
     let (mode, rest) = rest.split_first()?;
-    let (at_upper, at_lower) = match rest {
-        b"" => (false, false),
-        b"UL" => (true, false),
-        b"DL" => (false, true),
+    let at = match rest {
+        b"" => None,
+        b"UL" => Some(Side::Upper),
+        b"DL" => Some(Side::Lower),
         _ => return None,
     };
-    matches!(mode, b'C' | b'L' | b'M').then_some(Status { moving, limit_mode: *mode == b'L', at_upper, at_lower })
+    matches!(mode, b'C' | b'L' | b'M').then_some(Status { moving, limit_mode: *mode == b'L', at })
 }
 
 /// Travel, m: a number of mm, with its unit or without.
@@ -163,10 +163,10 @@ mod tests {
 
     #[test]
     fn status_says_motion_mode_and_limit() {
-        let still = Status { moving: false, limit_mode: true, at_upper: false, at_lower: false };
+        let still = Status { moving: false, limit_mode: true, at: None };
         assert_eq!(status(b"SL"), Some(still));
-        assert_eq!(status(b"SLUL"), Some(Status { at_upper: true, ..still }));
-        assert_eq!(status(b"S, L, DL"), Some(Status { at_lower: true, ..still }));
+        assert_eq!(status(b"SLUL"), Some(Status { at: Some(Side::Upper), ..still }));
+        assert_eq!(status(b"S, L, DL"), Some(Status { at: Some(Side::Lower), ..still }));
         assert_eq!(status(b"UL"), Some(Status { moving: true, ..still }), "up, in limit mode");
         assert_eq!(status(b"DM"), Some(Status { moving: true, limit_mode: false, ..still }));
         for none in [&b""[..], b"S", b"X", b"SLX", b"SLULDL", b"12.50", b"SX"] {

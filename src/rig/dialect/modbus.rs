@@ -83,9 +83,8 @@ pub fn written(frame: &[u8]) -> Vec<u16> {
 pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, Fault> {
     let (unit, function) = (question[0], question[1]);
     match received {
-        [] => Ok(None),
         [from, ..] if *from != unit => Err(Fault::Broken("another unit answered")),
-        [_] => Ok(None),
+        [] | [_] => Ok(None),
         [_, said, ..] if *said == function | REFUSED => Ok(Some(EXCEPTION_LENGTH)),
         [_, said, ..] if *said != function => Err(Fault::Broken("another function was answered")),
         _ if writes(question) => Ok(Some(ECHO_LENGTH)),

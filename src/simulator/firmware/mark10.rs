@@ -2,7 +2,7 @@
 //! travel and what the gauge says. There is no "go to": in limit mode it stops exactly at the limit it was given.
 //!
 //! Where the published words leave it open, this stand does so: every answer ends with CR LF; `p` answers as `SM`,
-//! `UL` or `SLUL`, the parts written together; `x` answers a number without its unit, as `-12.34`; `n`, whose layout
+//! `UL` or `SLUL`, the parts written together; `x`, `v` and `w` answer a number without its unit, as `-12.34`; `n`, whose layout
 //! is not published, is not answered; a speed given with `e` counts from `o` on, until then the panel's speed does;
 //! letters between `/` and `\` go to the gauge, whose command ends with CR or with `\`; a speed of nothing is not taken.
 
@@ -107,6 +107,8 @@ impl Stand {
             b'o' => self.use_set_speed = true,
             b'z' => self.zero = bench.commanded(),
             b'p' => return format!("{}\r\n", self.status(bench)),
+            b'v' => return self.said_limit(self.limits[1].unwrap_or(END_OF_TRAVEL)),
+            b'w' => return self.said_limit(self.limits[0].unwrap_or(-END_OF_TRAVEL)),
             b'x' => return format!("{:.2}\r\n", self.travel(bench) / self.unit() * 1e3),
             _ => {}
         }
@@ -145,6 +147,11 @@ impl Stand {
             _ if metres > 0.0 => self.set_speed = metres / 60.0,
             _ => {}
         }
+    }
+
+    /// A limit (m) in the unit that is set.
+    fn said_limit(&self, limit: f64) -> String {
+        format!("{:.2}\r\n", limit / self.unit() * 1e3)
     }
 
     /// mm per unit of length.
@@ -284,6 +291,13 @@ mod tests {
         assert_eq!(bench.targets().last(), Some(&0.003));
         assert_eq!(said(&mut stand, &mut bench, b"bh001.00ux"), "0.04\r\n", "1 mm");
         assert!((bench.targets().last().unwrap() - 0.0274).abs() < 1e-12);
+    }
+
+    #[test]
+    fn its_limits_can_be_asked_for() {
+        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        assert_eq!(said(&mut stand, &mut bench, b"vw"), "300.00\r\n-300.00\r\n");
+        assert_eq!(said(&mut stand, &mut bench, b"ilh002.50g-001.25vw"), "2.50\r\n-1.25\r\n");
     }
 
     #[test]
