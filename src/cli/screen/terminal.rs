@@ -45,13 +45,11 @@ impl Page {
         enable_raw_mode().map_err(|_| Gone)?;
         let opened = execute!(stderr(), EnterAlternateScreen)
             .and_then(|()| Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(1 << 14, stderr()))));
-        match opened {
-            Ok(terminal) => Ok(Self { terminal }),
-            Err(_) => {
-                restore();
-                Err(Gone)
-            }
-        }
+        let Ok(terminal) = opened else {
+            restore();
+            return Err(Gone);
+        };
+        Ok(Self { terminal })
     }
 
     pub fn draw(&mut self, view: &View<'_>) -> Result<(), Gone> {
