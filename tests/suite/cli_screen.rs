@@ -8,8 +8,7 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, Winsize, tcgetattr, tcsetwinsize};
 use serde_json::Value;
 
-/// An inspection comes first, so that the screen is there however fast the machine is; the impact has more steps than
-/// any machine does while a key is pressed.
+/// An inspection comes first, so that the screen is there however fast the machine is.
 const PLAN: &str = r#"plan "A test with a look" {
   edition = 1
 }
