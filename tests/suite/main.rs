@@ -1,6 +1,8 @@
 //! All integration tests in one binary: one link, one module a concern.
 
 mod cli;
+mod cli_rig;
+mod cli_screen;
 mod docs;
 mod explain;
 mod house;

@@ -114,7 +114,7 @@ mod tests {
         let drifting: Vec<f64> = times.iter().map(|time| 5.0 + 2.0 * time).collect();
         let channel = Channel::of(&times, &drifting);
         assert!((channel.drift - 2.0).abs() < 1e-9 && channel.noise < 1e-9 && (channel.mean - 5.9).abs() < 1e-9);
-        // ±1 about 0: its line has a slope of -0.0909/0.1 · …; about that line the scatter stays close to 1.
+        // ±1 in turn: scatter of about 1 about its line, with two numbers fitted to ten readings.
         let noisy: Vec<f64> = (0..10).map(|index| if index % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let channel = Channel::of(&times, &noisy);
         assert!((1.0..1.2).contains(&channel.noise), "{}", channel.noise);

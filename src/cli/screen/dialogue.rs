@@ -14,6 +14,7 @@ const LONGEST_LINE: usize = 200;
 
 /// The keys' side of the screen.
 #[derive(Clone, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Dialogue {
     /// Who answers, once it is known.
     pub operator: Option<String>,

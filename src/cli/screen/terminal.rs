@@ -45,13 +45,11 @@ impl Page {
         enable_raw_mode().map_err(|_| Gone)?;
         let opened = execute!(stderr(), EnterAlternateScreen)
             .and_then(|()| Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(1 << 14, stderr()))));
-        match opened {
-            Ok(terminal) => Ok(Self { terminal }),
-            Err(_) => {
-                restore();
-                Err(Gone)
-            }
-        }
+        let Ok(terminal) = opened else {
+            restore();
+            return Err(Gone);
+        };
+        Ok(Self { terminal })
     }
 
     pub fn draw(&mut self, view: &View<'_>) -> Result<(), Gone> {
@@ -59,7 +57,7 @@ impl Page {
     }
 
     /// The keys pressed, if any within the time-out.
-    pub fn keys(&mut self, timeout: Duration) -> Result<Vec<Key>, Gone> {
+    pub fn keys(timeout: Duration) -> Result<Vec<Key>, Gone> {
         if !has_input(timeout)? {
             return Ok(Vec::new());
         }
@@ -91,9 +89,8 @@ fn has_input(timeout: Duration) -> Result<bool, Gone> {
     let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
     let wait = Timespec { tv_sec: timeout.as_secs().try_into().unwrap_or(1), tv_nsec: timeout.subsec_nanos().into() };
     match poll(&mut watched, Some(&wait)) {
-        Ok(0) => Ok(false),
-        // The size of the window changed, or the like.
-        Err(rustix::io::Errno::INTR) => Ok(false),
+        // Nothing yet; or the size of the window changed, or the like.
+        Ok(0) | Err(rustix::io::Errno::INTR) => Ok(false),
         Err(_) => Err(Gone),
         Ok(_) => {
             let found = watched[0].revents();

@@ -26,7 +26,6 @@ pub struct Watcher {
 }
 
 /// What the person sees.
-#[expect(clippy::large_enum_variant, reason = "there is one")]
 enum Face {
     Screen(Screen),
     Bar(Bar),

@@ -16,7 +16,7 @@ use crate::run::{Inspection, Observer, StepReport};
 pub struct Bar {
     counted: ProgressStyle,
     endless: ProgressStyle,
-    bar: Option<ProgressBar>,
+    shown: Option<ProgressBar>,
 }
 
 impl Bar {
@@ -27,13 +27,13 @@ impl Bar {
             // How it looks where the number of steps is known before, and where it is not.
             counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
             endless: template("  {prefix}  step {pos}  {msg}"),
-            bar: None,
+            shown: None,
         }
     }
 
     /// Takes the bar off the terminal.
     pub fn clear(&mut self) {
-        if let Some(bar) = self.bar.take() {
+        if let Some(bar) = self.shown.take() {
             bar.finish_and_clear();
         }
     }
@@ -45,11 +45,11 @@ impl Observer for Bar {
         let style = if steps.is_some() { self.counted.clone() } else { self.endless.clone() };
         let bar = ProgressBar::with_draw_target(steps, ProgressDrawTarget::stderr()).with_style(style);
         bar.set_prefix(format!("{name}, {keyword}"));
-        self.bar = Some(bar);
+        self.shown = Some(bar);
     }
 
     fn step_done(&mut self, &StepReport { step, time, displacement, force, .. }: &StepReport) {
-        let Some(bar) = &self.bar else { return };
+        let Some(bar) = &self.shown else { return };
         bar.set_position(step);
         // Most steps are never drawn: words are made for some only.
         if step.is_multiple_of(16) {

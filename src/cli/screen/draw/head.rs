@@ -38,18 +38,18 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
     let badge = Span::styled(format!(" {word} "), view.paint(color).add_modifier(Modifier::BOLD | Modifier::REVERSED));
     let mut words = String::new();
     if let Some(running) = &view.model.procedure {
-        words.push_str(&format!("  {}, {}", fitted(&shown(&running.name), 20), running.keyword));
+        words = format!("  {}, {}", fitted(&shown(&running.name), 20), running.keyword);
         let step = view.model.last.map_or(0, |last| last.step);
         match running.steps {
             _ if running.keyword == INSPECT => {}
-            Some(steps) if steps > 0 => words.push_str(&format!("   step {step} of {}", steps.max(step))),
-            _ if step > 0 => words.push_str(&format!("   step {step}")),
+            Some(steps) if steps > 0 => words = format!("{words}   step {step} of {}", steps.max(step)),
+            _ if step > 0 => words = format!("{words}   step {step}"),
             _ => {}
         }
     }
     let moving = view.model.procedure.as_ref().is_none_or(|running| running.keyword != INSPECT);
     if let Some(last) = view.model.last.filter(|_| moving) {
-        words.push_str(&format!("   t {}", readable(last.time, Dimension::TIME)));
+        words = format!("{words}   t {}", readable(last.time, Dimension::TIME));
     }
     Line::from(vec![Span::raw(" "), badge, Span::raw(words)])
 }

@@ -57,15 +57,15 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
             waits.into_iter().chain(rest).collect()
         }
         What::NoteName { note } => vec![shown(note), "Your name:".to_owned(), typed],
-        What::Answer => vec![question(), "".to_owned(), "Go on?   y yes   n no, the run ends here".to_owned()],
+        What::Answer => vec![question(), String::new(), "Go on?   y yes   n no, the run ends here".to_owned()],
         What::Remark { yes } => {
             let answer = if *yes { "Yes, go on." } else { "No, the run ends here." };
             let asks = format!("{answer} A remark for the record; Enter without one, Esc back:");
-            vec![question(), "".to_owned(), asks, typed]
+            vec![question(), String::new(), asks, typed]
         }
         What::AnswerName { yes, .. } => {
             let answer = if *yes { "Yes, go on." } else { "No, the run ends here." };
-            vec![question(), "".to_owned(), format!("{answer} Your name; Esc back:"), typed]
+            vec![question(), String::new(), format!("{answer} Your name; Esc back:"), typed]
         }
     };
     Some((title, lines))

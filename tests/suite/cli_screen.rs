@@ -1,0 +1,158 @@
+//! The live screen, on a pseudo-terminal: keys in, pictures out, and what they leave in the record.
+
+use std::fs::File;
+use std::io::{Read as _, Write as _};
+use std::process::{Child, Command, Stdio};
+
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{LocalModes, Winsize, tcgetattr, tcsetwinsize};
+use serde_json::Value;
+
+/// An inspection comes first, so that the screen is there however fast the machine is.
+const PLAN: &str = r#"plan "A test with a look" {
+  edition = 1
+}
+
+specimen beam {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 327.65 N/m)
+}
+
+striker hammer {
+  mass     = 10 kg
+  velocity = 1 m/s
+}
+
+limits {
+  displacement = -0.1 m .. 0.2 m
+}
+
+inspect joints {
+  note = "Look at the joints"
+}
+
+move there {
+  to = 1 mm
+}
+
+inspect again {
+  note = "Look again"
+}
+"#;
+
+/// The program on a terminal of 100 × 30.
+struct Terminal {
+    folder: tempfile::TempDir,
+    master: File,
+    /// Kept open, so that the terminal's modes can be looked at after the program.
+    slave: File,
+    child: Child,
+    seen: String,
+}
+
+impl Terminal {
+    fn run(arguments: &[&str]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("plan.psd"), PLAN).unwrap();
+        let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&master).unwrap();
+        unlockpt(&master).unwrap();
+        let size = Winsize { ws_row: 30, ws_col: 100, ws_xpixel: 0, ws_ypixel: 0 };
+        tcsetwinsize(&master, size).unwrap();
+        let name = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
+        let slave = File::options().read(true).write(true).open(name).unwrap();
+        let stream = || Stdio::from(slave.try_clone().unwrap());
+        let child = Command::new(env!("CARGO_BIN_EXE_psd"))
+            .args(["run", "plan.psd", "--out", "out"])
+            .args(arguments)
+            .current_dir(folder.path())
+            .env("TERM", "xterm-256color")
+            .env("LC_ALL", "C.UTF-8")
+            .stdin(stream())
+            .stdout(stream())
+            .stderr(stream())
+            .spawn()
+            .unwrap();
+        Self { folder, master: File::from(master), slave, child, seen: String::new() }
+    }
+
+    /// Reads until this has been drawn since the last key.
+    fn wait_for(&mut self, text: &str) {
+        let mut buffer = [0; 4096];
+        while !self.seen.contains(text) {
+            let count = self.master.read(&mut buffer).unwrap();
+            assert!(count > 0, "the terminal closed before {text:?}:\n{}", self.seen);
+            self.seen.push_str(&String::from_utf8_lossy(&buffer[..count]));
+        }
+    }
+
+    fn press(&mut self, keys: &str) {
+        self.seen.clear();
+        self.master.write_all(keys.as_bytes()).unwrap();
+    }
+
+    /// The exit code and the summary.
+    fn ended(mut self) -> (Option<i32>, Value) {
+        self.wait_for("run ");
+        let code = self.child.wait().unwrap().code();
+        let modes = tcgetattr(&self.slave).unwrap().local_modes;
+        assert!(modes.contains(LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG), "the terminal is as it was");
+        let summary = std::fs::read_to_string(self.folder.path().join("out/summary.json")).unwrap();
+        (code, serde_json::from_str(&summary).unwrap())
+    }
+}
+
+fn events(summary: &Value) -> Vec<&str> {
+    summary["events"].as_array().unwrap().iter().filter_map(|event| event["text"].as_str()).collect()
+}
+
+#[test]
+fn an_inspection_is_asked_on_the_screen_and_answered_by_name() {
+    let mut terminal = Terminal::run(&[]);
+    terminal.wait_for("on?");
+    // Keys before an answer is asked for are none; a remark and a name follow a yes.
+    terminal.press("xp y");
+    terminal.wait_for("remark");
+    terminal.press("no crack\r");
+    terminal.wait_for("name");
+    terminal.press("A. Engineer\r");
+    terminal.wait_for("again");
+    terminal.press("y");
+    terminal.wait_for("remark");
+    terminal.press("\r");
+    let (code, summary) = terminal.ended();
+    assert_eq!(code, Some(0), "{summary:#}");
+    assert_eq!(events(&summary), ["Look at the joints: no crack (A. Engineer)", "Look again (A. Engineer)"]);
+}
+
+#[test]
+fn ctrl_c_and_no_and_the_end_of_the_input_stop_and_none_is_a_yes() {
+    for (keys, reason) in [
+        ("\u{3}", "stopped on request"),
+        ("q", "stopped on request"),
+        ("\u{4}", "no answer at an inspection"),
+        ("ncrack\r", "stopped by a person at an inspection: crack"),
+    ] {
+        let mut terminal = Terminal::run(&["--operator", "B"]);
+        terminal.wait_for("on?");
+        terminal.press(keys);
+        let (code, summary) = terminal.ended();
+        assert_eq!(code, Some(4), "{keys:?}: {summary:#}");
+        assert!(events(&summary).iter().any(|text| text.contains(reason)), "{keys:?}: {summary:#}");
+    }
+}
+
+#[test]
+fn a_short_run_draws_no_screen() {
+    let terminal = Terminal::run(&["--yes", "--operator", "B"]);
+    let mut seen = String::new();
+    let (code, summary) = {
+        let mut terminal = terminal;
+        terminal.wait_for("run ");
+        seen.push_str(&terminal.seen);
+        terminal.ended()
+    };
+    assert_eq!(code, Some(0));
+    assert!(!seen.contains("\u{1b}[?1049h"), "{seen:?}");
+    assert_eq!(events(&summary)[0], "Look at the joints: answered by --yes (B)");
+}
