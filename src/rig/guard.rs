@@ -52,8 +52,8 @@ impl<'rig> Guard<'rig> {
         self.rig.declared_noise()
     }
 
-    /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the highest allowed where the plan
-    /// limits it, else the rig's own.
+    /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the rig's own, else the highest
+    /// that the plan allows.
     ///
     /// # Errors
     /// A limit stands in the way, or the rig fails.
@@ -68,7 +68,9 @@ impl<'rig> Guard<'rig> {
     /// A limit stands in the way, or the rig refuses.
     pub fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         self.proposed = None;
-        let speed = speed.or_else(|| Some(self.limits.speed.high).filter(|high| high.is_finite()));
+        let high = Some(self.limits.speed.high).filter(|high| high.is_finite());
+        let own = || self.rig.own_speed().map(|own| own.min(self.limits.speed.high));
+        let speed = speed.or_else(|| own().or(high));
         self.check_targets(targets)?;
         let increments = targets.iter().zip(&self.commanded).map(|(to, from)| increment(*from, *to));
         let longest = increments.fold(0.0, f64::max);

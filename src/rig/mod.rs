@@ -158,7 +158,7 @@ pub trait Rig {
     fn time(&self) -> f64;
 
     /// Makes the bytes of a move to absolute targets (m) at a speed (m/s; None: the rig's own), and gives what they say.
-    /// Nothing leaves the program and nothing moves yet.
+    /// They do not leave the program, and nothing moves yet.
     ///
     /// # Errors
     /// The rig has no way to say it.
@@ -195,6 +195,11 @@ pub trait Rig {
 
     /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent stiffness.
     fn declared_noise(&self) -> DeclaredNoise;
+
+    /// Speed of a move for which none is asked, m/s; None: as fast as the plan's limits allow.
+    fn own_speed(&self) -> Option<f64> {
+        None
+    }
 
     /// The last move the rig remembers, as it said when it was opened.
     fn last_move(&self) -> Option<LastMove> {

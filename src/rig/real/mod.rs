@@ -53,6 +53,8 @@ struct Proposed {
     going: Move,
     /// m, in the plan's sign.
     target: f64,
+    /// Where it stood when it was offered, m.
+    from: f64,
 }
 
 impl RealRig {
@@ -129,6 +131,8 @@ impl Rig for RealRig {
             _ => return Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", targets.len()))),
         };
         let speed = speed.unwrap_or(self.link.own_speed);
+        // Asked before the bytes are made, for between them and their sending nothing is asked.
+        let from = self.poll()?.displacement;
         let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
         let said = self.sign * going.target;
         // What the devices resolve is as near as they can say it.
@@ -140,7 +144,7 @@ impl Rig for RealRig {
             return Err(RigFault::Device(reason));
         }
         let offer = Offer { targets: vec![said], speed: going.speed, wire: going.frames.concat(), move_id: going.id };
-        self.proposed = Some(Proposed { going, target });
+        self.proposed = Some(Proposed { going, target, from });
         Ok(offer)
     }
 
@@ -172,6 +176,10 @@ impl Rig for RealRig {
             self.deaf = true;
             safety::hold_everything();
         }
+    }
+
+    fn own_speed(&self) -> Option<f64> {
+        Some(self.link.own_speed)
     }
 
     fn declared_noise(&self) -> DeclaredNoise {

@@ -11,8 +11,7 @@ use crate::rig::{EachReading, LimitedQuantity, Rig as _, RigFault};
 impl RealRig {
     /// Sends the offered move and waits until settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
-        let from = self.poll()?.displacement;
-        let (target, seconds) = self.set_off(from)?;
+        let (target, seconds) = self.set_off()?;
         let arrival = self.clock.now() + seconds;
         let mut settling = Settling::new(self.settle, target);
         let mut rested = None;
@@ -60,7 +59,7 @@ impl RealRig {
         if samples == 0 || !ahead {
             return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
         }
-        let (_, seconds) = self.set_off(from)?;
+        let (_, seconds) = self.set_off()?;
         let began = self.clock.now();
         #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
         for sample in 1..=samples {
@@ -125,9 +124,9 @@ impl RealRig {
     }
 
     /// Sends the offered move. Gives its target (m) and the time the way takes, s.
-    fn set_off(&mut self, from: f64) -> Result<(f64, f64), RigFault> {
+    fn set_off(&mut self) -> Result<(f64, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
-        let Proposed { going, target } = self.proposed.take().ok_or_else(nothing)?;
+        let Proposed { going, target, from } = self.proposed.take().ok_or_else(nothing)?;
         self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         self.deaf = false;
         self.outside = false;

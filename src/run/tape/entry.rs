@@ -68,6 +68,9 @@ pub struct RigBody {
     pub identity: Identity,
     pub axes: usize,
     pub noise: DeclaredNoise,
+    /// m/s
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_speed: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_move: Option<LastMove>,
 }

@@ -265,6 +265,10 @@ impl Rig for TapedRig<'_> {
         self.about.noise
     }
 
+    fn own_speed(&self) -> Option<f64> {
+        self.about.own_speed
+    }
+
     fn last_move(&self) -> Option<LastMove> {
         self.live.as_deref().and_then(Rig::last_move)
     }
@@ -283,6 +287,7 @@ impl RigBody {
             identity: rig.identity(),
             axes: rig.degrees_of_freedom(),
             noise: rig.declared_noise(),
+            own_speed: rig.own_speed(),
             last_move: rig.last_move(),
         }
     }
@@ -293,7 +298,7 @@ fn nobody() -> RigBody {
     let unknown = String::new;
     let identity =
         Identity { name: unknown(), model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: true };
-    RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), last_move: None }
+    RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), own_speed: None, last_move: None }
 }
 
 fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<usize>) -> IntentBody {
