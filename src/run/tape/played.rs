@@ -140,8 +140,9 @@ fn told(resume: &ResumeBody) -> String {
         Doubt::HeldOnTheWay => "the last target had been held on the way and was sent anew",
         Doubt::Stroke { .. } => "a stroke had been cut off and was begun anew",
     };
+    // At another place than the last reading's the force tells nothing of the specimen.
     let relaxed = match (&resume.recorded, resume.found.1.as_slice()) {
-        (Some((_, recorded)), [found]) if recorded.len() == 1 => {
+        (Some((_, recorded)), [found]) if recorded.len() == 1 && resume.doubt == Doubt::None => {
             format!("; the force had changed by {:.3} N", found - recorded[0])
         }
         _ => String::new(),
