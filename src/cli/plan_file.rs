@@ -14,6 +14,12 @@ use crate::diagnostic::{json, render};
 
 /// Reads and checks a plan. Its name inside the program is its file's name: where it lies is recorded nowhere.
 pub fn open(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {
+    for (at, (name, _)) in settings.set.iter().enumerate() {
+        if settings.set[..at].iter().any(|(before, _)| before == name) {
+            return Err(Failure::command_line(format!("`--set {name}` is given twice"))
+                .help("give it once, with the value that is meant"));
+        }
+    }
     let text = read_plan(path)?;
     let loader = FolderLoader::beside(path)?;
     let options = Options { rig: settings.rig.clone(), settings: settings.set.clone(), date: settings.date.clone() };

@@ -26,6 +26,10 @@ impl RunFolder {
 
     fn named(path: &Path) -> Result<Self, Failure> {
         let failed = |error: std::io::Error| Failure::file(path, plain(&error));
+        // A link may lead anywhere, also to nothing.
+        if path.is_symlink() {
+            return Err(Failure::file(path, "is a link").help("name the run folder itself"));
+        }
         match std::fs::read_dir(path) {
             Ok(mut entries) => {
                 if entries.next().is_some() {
@@ -110,5 +114,11 @@ mod tests {
         assert!(RunFolder::named(root.path()).is_err());
         std::fs::write(root.path().join("file"), "").unwrap();
         assert!(RunFolder::named(&root.path().join("file")).is_err());
+        for target in ["empty", "nowhere"] {
+            std::fs::create_dir_all(root.path().join("empty")).unwrap();
+            let link = root.path().join(format!("to-{target}"));
+            std::os::unix::fs::symlink(root.path().join(target), &link).unwrap();
+            assert!(RunFolder::named(&link).unwrap_err().to_string().contains("is a link"));
+        }
     }
 }

@@ -169,6 +169,7 @@ fn a_wrong_command_line_ends_with_two() {
         &["run", "small.psd", "--set", "speed"],
         &["run", "small.psd", "--set", "speed=9 m/s"],
         &["run", "small.psd", "--set", "spee=1 m/s"],
+        &["run", "small.psd", "--set", "speed=1 m/s", "--set", "speed=0.9 m/s"],
         &["run", "small.psd", "--rig", "none"],
         &["explain", "E999"],
     ] {
