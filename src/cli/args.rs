@@ -25,6 +25,7 @@ pub enum Command {
     /// Goes on with a run on a real rig that was stopped or cut off
     Resume(ResumeArguments),
     /// Proves that a run's record, targets and files belong together; nothing moves
+    #[command(after_help = "Exit codes: 0 all is proven, 3 something is not.")]
     Verify {
         /// The run folder
         #[arg(value_name = "RUN")]
@@ -81,7 +82,7 @@ pub enum RigCommand {
         /// Where to, such as "1 mm" [default: places are typed, one a line]
         #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
         to: Option<String>,
-        /// How fast, such as "0.5 mm/s" [default: the plan's highest, else the rig's own]
+        /// How fast, such as "0.5 mm/s" [default: the rig's own, within the plan's limits]
         #[arg(long, value_name = "SPEED")]
         speed: Option<String>,
         /// Answers the question before a move with yes
@@ -95,10 +96,11 @@ pub enum RigCommand {
 }
 
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Exit codes: 0 every target lay within the limits, 2 the plan, the script or the command line is wrong,\n\
-    3 a port or a file failed, 4 a target lay outside the limits."
-)]
+#[command(after_help = "Faults, one a line: WHEN: WHAT. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`,\n\
+    `after 3 replies`, `each reply with 0.01`. WHAT is, among others, `drop replies 3`,\n\
+    `delay reply 0.4 s`, `flip a bit`, `hang up`, `reboot`, `freeze force`, `scale force by -1`.\n\n\
+    Exit codes: 0 every target lay within the limits, 2 plan, script or command line are wrong,\n\
+    3 a port or a file failed, 4 a target lay outside the limits.")]
 pub struct SimulateArguments {
     /// The plan, a `.psd` file
     #[arg(value_name = "PLAN")]
@@ -190,11 +192,14 @@ pub struct RunArguments {
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[command(after_help = "Nothing moves before record, plan, program and rig are known to be those of the run, and the rig\n\
+    has said what became of the last target. See docs/record.md.\n\n\
+    Exit codes: as `psd run`; 3 also where the run must not go on.")]
 pub struct ResumeArguments {
     /// The run folder
     #[arg(value_name = "RUN")]
     pub run: PathBuf,
-    /// Who takes it upon them that the run goes on
+    /// Who answers for it that the run goes on; it is recorded
     #[arg(long, value_name = "NAME")]
     pub operator: String,
     /// Why the run was interrupted and may go on; it is recorded
@@ -251,7 +256,7 @@ pub struct PlanSettings {
     /// Gives a `param` another value: `--set impact_speed="1.5 m/s"`
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
-    /// The date on the certificate; the clock is never read
+    /// The date on the certificate; it is never taken from the clock
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
     pub date: Option<String>,
 }

@@ -19,7 +19,9 @@ pub fn readable_unit(value: f64, dimension: Dimension) -> (String, f64) {
         _ => return (dimension.usual_unit(), usual_factor(dimension)),
     };
     // The unit must leave the number at 0.1 or more where it can: 0.5 mm, not 500 um; 0.29 s, not 290 ms.
-    let fits = choices.iter().rev().find(|(_, factor)| size >= 0.1 * factor * 0.999_999);
+    // Minutes and hours are no multiples of ten: 11 s are not 0.18 min.
+    let least = |factor: f64| if dimension == Dimension::TIME && factor > 1.0 { factor } else { 0.1 * factor };
+    let fits = choices.iter().rev().find(|(_, factor)| size >= least(*factor) * 0.999_999);
     let (unit, factor) = if size == 0.0 || !size.is_finite() { choices[choices.len() / 2] } else { *fits.unwrap_or(&choices[0]) };
     (unit.to_owned(), factor)
 }
@@ -86,6 +88,8 @@ mod tests {
         assert_eq!(readable(0.157_864, Dimension::LENGTH), "0.1579 m");
         assert_eq!(readable(300e3, Dimension::STIFFNESS), "0.3000 MN/m");
         assert_eq!(readable(0.29, Dimension::TIME), "0.2900 s");
+        assert_eq!(readable(11.0, Dimension::TIME), "11.00 s");
+        assert_eq!(readable(90.0, Dimension::TIME), "1.500 min");
         assert_eq!(readable(0.0, Dimension::LENGTH), "0 mm");
         assert_eq!(readable(564e-6, Dimension::AREA), "564.0 mm^2");
     }

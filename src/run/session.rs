@@ -22,8 +22,9 @@ pub(super) struct Session<'run> {
     step: Option<u64>,
     /// Where the rig was found, m.
     home: f64,
-    /// Whether rig time is only reckoned, and must not pass while a person thinks.
-    simulated: bool,
+    /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
+    /// rig, and has a watchdog as any.
+    reckoned: bool,
 }
 
 impl<'run> Session<'run> {
@@ -35,7 +36,7 @@ impl<'run> Session<'run> {
     ) -> Result<Self, Box<(Event, Stop)>> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
-        let simulated = rig.identity().simulated;
+        let reckoned = rig.identity().simulated && plan.rig.link.as_real().is_none();
         let guard = if axes == 1 {
             Guard::new(rig, plan.limits)
         } else {
@@ -45,7 +46,7 @@ impl<'run> Session<'run> {
         match guard {
             Ok(guard) => {
                 let home = guard.commanded()[0];
-                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home, simulated })
+                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home, reckoned })
             }
             Err(fault) => {
                 let stop = Stop::Rig(fault);
@@ -144,7 +145,7 @@ impl<'run> Session<'run> {
 
     /// A moment of a person's time. A real rig spends it where it is, and is heard from.
     fn breathe(&mut self) -> Result<(), Stop> {
-        if !self.simulated {
+        if !self.reckoned {
             self.guard.pause(BREATH)?;
         }
         Ok(())

@@ -137,6 +137,22 @@ fn only_the_run_and_those_it_is_lent_to_drive_a_rig() {
     none(&found, "a rig is driven outside `run` and `serve`");
 }
 
+/// A driver and the simulator it is tried on read the same bytes with code of their own: else a mistake of one is hidden by
+/// the other. They share only the port, the clock, and the plan.
+#[test]
+fn simulator_and_drivers_share_no_parsing_code() {
+    let files = rust_files("src");
+    let mut found = Vec::new();
+    let beside_tests = |file: &&SourceText| !file.path.ends_with("_tests.rs") && !file.path.contains("testing");
+    for file in files.iter().filter(|file| file.top() == "simulator").filter(beside_tests) {
+        found.extend(file.lines_with("rig::").into_iter().filter(|line| !line.contains("rig::port::")));
+    }
+    for file in files.iter().filter(|file| file.top() == "rig").filter(beside_tests) {
+        found.extend(file.lines_with("simulator::"));
+    }
+    none(&found, "the stand-in and the driver must not know each other");
+}
+
 #[test]
 fn every_file_says_what_it_is_and_stays_short() {
     let mut found = Vec::new();

@@ -7,6 +7,7 @@ mod docs;
 mod explain;
 mod house;
 mod lang;
+mod manual;
 mod outputs;
 mod physics;
 mod plans;

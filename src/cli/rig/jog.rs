@@ -13,6 +13,9 @@ use crate::quantity::display::{plain, readable};
 use crate::quantity::unit;
 use crate::rig::{Guard, Rig, RigFault, Wish};
 
+/// How long the rig stays where it is between two looks at what is typed, s of rig time.
+const BREATH: f64 = 0.01;
+
 /// What the command line asks for.
 pub struct Asked<'a> {
     /// Where to; none: places are typed, one a line.
@@ -46,7 +49,7 @@ pub fn jog(rig: &mut dyn Rig, plan: &Plan, asked: &Asked<'_>, wish: &Wish, setti
     }
     loop {
         tell(&format!("  at {}; where to? [a place such as 1 mm, or q] ", here(&guard)));
-        let Some(line) = person.line() else { return Ok(if wish.wants_end() { Exit::Stopped } else { Exit::Met }) };
+        let Some(line) = person.line(&mut guard)? else { return Ok(if wish.wants_end() { Exit::Stopped } else { Exit::Met }) };
         match line.trim() {
             "" => {}
             "q" | "quit" => return Ok(Exit::Met),
@@ -71,18 +74,20 @@ struct Person<'a> {
 }
 
 impl Person<'_> {
-    /// None at the end of the input and on Ctrl-C.
-    fn line(&mut self) -> Option<String> {
-        next_line(self.lines.get_or_insert_with(typed_lines), self.wish)
+    /// None at the end of the input and on Ctrl-C. The rig stays where it is meanwhile, and is heard from.
+    fn line(&mut self, guard: &mut Guard<'_>) -> Result<Option<String>, Failure> {
+        let lines = self.lines.get_or_insert_with(typed_lines);
+        next_line(lines, self.wish, || guard.pause(BREATH)).map_err(Failure::Rig)
     }
 
     /// Only a clear yes is one.
-    fn agrees(&mut self, question: &str) -> bool {
+    fn agrees(&mut self, question: &str, guard: &mut Guard<'_>) -> Result<bool, Failure> {
         if self.yes {
-            return true;
+            return Ok(true);
         }
         tell(question);
-        self.line().is_some_and(|line| matches!(line.trim().to_ascii_lowercase().as_str(), "y" | "yes"))
+        let line = self.line(guard)?;
+        Ok(line.is_some_and(|line| matches!(line.trim().to_ascii_lowercase().as_str(), "y" | "yes")))
     }
 }
 
@@ -90,7 +95,7 @@ impl Person<'_> {
 fn move_to(guard: &mut Guard<'_>, to: f64, speed: Option<f64>, person: &mut Person<'_>) -> Result<Exit, Failure> {
     let at = speed.map_or_else(String::new, |speed| format!(" at {}", plain(speed, Dimension::VELOCITY, 4)));
     let question = format!("  move from {} to {}{at}? [y or n] ", here(guard), plain(to, Dimension::LENGTH, 6));
-    if !person.agrees(&question) {
+    if !person.agrees(&question, guard)? {
         tell("  nothing moved\n");
         return Ok(Exit::Stopped);
     }

@@ -99,14 +99,22 @@ fn answer(line: &str) -> Option<Inspection> {
     }
 }
 
-/// The next line typed. None at the end of the input, which never counts as yes, and on Ctrl-C.
-pub fn next_line(lines: &Receiver<String>, wish: &Wish) -> Option<String> {
+/// The next line typed. None at the end of the input, which never counts as yes, and on Ctrl-C. While nothing is typed,
+/// `meanwhile` is done again and again: a rig must hear from the program however long a person thinks.
+///
+/// # Errors
+/// As `meanwhile`.
+pub fn next_line<E>(
+    lines: &Receiver<String>,
+    wish: &Wish,
+    mut meanwhile: impl FnMut() -> Result<(), E>,
+) -> Result<Option<String>, E> {
     loop {
         match lines.recv_timeout(LOOK) {
-            Ok(line) => return Some(line),
-            Err(RecvTimeoutError::Disconnected) => return None,
-            Err(RecvTimeoutError::Timeout) if wish.wants_end() => return None,
-            Err(RecvTimeoutError::Timeout) => {}
+            Ok(line) => return Ok(Some(line)),
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+            Err(RecvTimeoutError::Timeout) if wish.wants_end() => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => meanwhile()?,
         }
     }
 }
@@ -162,11 +170,21 @@ mod tests {
         let (send, receive) = channel();
         send.send("y".to_owned()).unwrap();
         drop(send);
-        assert_eq!(next_line(&receive, &wish).as_deref(), Some("y"));
-        assert_eq!(next_line(&receive, &wish), None);
-        let (_kept, receive) = channel();
+        let line = |receive: &Receiver<String>| next_line(receive, &wish, || Ok::<_, ()>(()));
+        assert_eq!(line(&receive), Ok(Some("y".to_owned())));
+        assert_eq!(line(&receive), Ok(None));
+        let (kept, receive) = channel();
         wish.stop_after_step();
-        assert_eq!(next_line(&receive, &wish), None, "Ctrl-C while a question waits");
+        assert_eq!(line(&receive), Ok(None), "Ctrl-C while a question waits");
+        let wish = Wish::default();
+        let mut looks = 0;
+        let heard = next_line(&receive, &wish, || {
+            looks += 1;
+            if looks == 3 { kept.send("late".to_owned()) } else { Ok(()) }
+        });
+        assert_eq!((heard, looks), (Ok(Some("late".to_owned())), 3), "the rig is heard from while a person thinks");
+        let (_kept, receive) = channel::<String>();
+        assert_eq!(next_line(&receive, &wish, || Err("it trips")), Err("it trips"));
     }
 
     #[test]

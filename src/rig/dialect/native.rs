@@ -2,7 +2,7 @@
 //! is. It keeps no conversation: which reply answers which request is the driver's business.
 //!
 //! # The protocol
-//! ASCII, 115200 baud 8N1 or TCP, one request in flight, a frame at most 96 bytes with its ending.
+//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request is at most 96 bytes with its ending, a reply at most 512.
 //!
 //! ```text
 //! request = ">" VERB  SP SEQ          *(SP word) "*" CRC LF
@@ -41,7 +41,7 @@ use crate::rig::LastMove;
 use crate::rig::device::Flags;
 use crate::rig::failpoint::{Guarding, on};
 
-/// Longest frame with its ending, bytes.
+/// Longest request with its ending, bytes.
 pub const LONGEST_FRAME: usize = 96;
 
 /// What is asked. Lengths m, speeds m/s, forces N.

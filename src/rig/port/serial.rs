@@ -28,9 +28,8 @@ impl SerialPort {
     /// # Errors
     /// It is no serial line, is in use, or cannot be set up.
     pub fn open(path: &str, baud: u32) -> io::Result<Self> {
-        let kind = std::fs::metadata(path).map_err(|error| told(&error, path))?.file_type();
-        let refuse =
-            |what: &str| Err(io::Error::new(io::ErrorKind::InvalidInput, format!("`{path}` is {what}, not a serial line")));
+        let kind = std::fs::metadata(path).map_err(|error| told(&error))?.file_type();
+        let refuse = |what: &str| Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {what}, not a serial line")));
         if kind.is_dir() {
             return refuse("a folder");
         }
@@ -42,24 +41,32 @@ impl SerialPort {
         }
         // Opened before the line is made exclusive, which keeps out all who come later, this program too.
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-        let descriptor = rustix::fs::open(path, flags, Mode::empty()).map_err(|errno| told(&errno.into(), path))?;
+        let descriptor = rustix::fs::open(path, flags, Mode::empty()).map_err(|errno| told(&errno.into()))?;
         if !rustix::termios::isatty(&descriptor) {
             return refuse("a device");
         }
-        let line = TTYPort::open(&serialport::new(path, baud)).map_err(|error| told(&error.into(), path))?;
+        let line = TTYPort::open(&serialport::new(path, baud)).map_err(|error| told(&error.into()))?;
         Ok(Self { descriptor, _line: line })
     }
 }
 
-/// The error with the path and, where another program has the line, with that.
-fn told(error: &io::Error, path: &str) -> io::Error {
+/// The error in words that lead on: whoever reads it may have nothing but a cable in hand.
+fn told(error: &io::Error) -> io::Error {
     use rustix::io::Errno;
     let busy = [Errno::BUSY, Errno::AGAIN].iter().any(|errno| error.raw_os_error() == Some(errno.raw_os_error()));
     let text = error.to_string();
     if busy || text.contains("lock") || text.contains("busy") {
-        return io::Error::new(io::ErrorKind::ResourceBusy, format!("`{path}` is in use by another program"));
+        let told = "it is in use by another program: end that one, for two cannot drive one rig";
+        return io::Error::new(io::ErrorKind::ResourceBusy, told);
     }
-    io::Error::new(error.kind(), format!("`{path}` cannot be opened: {text}"))
+    let told = match error.kind() {
+        io::ErrorKind::NotFound => {
+            "there is no such port: is it plugged in and switched on? `psd rig list` shows those there are"
+        }
+        io::ErrorKind::PermissionDenied => "you may not open it: on most systems members of the group `dialout` may",
+        _ => return io::Error::new(error.kind(), format!("it cannot be opened: {text}")),
+    };
+    io::Error::new(error.kind(), told)
 }
 
 impl Port for SerialPort {
@@ -154,14 +161,15 @@ mod tests {
         let (_master, path) = pair();
         let port = SerialPort::open(&path, 115_200).unwrap();
         let second = SerialPort::open(&path, 115_200).err().unwrap();
-        assert!(second.to_string().ends_with("is in use by another program"), "{second}");
+        assert!(second.to_string().starts_with("it is in use by another program"), "{second}");
         drop(port);
         assert!(SerialPort::open(&path, 115_200).is_ok(), "free again");
         let file = tempfile::NamedTempFile::new().unwrap();
         for (path, what) in [(file.path().to_str().unwrap(), "a file"), ("/tmp", "a folder"), ("/dev/null", "a device")] {
             let refused = SerialPort::open(path, 115_200).err().unwrap();
-            assert_eq!(refused.to_string(), format!("`{path}` is {what}, not a serial line"));
+            assert_eq!(refused.to_string(), format!("it is {what}, not a serial line"));
         }
-        assert!(SerialPort::open("/dev/no-such-line", 115_200).is_err());
+        let refused = SerialPort::open("/dev/no-such-line", 115_200).err().unwrap();
+        assert!(refused.to_string().contains("`psd rig list`"), "{refused}");
     }
 }

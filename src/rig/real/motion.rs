@@ -86,8 +86,9 @@ impl RealRig {
     /// Stays until the moment `until` (s, by the clock), and asks often enough that the devices hear that the program
     /// lives.
     pub(super) fn stay_until(&mut self, until: f64) -> Result<(), RigFault> {
-        while until - self.clock.now() > self.link.watchdog / 4.0 {
-            self.wait_until(self.clock.now() + self.link.watchdog / 4.0)?;
+        // Reckoned from when the rig was last heard: many short stays are one long silence else.
+        while self.heard + self.link.watchdog / 4.0 < until {
+            self.wait_until(self.heard + self.link.watchdog / 4.0)?;
             let point = self.poll()?;
             self.watch(&point)?;
         }

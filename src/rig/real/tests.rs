@@ -103,6 +103,19 @@ fn it_moves_settles_for_the_dwell_and_reads_with_all_its_bytes() {
 }
 
 #[test]
+fn many_short_stays_leave_no_silence_longer_than_the_watchdog() {
+    let mut stand = stand();
+    let asked = stand.device.inside().samples;
+    for _ in 0..1000 {
+        stand.rig.pause(0.01).unwrap();
+    }
+    // 10 s, heard from each quarter of the 3 s.
+    let asked = stand.device.inside().samples - asked;
+    assert!((12..=14).contains(&asked), "{asked}");
+    assert_eq!(stand.go(0.002), Ok((0.002, 200.0)));
+}
+
+#[test]
 fn a_device_that_cannot_say_whether_it_moves_is_given_the_time_of_the_way() {
     let mut stand = stand();
     stand.device.inside().tells_motion = false;

@@ -77,6 +77,8 @@ fn numbers_line(view: &View<'_>, wide: bool) -> String {
         format!("R {}", readable(last.force, Dimension::FORCE)),
     ];
     if let Some(error) = view.model.tracking_error() {
+        // What the last bit of a float leaves is no error.
+        let error = if error.abs() < 1e-12 { 0.0 } else { error };
         words.push(format!("tracking{error_word} {}", readable(error, Dimension::LENGTH)));
     }
     if let Some(error) = last.energy_error {

@@ -1,0 +1,178 @@
+//! The manual in `docs/` is true: its rig blocks check, the frames of its protocol are the driver's, its records are those
+//! of the journal.
+
+use std::fs;
+use std::path::Path;
+
+use psd::check::{LoadFault, Loader, Options, check};
+use psd::diagnostic::render::{Appearance, render_all};
+use psd::plan::Interval;
+use psd::record::journal::EntryKind;
+use psd::rig::dialect::native::{self, Bounds, Kind, LONGEST_FRAME, Request};
+use psd::source::Sources;
+use psd::syntax::{format, parse};
+
+/// The plans of the manual use no files.
+struct NoFiles;
+
+impl Loader for NoFiles {
+    fn load(&self, _: &str) -> Result<String, LoadFault> {
+        Err(LoadFault::NotFound)
+    }
+}
+
+fn page(name: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name)).expect("the page is there")
+}
+
+/// The fenced blocks of a language.
+fn blocks(page: &str, language: &str) -> Vec<String> {
+    let fence = format!("```{language}\n");
+    page.split(&fence).skip(1).map(|after| after.split("```").next().unwrap_or_default().to_owned()).collect()
+}
+
+#[test]
+fn every_rig_block_checks_in_the_plan_around_it() {
+    let plans = blocks(&page("rigs.md"), "psd");
+    let (around, rigs): (Vec<&String>, Vec<&String>) = plans.iter().partition(|plan| !plan.starts_with("rig "));
+    assert_eq!(around.len(), 1, "one plan is around every rig");
+    assert!(rigs.len() >= 8, "each kind of rig has its block");
+    for rig in &rigs {
+        let name = rig.split_whitespace().nth(1).expect("a rig has a name").to_owned();
+        let plan = format!("{}\n{rig}", around[0]);
+        let mut sources = Sources::default();
+        let file = sources.add("rigs.md", &plan);
+        assert_eq!(format(&parse(&sources, file).0, &plan), plan, "psd fmt would change `{name}`");
+        let checked = check("rigs.md", &plan, &NoFiles, &Options { rig: Some(name), ..Options::default() });
+        let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
+        assert!(checked.plan.is_some() && checked.diagnostics.is_empty(), "{plan}\n{said}");
+    }
+    for dialect in ["native", "grbl", "hx711", "indicator", "scpi(", "instron", "mark10", "modbus(", "nees("] {
+        assert!(rigs.iter().any(|rig| rig.contains(dialect)), "{dialect} has no block");
+    }
+}
+
+/// The frames of the protocol's conversation, without their endings.
+fn frames() -> Vec<String> {
+    let page = page("rigs.md");
+    let talk = blocks(&page, "text").into_iter().find(|block| block.starts_with(">HELLO")).expect("a conversation is shown");
+    talk.lines().map(str::to_owned).collect()
+}
+
+fn metres(word: &str) -> f64 {
+    word.parse::<f64>().expect("a number in mm") / 1e3
+}
+
+fn newtons(word: &str) -> f64 {
+    word.parse().expect("a number in N")
+}
+
+#[test]
+fn every_request_on_the_page_is_the_frame_the_driver_sends() {
+    let mut verbs = Vec::new();
+    for shown in frames().iter().filter(|line| line.starts_with('>')) {
+        let (body, _) = shown[1..].rsplit_once('*').expect("a frame has its checksum");
+        let words: Vec<&str> = body.split(' ').collect();
+        let sequence: u32 = words[1].parse().expect("a sequence number");
+        let bounds;
+        let request = match (words[0], &words[2..]) {
+            ("HELLO", []) => Request::Hello,
+            ("LIM", [low, high, least, most, speed]) => {
+                bounds = Bounds {
+                    displacement: Interval { low: metres(low), high: metres(high) },
+                    force: Interval { low: newtons(least), high: newtons(most) },
+                    top_speed: metres(speed),
+                };
+                Request::Limits(&bounds)
+            }
+            ("MOVE", [id, target, speed]) => {
+                Request::Move { id: id.parse().expect("a number"), target: metres(target), speed: metres(speed) }
+            }
+            ("MEAS", [readings]) => Request::Measure { readings: readings.parse().expect("a number") },
+            ("STAT", []) => Request::Status,
+            ("STOP", []) => Request::Stop,
+            ("CLR", []) => Request::Clear,
+            ("REF", [token]) => Request::Reference { token },
+            _ => panic!("the driver asks nothing like `{shown}`"),
+        };
+        let frame = native::frame(sequence, &request).expect("it can be said");
+        assert_eq!(String::from_utf8_lossy(&frame), format!("{shown}\n"));
+        assert!(frame.len() <= LONGEST_FRAME);
+        verbs.push(words[0].to_owned());
+    }
+    for verb in ["HELLO", "LIM", "MOVE", "MEAS", "STAT", "STOP", "CLR", "REF"] {
+        assert!(verbs.iter().any(|shown| shown == verb), "{verb} is not shown");
+    }
+}
+
+#[test]
+fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
+    let frames = frames();
+    let replies: Vec<_> =
+        frames.iter().filter(|line| line.starts_with('<')).map(|line| (line, native::reply(line.as_bytes()))).collect();
+    assert_eq!(replies.len() * 2, frames.len(), "each request has its reply");
+    for (line, reply) in replies {
+        let reply = reply.unwrap_or_else(|broken| panic!("{line}: {broken:?}"));
+        assert_eq!(reply.boot, "7F3A");
+        match (reply.kind, reply.words.len()) {
+            (Kind::Data, _) => assert!(native::data(&reply.words).is_some(), "{line}"),
+            (Kind::Ack, 10) => {
+                let hello = native::hello(&reply.words).expect("who the rig is");
+                assert_eq!(
+                    (hello.bounds.displacement.high, hello.bounds.force.high, hello.bounds.top_speed),
+                    (0.025, 12e3, 0.12)
+                );
+                assert_eq!(hello.last.map(|last| (last.id, last.target)), Some((16, 1e-3)));
+            }
+            (Kind::Ack, _) => assert!(native::state(&reply.words[0]).is_some(), "{line}"),
+            (Kind::Err, _) => assert!(!native::refusal(&reply.words).contains("does not know"), "{line}"),
+        }
+    }
+}
+
+#[test]
+fn every_refusal_on_the_page_is_one_the_driver_knows() {
+    let page = page("rigs.md");
+    let codes: Vec<String> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `ERR "))
+        .filter_map(|rest| rest.split('`').next())
+        .map(str::to_owned)
+        .collect();
+    assert_eq!(codes.len(), 11);
+    for code in codes {
+        let told = native::refusal(std::slice::from_ref(&code));
+        assert!(!told.contains("for a reason psd does not know"), "{code}: {told}");
+    }
+    assert!(page.contains("`123456789` gives 29B1") && native::checksum(b"123456789") == 0x29b1);
+}
+
+#[test]
+fn every_record_type_is_on_the_page_and_no_other() {
+    let page = page("record.md");
+    let listed: Vec<&str> =
+        page.lines().filter_map(|line| line.strip_prefix("### `")).filter_map(|rest| rest.split('`').next()).collect();
+    assert_eq!(listed, EntryKind::ALL.map(EntryKind::word), "a heading for each record type, in order");
+}
+
+/// Links between the pages, and to places in them, lead somewhere.
+#[test]
+fn links_of_the_manual_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    for name in ["rigs.md", "record.md"] {
+        for rest in page(name).split("](").skip(1) {
+            let target = rest.split(')').next().expect("a link ends");
+            let (file, place) = target.split_once('#').unwrap_or((target, ""));
+            let file = if file.is_empty() { name } else { file };
+            assert!(root.join(file).exists(), "{name} links to {target}");
+            let slug = |heading: &str| {
+                let kept =
+                    heading.to_lowercase().chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-')).collect::<String>();
+                kept.trim().replace(' ', "-")
+            };
+            let there = place.is_empty()
+                || page(file).lines().any(|line| line.starts_with('#') && slug(line.trim_start_matches('#')) == place);
+            assert!(there, "{name} links to {target}, and there is no such heading");
+        }
+    }
+}
