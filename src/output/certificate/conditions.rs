@@ -20,7 +20,7 @@ const PARTICULARS: &[(&str, &str)] = &[
     ("revision", "Revision of the plan"),
     ("specimen_id", "Item tested"),
     ("material", "Material"),
-    ("received", "Item received"),
+    ("receipt_date", "Item received"),
     ("equipment", "Equipment"),
     ("temperature", "Temperature"),
     ("humidity", "Humidity"),

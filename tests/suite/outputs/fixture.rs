@@ -115,6 +115,7 @@ pub fn finished() -> Finished {
             psd_version: "0.1.0".into(),
             plan_sha256: "ab".repeat(32),
             date: None,
+            real: None,
         },
     }
 }
