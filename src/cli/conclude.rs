@@ -28,6 +28,7 @@ pub fn conclude(
     settings: Settings,
 ) -> Result<(Exit, Vec<OutputFile>), Failure> {
     let assessment = verdict::assess(plan, &recorded.record);
+    let provenance = &as_recorded(folder, plan, provenance);
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
     tell(&output::console::verdict_text(&run, settings.color));
     let mut files = output::everything(&run)?;
@@ -50,6 +51,13 @@ pub fn conclude(
             Ok((exit.max(Exit::Fault), files))
         }
     }
+}
+
+/// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where
+/// it cannot be read back, what the run began with is told, and no head of the record.
+fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance) -> Provenance {
+    let read = plan.rig.link.as_real().and_then(|_| super::record_file::read(folder).ok());
+    read.map_or_else(|| began.clone(), |read| read.provenance)
 }
 
 /// SHA-256 of a file, in hex, read in pieces: a record may be long.

@@ -11,7 +11,7 @@ use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
 use crate::plan::{Interval, Link, Plan, ProcedureKind, VirtualLink};
 use crate::quantity::Dimension;
-use crate::quantity::display::{readable, readable_unit, significant};
+use crate::quantity::display::{digits, join, readable, significant, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
 use crate::verdict::{self, Assessment};
 
@@ -231,15 +231,15 @@ fn impact(history: &ImpactHistory) -> Vec<Vec<String>> {
 /// `0 .. 1.000 mm`: both ends in the unit that suits the larger one.
 fn span(interval: Interval, dimension: Dimension) -> String {
     let finite = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
-    let (unit, factor) = readable_unit(finite(interval.low).max(finite(interval.high)), dimension);
-    let shown = |end: f64| significant(end / factor, 4);
+    let (unit, factor) = unit(finite(interval.low).max(finite(interval.high)), dimension);
+    let shown = |end: f64| digits(end, factor, dimension);
     let text = match (interval.low.is_finite(), interval.high.is_finite()) {
         (true, true) => format!("{} .. {}", shown(interval.low), shown(interval.high)),
         (false, true) => format!("up to {}", shown(interval.high)),
         (true, false) => format!("from {}", shown(interval.low)),
         (false, false) => return "any".to_owned(),
     };
-    if unit.is_empty() { text } else { format!("{text} {unit}") }
+    join(&text, &unit)
 }
 
 fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn a_span_has_one_unit() {
-        assert_eq!(span(Interval { low: -2e-3, high: 25e-3 }, Dimension::LENGTH), "-2.000 .. 25.00 mm");
+        assert_eq!(span(Interval { low: -2e-3, high: 25e-3 }, Dimension::LENGTH), "−2.000 .. 25.00 mm");
         assert_eq!(span(Interval { low: f64::NEG_INFINITY, high: 12e3 }, Dimension::FORCE), "up to 12.00 kN");
         assert_eq!(span(Interval { low: 0.0, high: 0.01 }, Dimension::NUMBER), "0 .. 0.01000");
     }

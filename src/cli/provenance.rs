@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use sha2::{Digest as _, Sha256};
 
 use super::record_file::Circumstances;
-use crate::output::Provenance;
+use crate::output::{Provenance, RealRun};
 use crate::plan::Plan;
 
 /// The provenance of a run of `plan` by this version of the program.
@@ -19,6 +19,7 @@ pub fn of(plan: &Plan) -> Provenance {
         psd_version: version.to_owned(),
         plan_sha256: hex(&Sha256::digest(text.as_bytes())),
         date,
+        real: None,
     }
 }
 
@@ -29,8 +30,15 @@ pub fn of_real_run(plan: &Plan, circumstances: &Circumstances) -> Provenance {
     let told = [Some(provenance.run_id.clone()), operator.clone(), host.clone(), began.clone()];
     let text: Vec<String> =
         told.into_iter().map(|part| part.map_or("-".to_owned(), |part| format!("{}:{part}", part.len()))).collect();
-    let date = provenance.date.clone().or_else(|| began.as_ref().and_then(|began| began.get(..10)).map(str::to_owned));
-    Provenance { run_id: sha256(text.join(" ").as_bytes())[..16].to_owned(), date, ..provenance }
+    let real = RealRun { operator: operator.clone(), host: host.clone(), began: began.clone(), ..RealRun::default() };
+    let run_id = sha256(text.join(" ").as_bytes())[..16].to_owned();
+    Provenance { run_id, date: date_of_real_run(plan, began.as_deref()), real: Some(real), ..provenance }
+}
+
+/// As the plan or the command line says, else the day it began.
+pub fn date_of_real_run(plan: &Plan, began: Option<&str>) -> Option<String> {
+    let stated = plan.particulars.iter().find(|(field, _)| *field == "date").map(|(_, date)| date.clone());
+    stated.or_else(|| began.and_then(|began| began.get(..10)).map(str::to_owned))
 }
 
 /// The first 16 hex digits of SHA-256 over the plan and every file it used, the settings, the rig with its seed, and

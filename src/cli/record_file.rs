@@ -7,9 +7,9 @@ use super::args::PlanSettings;
 use super::exit::Failure;
 use super::loader::plain;
 use crate::check::{LoadFault, Loader, Options, check};
-use crate::output::Provenance;
+use crate::output::{Provenance, RealRun};
 use crate::plan::Plan;
-use crate::record::journal::{Recovered, recover};
+use crate::record::journal::{Line, Recovered, recover};
 use crate::run::tape::{Header, HeaderFile, Played};
 
 /// Name of the journal in its run folder.
@@ -79,7 +79,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
         }
     }
     let plan = plan_of(&played).map_err(damaged)?;
-    let provenance = provenance_of(&played.header, &plan);
+    let provenance = provenance_of(&played.header, &plan, &recovered);
     Ok(ReadRecord { recovered, played, plan, provenance })
 }
 
@@ -105,13 +105,29 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
 }
 
 /// The provenance that the record gives; the plan's own date counts where none was given on the command line.
-fn provenance_of(header: &Header, plan: &Plan) -> Provenance {
-    let date = plan.particulars.iter().find(|(field, _)| *field == "date").map(|(_, date)| date.clone());
-    Provenance {
+fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
+    let stated = Provenance {
         run_id: header.run_id.clone(),
         psd_version: header.psd.clone(),
         plan_sha256: header.files.first().map_or_else(String::new, |file| file.sha256.clone()),
-        date,
+        ..super::provenance::of(plan)
+    };
+    if plan.rig.link.as_real().is_none() {
+        return stated;
+    }
+    let date = super::provenance::date_of_real_run(plan, header.began.as_deref());
+    Provenance { date, real: Some(real_run(header, recovered)), ..stated }
+}
+
+/// What a real run's record says of people and place, and of itself.
+fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
+    let wall = |line: &Line| line.body.get("wall").and_then(|wall| wall.as_str()).map(str::to_owned);
+    RealRun {
+        operator: header.operator.clone(),
+        host: header.host.clone(),
+        began: header.began.clone(),
+        ended: recovered.lines.iter().rev().find_map(wall),
+        sealed: Some((recovered.lines.len() as u64, recovered.head().to_owned())),
     }
 }
 

@@ -28,7 +28,9 @@ pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
         xy += dx * dy;
         yy += dy * dy;
     }
-    if xx.is_nan() || xx <= 0.0 {
+    let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    // One value many times over has a mean that misses it by its rounding: that is no spread to fit a slope to.
+    if xx.is_nan() || xx <= count * (8.0 * f64::EPSILON * largest).powi(2) {
         return None;
     }
     let slope = xy / xx;
@@ -75,4 +77,19 @@ pub fn loop_energy(displacements: &[f64], forces: &[f64]) -> f64 {
 #[must_use]
 pub fn damping_ratio(damping: f64, stiffness: f64, mass: f64) -> f64 {
     damping / (2.0 * (stiffness * mass).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_velocity_gives_no_line_whatever_its_mean_rounds_to() {
+        let velocities: Vec<f64> = (0..51).map(|_| 0.005).collect();
+        let forces: Vec<f64> = (0..51).map(|reading| 2.0 + 0.1 * f64::from(reading % 7)).collect();
+        assert_eq!(fit_damping(&velocities, &forces), None);
+        // A hundred ulps apart is a spread that was asked for.
+        let apart: Vec<f64> = (0..51).map(|reading| 0.005 + f64::from(reading % 2) * 1e-16).collect();
+        assert!(fit_line(&apart, &forces).is_some());
+    }
 }

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{Run, deviations, number, summary};
+use super::standing::Standing;
+use super::{Run, deviations, number, standing, summary};
 use crate::verdict::Verdict;
 
 /// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
@@ -15,7 +16,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         "{}  {}{}",
         paint(run.assessment.verdict, &run.assessment.verdict.name().to_uppercase()),
         printable(&run.plan.title),
-        if run.record.rig.simulated { "  (simulated rig: rehearsal)" } else { "" }
+        standing_text(&standing::of(run))
     );
     if run.assessment.requirements.is_empty() {
         text.push_str("  no requirement\n");
@@ -48,6 +49,16 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     }
     let _ = writeln!(text, "  run {}", run.provenance.run_id);
     text
+}
+
+/// What the report may be taken for, where it is no certificate.
+fn standing_text(standing: &Standing) -> String {
+    match standing {
+        Standing::Certifiable => String::new(),
+        Standing::Rehearsal => "  (simulated rig: rehearsal)".to_owned(),
+        Standing::Incomplete => "  (INCOMPLETE)".to_owned(),
+        Standing::NotCertifiable { missing } => format!("  (NOT CERTIFIABLE: lacks {})", printable(&missing.join(", "))),
+    }
 }
 
 /// A label on one line and without control characters: a plan's text must not drive a terminal.

@@ -6,8 +6,10 @@ use crate::record::{EventKind, Outcome};
 
 /// Every deviation and interruption of the run.
 pub(super) fn of(run: &Run<'_>) -> Vec<String> {
-    let mut found: Vec<String> =
-        run.plan.settings.iter().map(|(name, value)| format!("Parameter {name} was set to {value} for this run.")).collect();
+    let stated = run.plan.particulars.iter().filter(|(field, _)| *field == "deviations");
+    let mut found: Vec<String> = stated.map(|(_, text)| format!("{}.", text.trim_end_matches('.'))).collect();
+    let set = |(name, value): &(String, String)| format!("Parameter {name} was set to {value} for this run.");
+    found.extend(run.plan.settings.iter().map(set));
     match &run.record.outcome {
         Outcome::Completed => {}
         Outcome::Aborted { reason } => found.push(format!("The run was stopped: {reason}.")),
@@ -25,9 +27,11 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
             EventKind::Fault => "Rig fault",
             EventKind::Resume => "Interruption",
             EventKind::Amendment => "Amendment",
+            EventKind::Note if is_of_the_line(&event.text) => "Line",
             EventKind::Note | EventKind::Inspection | EventKind::Remark => continue,
         };
-        found.push(format!("{what}{}: {}.", place(event.procedure.as_deref(), event.step), event.text.trim_end_matches('.')));
+        let text = event.text.strip_prefix(LINE).unwrap_or(&event.text).trim();
+        found.push(format!("{what}{}: {}.", place(event.procedure.as_deref(), event.step), text.trim_end_matches('.')));
     }
     for (index, procedure) in run.plan.procedures.iter().enumerate() {
         match run.record.procedures.get(index) {
@@ -37,6 +41,14 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
         }
     }
     found
+}
+
+/// How a note begins that tells of frames sent again and readings taken again.
+const LINE: &str = "line:";
+
+/// Whether a note tells of what went wrong on the line and was mended: a departure from a run without fault.
+pub(super) fn is_of_the_line(text: &str) -> bool {
+    text.starts_with(LINE) || ["sent again", "taken again", "read again"].iter().any(|words| text.contains(words))
 }
 
 /// ` in hit, step 12`, as far as it is known.

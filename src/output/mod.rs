@@ -7,6 +7,7 @@ mod deviations;
 mod figures;
 mod manifest;
 mod number;
+pub mod standing;
 pub mod summary;
 mod tables;
 
@@ -31,8 +32,31 @@ pub struct Provenance {
     pub psd_version: String,
     /// SHA-256 of the plan's text, hex.
     pub plan_sha256: String,
-    /// From the plan or `--date`.
+    /// From the plan or `--date`; of a real run else the day it began.
     pub date: Option<String>,
+    /// Of a run on a real rig.
+    pub real: Option<RealRun>,
+}
+
+impl Provenance {
+    /// Who stood by, as the record says.
+    #[must_use]
+    pub fn operator(&self) -> Option<&str> {
+        self.real.as_ref().and_then(|real| real.operator.as_deref())
+    }
+}
+
+/// What the record of a real run says of people and place, and of itself. Times are UTC, ISO 8601.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RealRun {
+    pub operator: Option<String>,
+    /// The machine that drove the rig.
+    pub host: Option<String>,
+    pub began: Option<String>,
+    /// When the last reading, target or fault was recorded.
+    pub ended: Option<String>,
+    /// Records, and the hash of the last, which all others lead to; None where the record could not be kept.
+    pub sealed: Option<(u64, String)>,
 }
 
 /// A file of the run folder: path with `/`, relative to the folder.

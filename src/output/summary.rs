@@ -28,9 +28,16 @@ pub struct Summary {
     pub date: Option<String>,
     pub plan: PlanSummary,
     pub rig: RigSummary,
+    /// Null on a virtual rig.
+    pub record: Option<RecordSummary>,
     /// The worst of all requirements, or how the run ended if that is worse.
     #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,
+    /// What the report may be taken for: its gravest ground against a certificate.
+    #[schemars(extend("enum" = ["certifiable", "rehearsal", "incomplete", "not certifiable"]))]
+    pub standing: &'static str,
+    /// What the certificate of a real rig must state and cannot.
+    pub missing: Vec<String>,
     pub outcome: OutcomeSummary,
     /// By name, in the order run.
     pub procedures: Ordered<ProcedureSummary>,
@@ -62,6 +69,21 @@ pub struct RigSummary {
     pub seed: Option<u64>,
 }
 
+/// What the record of a real run says of people and place, and of itself.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RecordSummary {
+    pub operator: Option<String>,
+    pub host: Option<String>,
+    /// UTC
+    pub began: Option<String>,
+    /// UTC
+    pub ended: Option<String>,
+    /// Number of records; null where the record could not be kept.
+    pub records: Option<u64>,
+    /// Hash of the last record, which all others lead to.
+    pub head: Option<String>,
+}
+
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OutcomeSummary {
     #[schemars(extend("enum" = ["completed", "aborted", "faulted"]))]
@@ -88,10 +110,11 @@ pub struct Quantity {
     pub u: Option<f64>,
 }
 
-/// A number, null where the result does not exist in this run, or a list in one unit.
+/// A number, null where the result does not exist in this run, a count as a whole number, or a list in one unit.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Value {
+    Count(u64),
     Number(Option<f64>),
     List(Vec<Option<f64>>),
 }
@@ -139,7 +162,7 @@ pub struct EventSummary {
     pub wall_time_s: Option<f64>,
     pub procedure: Option<String>,
     pub step: Option<u64>,
-    #[schemars(extend("enum" = ["note", "inspection", "limit breach", "hold", "fault", "remark"]))]
+    #[schemars(extend("enum" = ["note", "inspection", "limit breach", "hold", "fault", "remark", "resume", "amendment"]))]
     pub kind: &'static str,
     pub text: String,
 }

@@ -143,6 +143,9 @@ pub struct SweepStep {
 #[derive(Clone, Debug)]
 pub struct SweepHistory {
     pub steps: Vec<SweepStep>,
+    /// What the fit is of: velocity (m/s), and half the difference of `F_d` (N) between the way out and the way back at
+    /// one place.
+    pub pairs: Vec<(f64, f64)>,
     /// F_d = intercept·sign v + slope·v: intercept is the Coulomb force.
     pub fit: Option<LineFit>,
 }

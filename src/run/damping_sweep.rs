@@ -36,14 +36,20 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     let lag = whole.rig.link.as_virtual().map_or(0.0, |link| link.lag);
     let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag };
     let stop = sweep.run(plan, inputs, session).err();
-    let fit = sweep.fit();
+    let pairs: Vec<(f64, f64)> = sweep.strokes.iter().flat_map(|stroke| sweep.pairs(stroke)).collect();
+    let fit = fit_of(&pairs);
     if fit.is_none() && stop.is_none() {
         let text =
             "no damping: the steady parts of the strokes hold too few readings, or too few velocities, for a line".to_owned();
         session.event(EventKind::Remark, text);
     }
     let results = sweep.results(fit.as_ref(), whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
-    Performed { history: History::Sweep(SweepHistory { steps: sweep.steps, fit }), results, stop }
+    Performed { history: History::Sweep(SweepHistory { steps: sweep.steps, pairs, fit }), results, stop }
+}
+
+fn fit_of(pairs: &[(f64, f64)]) -> Option<LineFit> {
+    let (velocities, forces): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    fit_damping(&velocities, &forces)
 }
 
 /// Steps of one stroke, out and back.
@@ -68,13 +74,13 @@ impl Sweep {
         let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
         let rate = plan.rate.as_ref().map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY)).transpose()?;
         if stroke == 0.0 {
-            return Err(Stop::BadInput { field: "stroke", value: stroke, wanted: "other than 0" });
+            return Err(Stop::BadInput { field: "stroke", value: stroke, wanted: "other than 0".into() });
         }
         self.stiffness = Some(stiffness);
         let home = session.commanded();
         for velocity in velocities {
             if velocity == 0.0 {
-                return Err(Stop::BadInput { field: "velocities", value: velocity, wanted: "other than 0" });
+                return Err(Stop::BadInput { field: "velocities", value: velocity, wanted: "other than 0".into() });
             }
             let seconds = (stroke / velocity).abs();
             let samples = self.samples(seconds, rate)?;
@@ -102,7 +108,11 @@ impl Sweep {
             None => STEADY_SAMPLES,
         };
         if wanted > MOST_SAMPLES {
-            return Err(Stop::BadInput { field: "rate", value: wanted, wanted: "at most 1000000 readings a stroke" });
+            return Err(Stop::BadInput {
+                field: "rate",
+                value: wanted,
+                wanted: format!("at most {MOST_SAMPLES} readings a stroke").into(),
+            });
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_SAMPLES")]
         Ok(wanted as usize)
@@ -138,11 +148,6 @@ impl Sweep {
             session.measured(step, reading.time, displacement, restoring_force)?;
         }
         traversed.fault.map_or(Ok(began..self.steps.len()), |fault| Err(fault.into()))
-    }
-
-    fn fit(&self) -> Option<LineFit> {
-        let (velocities, forces): (Vec<f64>, Vec<f64>) = self.strokes.iter().flat_map(|stroke| self.pairs(stroke)).unzip();
-        fit_damping(&velocities, &forces)
     }
 
     /// Velocity, and half the difference of `F_d` between the way out and the way back at one place, over what is steady

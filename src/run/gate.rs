@@ -6,7 +6,7 @@ use super::session::Session;
 use super::stop::Stop;
 use crate::plan::{Plan, RealLink};
 use crate::quantity::Dimension;
-use crate::quantity::display::readable;
+use crate::quantity::display::{readable, stated};
 use crate::record::EventKind;
 use crate::rig::failpoint::{self, Guarding};
 
@@ -16,7 +16,7 @@ const REST: f64 = 1.0;
 /// Asks for the release, then tries the rig. Nothing else of the plan has moved by then.
 pub(super) fn pass(plan: &Plan, link: &RealLink, session: &mut Session<'_>) -> Result<(), Stop> {
     let gate = &link.gate;
-    let probe = readable(gate.probe, Dimension::LENGTH);
+    let probe = stated(gate.probe, Dimension::LENGTH);
     session.inspect(&format!("release rig {}: it will move by {probe} to prove itself, then as the plan says", plan.rig.name))?;
 
     let (_, first) = session.read()?;
@@ -28,7 +28,7 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, session: &mut Session<'_>) -> R
         return refuse(format!(
             "{} at rest, {} is allowed: zero the cell, or take the load off",
             shown(at_rest),
-            shown(gate.zero)
+            stated(gate.zero, Dimension::FORCE)
         ));
     }
 
@@ -47,17 +47,17 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, session: &mut Session<'_>) -> R
         return refuse(text.to_owned());
     }
     let (low, high) = (gate.stiffness.low, gate.stiffness.high);
-    let stated = |value| readable(value, Dimension::STIFFNESS);
+    let bound = |value| stated(value, Dimension::STIFFNESS);
+    let found = readable(stiffness, Dimension::STIFFNESS);
     if failpoint::on(Guarding::GateStiffness) && !within(stiffness, low, high) {
         return refuse(format!(
             "the move of {probe} shows {}, outside {} .. {}: look for a wrong unit or scale",
-            stated(stiffness),
-            stated(low),
-            stated(high)
+            found,
+            bound(low),
+            bound(high)
         ));
     }
-    let text =
-        format!("{} at rest, drift {}/s, stiffness {} in a move of {probe}", shown(at_rest), shown(drift), stated(stiffness));
+    let text = format!("{} at rest, drift {}/s, stiffness {} in a move of {probe}", shown(at_rest), shown(drift), found);
     session.event(EventKind::Note, format!("gate passed: {text}"));
     Ok(())
 }

@@ -69,7 +69,7 @@ impl Setting {
             return Err(Stop::BadInput {
                 field: "time_step",
                 value: time_step,
-                wanted: "long enough for at most 10000000 steps",
+                wanted: format!("long enough for at most {MOST_STEPS} steps").into(),
             });
         }
         let noise = session.guard.declared_noise();
@@ -99,7 +99,7 @@ fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
         Contact::Restitution { coefficient } => {
             let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
             if coefficient > 1.0 {
-                return Err(Stop::BadInput { field: "restitution", value: coefficient, wanted: "at most 1" });
+                return Err(Stop::BadInput { field: "restitution", value: coefficient, wanted: "at most 1".into() });
             }
             ContactLaw::Restitution { coefficient }
         }

@@ -34,7 +34,7 @@ impl<'record> Inputs<'record> {
     pub(super) fn not_negative(&mut self, field: &'static str, formula: &Formula, dimension: Dimension) -> Result<f64, Stop> {
         match self.number(field, formula, dimension)? {
             value if value >= 0.0 => Ok(value),
-            value => Err(Stop::BadInput { field, value, wanted: "at least 0" }),
+            value => Err(Stop::BadInput { field, value, wanted: "at least 0".into() }),
         }
     }
 
@@ -50,7 +50,7 @@ impl<'record> Inputs<'record> {
         if estimate.value > 0.0 {
             Ok(estimate)
         } else {
-            Err(Stop::BadInput { field, value: estimate.value, wanted: "greater than 0" })
+            Err(Stop::BadInput { field, value: estimate.value, wanted: "greater than 0".into() })
         }
     }
 

@@ -1,5 +1,7 @@
 //! Why a run does not go on, and what that makes of it.
 
+use std::borrow::Cow;
+
 use crate::formula::FormulaError;
 use crate::record::{EventKind, Outcome};
 use crate::rig::RigFault;
@@ -25,7 +27,7 @@ pub(super) enum Stop {
     BadInput {
         field: &'static str,
         value: f64,
-        wanted: &'static str,
+        wanted: Cow<'static, str>,
     },
 }
 

@@ -19,6 +19,12 @@ pub(super) const PLAN: BlockKind = BlockKind {
         Field::text("project", "project the test belongs to"),
         Field::text("material", "material of the specimen"),
         Field::text("equipment", "equipment used"),
+        Field::text("place", "where the test is made, if not in the laboratory"),
+        Field::text("receipt_date", "day on which the specimen was received, ISO 8601"),
+        Field::text("condition", "condition of the specimen when it was received"),
+        Field::text("temperature", "temperature during the test, with its unit"),
+        Field::text("humidity", "humidity during the test"),
+        Field::text("deviations", "known deviations from the standard or procedure"),
         Field::text("notes", "remarks for the certificate"),
         Field::choice(
             "decision_rule",

@@ -30,7 +30,7 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("max_velocity", Dimension::VELOCITY, "largest size of the structure's velocity"),
     ResultKind::new("max_contact_force", Dimension::FORCE, "largest mean contact force of a step; grows as 1/Δt under `rigid`"),
     ResultKind::new("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
-    ResultKind::new("contacts", Dimension::NUMBER, "number of blows"),
+    ResultKind::count("contacts", "number of blows"),
     ResultKind::new("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
     ResultKind::new("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
     ResultKind::new("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
@@ -39,5 +39,5 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
     ResultKind::new("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
-    ResultKind::new("steps", Dimension::NUMBER, "number of steps"),
+    ResultKind::count("steps", "number of steps"),
 ];

@@ -165,6 +165,8 @@ pub struct ResultKind {
     pub dimension: Dimension,
     /// Whether it carries a standard uncertainty, read as `.u`.
     pub measured: bool,
+    /// Whether it counts something: a whole number.
+    pub count: bool,
     pub doc: &'static str,
 }
 
@@ -366,10 +368,14 @@ impl Variant {
 
 impl ResultKind {
     pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: false, doc }
+        Self { name, dimension, measured: false, count: false, doc }
     }
 
     pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: true, doc }
+        Self { measured: true, ..Self::new(name, dimension, doc) }
+    }
+
+    pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {
+        Self { count: true, ..Self::new(name, Dimension::NUMBER, doc) }
     }
 }

@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::super::Run;
-use super::pairs;
+use super::super::{RealRun, Run};
+use super::{given, pairs};
 
 /// Plan, provenance, signatures, end.
 pub(super) fn all(run: &Run<'_>) -> Markup {
@@ -23,8 +23,11 @@ pub(super) fn all(run: &Run<'_>) -> Markup {
             h2 { "Provenance" }
             (provenance(run))
             p.note {
-                "The file manifest.sha256 beside this report holds the SHA-256 of every file of the run. On a simulated rig the same plan, "
-                "seed, settings and version give the same bytes."
+                "The file manifest.sha256 beside this report holds the SHA-256 of every file of the run. "
+                @if run.plan.rig.link.as_real().is_some() {
+                    "The record journal.psdj holds every target, reading and answer; " code { "psd verify" } " does the run again from it "
+                    "and asks for the same targets, bit for bit."
+                } @else { "On a simulated rig the same plan, seed, settings and version give the same bytes." }
             }
         }
         (signatures(&run.plan.report.sign))
@@ -50,10 +53,25 @@ fn provenance(run: &Run<'_>) -> Markup {
         ("Settings on the command line".to_owned(), html! { (settings) }),
         ("Rig".to_owned(), html! { (run.record.rig.name) @if run.record.rig.simulated { " (simulated)" } }),
     ];
-    if run.record.rig.simulated {
-        rows.push(("Seed".to_owned(), html! { (link.seed) }));
+    match &run.provenance.real {
+        Some(real) => rows.extend(record(real)),
+        None if run.record.rig.simulated => rows.push(("Seed".to_owned(), html! { (link.seed) })),
+        None => {}
     }
     pairs(&rows)
+}
+
+/// Who, where and when, and the record that everything here is made from.
+fn record(real: &RealRun) -> Vec<(String, Markup)> {
+    let (records, head) = real.sealed.as_ref().map_or((None, None), |(records, head)| (Some(records), Some(head)));
+    vec![
+        ("Operator".to_owned(), given(real.operator.as_deref())),
+        ("Machine".to_owned(), given(real.host.as_deref())),
+        ("Began, UTC".to_owned(), given(real.began.as_deref())),
+        ("Last recorded, UTC".to_owned(), given(real.ended.as_deref())),
+        ("Records".to_owned(), records.map_or_else(|| given(None), |records| html! { (records) })),
+        ("Head of the record".to_owned(), head.map_or_else(|| given(None), |head| html! { span.id { (head) } })),
+    ]
 }
 
 /// A line for each who signs; a report that names nobody has none.

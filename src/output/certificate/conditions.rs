@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::super::{Run, number};
 use super::results::described;
-use super::{given, pairs, words};
+use super::{equipment, given, pairs, words};
 use crate::plan::{Behaviour, Ends, Interval, Limits, Settle, Specimen, Striker};
 use crate::quantity::Dimension;
 
@@ -20,7 +20,7 @@ const PARTICULARS: &[(&str, &str)] = &[
     ("revision", "Revision of the plan"),
     ("specimen_id", "Item tested"),
     ("material", "Material"),
-    ("received", "Item received"),
+    ("receipt_date", "Item received"),
     ("equipment", "Equipment"),
     ("temperature", "Temperature"),
     ("humidity", "Humidity"),
@@ -38,7 +38,10 @@ pub(super) fn all(run: &Run<'_>) -> Markup {
             @for specimen in &run.plan.specimens { h3 { "Specimen " (specimen.name) } (specimen_table(specimen)) }
             @for striker in &run.plan.strikers { h3 { "Striker " (striker.name) } (striker_table(striker)) }
             h3 { "Rig " (run.record.rig.name) }
-            (rig(run))
+            @match run.plan.rig.link.as_real() {
+                Some(link) => (equipment::table(run, link)),
+                None => (rig(run)),
+            }
             h3 { "Limits" }
             (limits(&run.plan.limits))
             @if !run.plan.parameters.is_empty() { h3 { "Parameters" } (parameters(run)) }
@@ -51,13 +54,17 @@ pub(super) fn all(run: &Run<'_>) -> Markup {
 }
 
 fn particulars(run: &Run<'_>) -> Markup {
-    let text = |field: &str| run.plan.particulars.iter().find(|(name, _)| *name == field).map(|(_, text)| text.as_str());
+    let stated = |field: &str| run.plan.particulars.iter().find(|(name, _)| *name == field).map(|(_, text)| text.as_str());
+    // Who stood by is known from the record, whoever the plan names.
+    let operator = run.provenance.operator();
+    let text = |field: &str| if field == "operator" { operator.or_else(|| stated(field)) } else { stated(field) };
     let mut rows: Vec<(String, Markup)> =
         PARTICULARS.iter().map(|(field, name)| ((*name).to_owned(), given(text(field)))).collect();
     rows.push(("Date of the test".to_owned(), given(run.provenance.date.as_deref())));
-    // The edition is the language's, the decision rule stands beside the requirements.
-    let known =
-        |field: &str| matches!(field, "date" | "edition" | "decision_rule") || PARTICULARS.iter().any(|(name, _)| *name == field);
+    // The edition is the language's, the decision rule stands beside the requirements, deviations with the others.
+    let known = |field: &str| {
+        matches!(field, "date" | "edition" | "decision_rule" | "deviations") || PARTICULARS.iter().any(|(name, _)| *name == field)
+    };
     for (field, text) in run.plan.particulars.iter().filter(|(field, _)| !known(field)) {
         rows.push((words(field), given(Some(text))));
     }
@@ -155,7 +162,7 @@ fn rig(run: &Run<'_>) -> Markup {
     pairs(&rows)
 }
 
-fn settling(settle: Settle) -> String {
+pub(super) fn settling(settle: Settle) -> String {
     if settle.band == 0.0 {
         return "a reading counts at once".to_owned();
     }
@@ -184,7 +191,7 @@ fn limits(limits: &Limits) -> Markup {
     html! { @if rows.is_empty() { p { "The plan sets no limit." } } @else { (described(rows)) } }
 }
 
-fn range(interval: Interval, dimension: Dimension) -> String {
+pub(super) fn range(interval: Interval, dimension: Dimension) -> String {
     let largest = [interval.low, interval.high].into_iter().filter(|end| end.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
     let text = |value: f64| number::stated_beside(value, largest, dimension);
     match (interval.low.is_finite(), interval.high.is_finite()) {

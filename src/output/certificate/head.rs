@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::super::{Run, deviations, number, summary};
-use super::title;
+use super::{marks, title};
 use crate::record::{EventKind, Outcome};
 use crate::verdict::{RequirementOutcome, Verdict};
 
@@ -26,13 +26,7 @@ pub(super) fn title_and_verdict(run: &Run<'_>) -> Markup {
             (sentence(run))
             @if let Outcome::Aborted { reason } | Outcome::Faulted { reason } = &run.record.outcome { " Reason: " (reason) "." }
         }
-        @if run.record.rig.simulated {
-            div.marks {
-                span.mark { "REHEARSAL" }
-                span.mark { "NOT CERTIFIABLE" }
-                span { "Simulated rig: rehearsal, not a test of a specimen." }
-            }
-        }
+        (marks::boxed(run))
     }
 }
 
@@ -117,7 +111,11 @@ pub(super) fn deviations(run: &Run<'_>) -> Markup {
         .record
         .events
         .iter()
-        .filter(|event| matches!(event.kind, EventKind::Remark | EventKind::Note | EventKind::Inspection))
+        .filter(|event| match event.kind {
+            EventKind::Remark | EventKind::Inspection => true,
+            EventKind::Note => !deviations::is_of_the_line(&event.text),
+            _ => false,
+        })
         .collect();
     html! {
         section {

@@ -4,7 +4,9 @@
 mod appendix;
 mod conditions;
 mod contact_log;
+mod equipment;
 mod head;
+mod marks;
 mod results;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -17,6 +19,8 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src dat
 
 /// The whole page.
 pub(super) fn html(run: &Run<'_>, figures: &[Drawn]) -> String {
+    // Of a real rig the first page says what went otherwise than planned.
+    let is_real = run.plan.rig.link.as_real().is_some();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -25,12 +29,18 @@ pub(super) fn html(run: &Run<'_>, figures: &[Drawn]) -> String {
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title(run)) " · " (run.provenance.run_id) }
-                style { (PreEscaped(style(&run.provenance.run_id))) }
+                style { (PreEscaped(style(run))) }
             }
             body {
+                (marks::watermark(run))
                 (head::title_and_verdict(run))
-                (head::requirements(run))
-                (head::deviations(run))
+                @if is_real {
+                    (head::deviations(run))
+                    (head::requirements(run))
+                } @else {
+                    (head::requirements(run))
+                    (head::deviations(run))
+                }
                 (results::procedures(run))
                 (results::figures(figures))
                 (conditions::all(run))
@@ -42,11 +52,11 @@ pub(super) fn html(run: &Run<'_>, figures: &[Drawn]) -> String {
 }
 
 /// The style with the run's name at the foot of every printed page. The run id is hexadecimal; anything else is left out.
-fn style(run_id: &str) -> String {
-    let id: String = run_id.chars().filter(char::is_ascii_alphanumeric).collect();
+fn style(run: &Run<'_>) -> String {
+    let id: String = run.provenance.run_id.chars().filter(char::is_ascii_alphanumeric).collect();
     let foot =
         format!("@page {{ @bottom-left {{ content: \"run {id}\"; font: 8pt \"DejaVu Sans\", sans-serif; color: #5d6870; }} }}\n");
-    include_str!("style.css").to_owned() + &foot
+    include_str!("style.css").to_owned() + marks::style(run) + &foot
 }
 
 fn title<'a>(run: &Run<'a>) -> &'a str {

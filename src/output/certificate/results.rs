@@ -10,7 +10,7 @@ use super::super::{Run, number};
 use super::{contact_log, pairs, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
-use crate::quantity::Dimension;
+use crate::quantity::{Dimension, display};
 use crate::record::{History, ImpactHistory, NamedResult, ProcedureRecord};
 
 /// Every procedure that was run, in order.
@@ -202,7 +202,7 @@ fn energy_balance(history: &ImpactHistory) -> Markup {
 fn percent(share: f64) -> String {
     let text =
         if share != 0.0 && share.abs() < 1e-4 { format!("{:.1e}", 100.0 * share) } else { format!("{:.2}", 100.0 * share) };
-    number::minus(&text) + " %"
+    display::minus(&text) + " %"
 }
 
 /// Every figure, numbered, its picture inside the page.

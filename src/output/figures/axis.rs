@@ -1,8 +1,8 @@
 //! An axis: its range, its ticks and its words. In: the data's range in SI and the quantity. Out: an [`Axis`] in a
 //! readable unit. Knows no pixels.
 
-use super::super::number::{minus, typeset, unit};
 use super::chart::{End, Quantity};
+use crate::quantity::display::{minus, typeset, unit};
 
 /// A scaled axis; `low..high` and the ticks are in its own unit.
 pub(super) struct Axis {

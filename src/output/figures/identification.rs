@@ -4,7 +4,7 @@
 use super::super::number;
 use super::chart::{Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
 use crate::quantity::Dimension;
-use crate::record::{LineFit, RampHistory, RampStep, SweepHistory, SweepStep};
+use crate::record::{RampHistory, RampStep, SweepHistory, SweepStep};
 
 /// Measured points, the way back apart, and the line K·X + intercept.
 pub(super) fn force_displacement(history: &RampHistory) -> Chart {
@@ -38,37 +38,38 @@ const RETURN: Style = Style { marker: Some(Marker::Ring(4.5)), ..Style::line(pal
 /// Readings drawn of a sweep, at most: a cloud says no more with more.
 const CLOUD_POINTS: usize = 3000;
 
-/// Steady readings, the mean at each velocity, and `F_d = c·v + F_c·sign v`.
+/// Steady readings in a light tone, what the fit is of with its standard error at each velocity, and `F_d = c·v + F_c`.
+/// Readings of both ways lie on one side, each with the sign of its motion.
 pub(super) fn damping_fit(history: &SweepHistory) -> Chart {
     let steady: Vec<&SweepStep> = history.steps.iter().filter(|step| step.steady).collect();
     let every = steady.len().div_ceil(CLOUD_POINTS).max(1);
-    let cloud = steady.iter().step_by(every).map(|step| (step.velocity, step.damping_force)).collect();
-    let means = means(&steady);
+    let cloud = steady.iter().step_by(every).map(|step| along(step.velocity, step.damping_force)).collect();
     let mut series = vec![Series {
         label: "steady readings".to_owned(),
         points: cloud,
         style: Style::marker(palette::CLOUD, Marker::Disc(1.8)),
     }];
+    let means = means(&history.pairs);
     if let Some(fit) = history.fit {
         let c = number::with_uncertainty(fit.slope, Some(fit.slope_error), Dimension::DAMPING);
         let friction = number::with_uncertainty(fit.intercept, Some(fit.intercept_error), Dimension::FORCE);
-        let [low, high] = ends(means.iter().map(|mean| mean.0));
-        for (index, side) in [(low.max(0.0), high.max(0.0)), (low.min(0.0), high.min(0.0))].into_iter().enumerate() {
-            let from = if index == 0 { (0.0, side.1) } else { (side.0, 0.0) };
-            if from.0 == from.1 {
-                continue;
-            }
-            // One name for both halves: the Coulomb part changes sign with the velocity.
-            let label = if series.len() == 1 { format!("fit, c = {c}, Fc = {friction}") } else { String::new() };
-            let sign = if index == 0 { 1.0 } else { -1.0 };
-            series.push(Series {
-                label,
-                points: vec![(from.0, line(fit, from.0, sign)), (from.1, line(fit, from.1, sign))],
-                style: Style::line(palette::VERMILION, 1.8, SOLID),
-            });
-        }
+        let fastest = means.iter().map(|mean| mean.velocity).fold(0.0, f64::max);
+        series.push(Series {
+            label: format!("fit, c = {c}, Fc = {friction}"),
+            points: [0.0, fastest].map(|velocity| (velocity, fit.intercept + fit.slope * velocity)).to_vec(),
+            style: Style::line(palette::VERMILION, 1.8, SOLID),
+        });
     }
-    series.push(Series { label: "mean".to_owned(), points: means, style: MEASURED });
+    series.extend(means.iter().map(|mean| Series {
+        label: String::new(),
+        points: [mean.force - mean.standard_error, mean.force + mean.standard_error].map(|force| (mean.velocity, force)).to_vec(),
+        style: Style::line(palette::BLACK, 1.6, SOLID),
+    }));
+    series.push(Series {
+        label: "half the difference of out and back, mean ± standard error".to_owned(),
+        points: means.iter().map(|mean| (mean.velocity, mean.force)).collect(),
+        style: Style::marker(palette::BLUE, Marker::Disc(3.2)),
+    });
     Chart {
         x: Quantity::along("Velocity", Dimension::VELOCITY),
         y: Quantity::of("Damping force", Dimension::FORCE),
@@ -78,22 +79,34 @@ pub(super) fn damping_fit(history: &SweepHistory) -> Chart {
     }
 }
 
-fn line(fit: LineFit, velocity: f64, sign: f64) -> f64 {
-    fit.slope * velocity + fit.intercept * sign
+/// Size of the velocity (m/s), and the force with the sign of the motion (N).
+fn along(velocity: f64, force: f64) -> (f64, f64) {
+    (velocity.abs(), force * velocity.signum())
 }
 
-/// Mean damping force at each commanded velocity, in order of velocity.
-fn means(steady: &[&SweepStep]) -> Vec<(f64, f64)> {
-    let mut sorted: Vec<(f64, f64)> = steady.iter().map(|step| (step.velocity, step.damping_force)).collect();
+/// What the pairs of one velocity say.
+struct Mean {
+    /// m/s
+    velocity: f64,
+    /// N
+    force: f64,
+    /// Of the mean, N; 0 of one pair.
+    standard_error: f64,
+}
+
+/// One mean a velocity, in order.
+fn means(pairs: &[(f64, f64)]) -> Vec<Mean> {
+    let mut sorted: Vec<(f64, f64)> = pairs.iter().map(|(velocity, force)| along(*velocity, *force)).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    sorted
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|group| {
-            #[expect(clippy::cast_precision_loss, reason = "far below 2^52 readings")]
-            let count = group.len() as f64;
-            (group[0].0, group.iter().map(|(_, force)| force).sum::<f64>() / count)
-        })
-        .collect()
+    let mean = |group: &[(f64, f64)]| {
+        #[expect(clippy::cast_precision_loss, reason = "far below 2^52 readings")]
+        let count = group.len() as f64;
+        let force = group.iter().map(|(_, force)| force).sum::<f64>() / count;
+        let spread: f64 = group.iter().map(|(_, other)| (other - force).powi(2)).sum();
+        let standard_error = if count > 1.0 { (spread / (count - 1.0) / count).sqrt() } else { 0.0 };
+        Mean { velocity: group[0].0, force, standard_error }
+    };
+    sorted.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
 }
 
 fn point(step: &RampStep) -> (f64, f64) {
@@ -104,4 +117,17 @@ fn point(step: &RampStep) -> (f64, f64) {
 fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
     [low, high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::means;
+
+    #[test]
+    fn the_bar_of_a_velocity_is_the_standard_error_of_its_mean() {
+        // 1, 2, 3: standard deviation 1, of the mean 1/√3. The way back has its own sign.
+        let means = means(&[(0.1, 1.0), (0.02, 5.0), (-0.1, -2.0), (0.1, 3.0)]);
+        assert_eq!((means.len(), means[0].force, means[0].standard_error), (2, 5.0, 0.0));
+        assert!((means[1].force - 2.0).abs() < 1e-12 && (means[1].standard_error - 3_f64.sqrt().recip()).abs() < 1e-12);
+    }
 }

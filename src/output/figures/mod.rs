@@ -73,7 +73,9 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
         ),
         (History::Sweep(history), FigureKind::DampingFit) if history.steps.iter().any(|step| step.steady) => (
             identification::damping_fit(history),
-            format!("{name}: damping force against velocity: steady readings, their mean at each velocity, and the fitted line."),
+            format!(
+                "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
+            ),
         ),
         _ => return None,
     })

@@ -1,14 +1,15 @@
 //! Fills a [`Summary`] from a run. Knows the record; the format itself is one file up.
 
-use super::super::{Run, deviations};
+use super::super::{Run, deviations, standing};
 use super::{
     ConditionSummary, EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity,
-    RequirementSummary, RigSummary, SCHEMA, Summary, Value,
+    RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary, Value,
 };
 use crate::formula::{Estimate, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::si_unit;
-use crate::record::{EventKind, Outcome, ProcedureRecord};
+use crate::record::{EventKind, NamedResult, Outcome, ProcedureRecord};
+use crate::schema;
 use crate::verdict::{Bound, ConditionOutcome, RequirementOutcome};
 
 impl Summary {
@@ -36,7 +37,17 @@ impl Summary {
                 simulated: record.rig.simulated,
                 seed: record.rig.simulated.then_some(link.seed),
             },
+            record: provenance.real.as_ref().map(|real| RecordSummary {
+                operator: real.operator.clone(),
+                host: real.host.clone(),
+                began: real.began.clone(),
+                ended: real.ended.clone(),
+                records: real.sealed.as_ref().map(|(records, _)| *records),
+                head: real.sealed.as_ref().map(|(_, head)| head.clone()),
+            }),
             verdict: assessment.verdict.name(),
+            standing: standing::of(run).name(),
+            missing: standing::missing(run),
             outcome: OutcomeSummary { kind, reason },
             procedures: Ordered(record.procedures.iter().map(|p| (p.name.clone(), procedure(p))).collect()),
             requirements: assessment.requirements.iter().map(requirement).collect(),
@@ -93,7 +104,21 @@ fn procedure(procedure: &ProcedureRecord) -> ProcedureSummary {
         kind: procedure.kind,
         complete: procedure.complete,
         inputs: Ordered(procedure.inputs.iter().map(input).collect()),
-        results: Ordered(procedure.results.iter().map(|r| (r.name.to_owned(), quantity(&r.value, r.dimension))).collect()),
+        results: Ordered(procedure.results.iter().map(|r| (r.name.to_owned(), result(procedure.kind, r))).collect()),
+    }
+}
+
+/// A result; what counts something is a whole number.
+fn result(kind: &str, result: &NamedResult) -> Quantity {
+    let words: Vec<&str> = kind.split(' ').collect();
+    let known = schema::block_of_words(&words).and_then(|block| block.result(result.name));
+    let quantity = quantity(&result.value, result.dimension);
+    match quantity.value {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number that a f64 holds")]
+        Value::Number(Some(count)) if known.is_some_and(|known| known.count) && count >= 0.0 && count.fract() == 0.0 => {
+            Quantity { value: Value::Count(count as u64), ..quantity }
+        }
+        _ => quantity,
     }
 }
 

@@ -69,7 +69,11 @@ pub fn finished() -> Finished {
             number("damping", Some(4.02), Some(0.08), Dimension::DAMPING),
             number("coulomb_force", Some(0.31), Some(0.02), Dimension::FORCE),
         ],
-        history: History::Sweep(SweepHistory { steps: sweep_steps(), fit: Some(line(4.02, 0.08, 0.31, 0.02)) }),
+        history: History::Sweep(SweepHistory {
+            pairs: sweep_pairs(&sweep_steps()),
+            steps: sweep_steps(),
+            fit: Some(line(4.02, 0.08, 0.31, 0.02)),
+        }),
     };
     let hit = ProcedureRecord {
         name: "hit".into(),
@@ -115,6 +119,7 @@ pub fn finished() -> Finished {
             psd_version: "0.1.0".into(),
             plan_sha256: "ab".repeat(32),
             date: None,
+            real: None,
         },
     }
 }
@@ -233,6 +238,14 @@ fn sweep_steps() -> Vec<SweepStep> {
             }
         })
         .collect()
+}
+
+/// Half the difference of out and back, as the fit has it.
+fn sweep_pairs(steps: &[SweepStep]) -> Vec<(f64, f64)> {
+    let strokes = steps.chunks(100).map(|stroke| stroke.split_at(50));
+    let pairs = strokes.flat_map(|(out, back)| out.iter().zip(back));
+    let steady = pairs.filter(|(out, back)| out.steady && back.steady);
+    steady.map(|(out, back)| (out.velocity, 0.5 * (out.damping_force - back.damping_force))).collect()
 }
 
 fn plan() -> Plan {

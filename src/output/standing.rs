@@ -1,0 +1,95 @@
+//! What a run's report may be taken for. In: a run. Out: its [`Standing`], and every ground against a certificate, the
+//! gravest first. Days are judged against the run's own from its record: no clock is read.
+
+use super::Run;
+use crate::record::Outcome;
+
+/// Whether a report may be signed as one of a test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// A real rig, a run to its end, nothing missing.
+    Certifiable,
+    /// Nothing real moved.
+    Rehearsal,
+    /// The run did not come to its end, or its record has none.
+    Incomplete,
+    /// A test of a specimen that lacks what a certificate must state.
+    NotCertifiable { missing: Vec<String> },
+}
+
+impl Standing {
+    /// As in `summary.json`.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Certifiable => "certifiable",
+            Self::Rehearsal => "rehearsal",
+            Self::Incomplete => "incomplete",
+            Self::NotCertifiable { .. } => "not certifiable",
+        }
+    }
+}
+
+/// The standing of a run: its gravest ground.
+#[must_use]
+pub fn of(run: &Run<'_>) -> Standing {
+    grounds(run).into_iter().next().unwrap_or(Standing::Certifiable)
+}
+
+/// Every ground against a certificate, the gravest first; none where it is certifiable.
+#[must_use]
+pub fn grounds(run: &Run<'_>) -> Vec<Standing> {
+    let missing = missing(run);
+    let mut grounds = Vec::new();
+    if run.record.rig.simulated {
+        grounds.push(Standing::Rehearsal);
+    }
+    if run.record.outcome != Outcome::Completed {
+        grounds.push(Standing::Incomplete);
+    }
+    if !missing.is_empty() {
+        grounds.push(Standing::NotCertifiable { missing });
+    }
+    grounds
+}
+
+/// What the certificate of a real rig must state and cannot. A virtual rig has neither operator nor calibration.
+#[must_use]
+pub fn missing(run: &Run<'_>) -> Vec<String> {
+    if run.plan.rig.link.as_real().is_none() {
+        return Vec::new();
+    }
+    let mut missing = Vec::new();
+    let told = |text: Option<&str>| text.is_some_and(|text| !text.trim().is_empty());
+    if !told(run.provenance.operator()) {
+        missing.push("the operator's name".to_owned());
+    }
+    let calibration = &run.plan.rig.calibration;
+    if !told(calibration.reference.as_deref()) {
+        missing.push("the calibration's reference".to_owned());
+    }
+    match (calibration.due.as_deref(), last_day(run)) {
+        (None, _) => missing.push("the day until which the calibration holds".to_owned()),
+        (Some(_), None) => missing.push("the day of the test".to_owned()),
+        (Some(due), Some(day)) if due < day => {
+            missing.push(format!("a valid calibration (it held until {due}, the test ended on {day})"));
+        }
+        (Some(_), Some(_)) => {}
+    }
+    missing
+}
+
+/// The last day of the test, as the record says; as the plan or the command line says, where the record has no times.
+#[must_use]
+pub fn last_day<'a>(run: &Run<'a>) -> Option<&'a str> {
+    let real = run.provenance.real.as_ref();
+    let stated = [real.and_then(|real| real.ended.as_deref()), real.and_then(|real| real.began.as_deref())];
+    stated.into_iter().flatten().chain(run.provenance.date.as_deref()).find_map(day)
+}
+
+/// The day at the start of an ISO 8601 time. Such days stand in order as texts.
+fn day(text: &str) -> Option<&str> {
+    let day = text.get(..10)?;
+    let fits = |(at, byte): (usize, u8)| if matches!(at, 4 | 7) { byte == b'-' } else { byte.is_ascii_digit() };
+    day.bytes().enumerate().all(fits).then_some(day)
+}
