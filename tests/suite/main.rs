@@ -12,3 +12,4 @@ mod physics;
 mod plans;
 mod reference;
 mod serve;
+mod sweep;
