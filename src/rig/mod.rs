@@ -182,12 +182,13 @@ pub trait Rig {
     /// The rig cannot be reached, or the reading is no number.
     fn read(&mut self) -> Result<Reading, RigFault>;
 
-    /// Moves at constant velocity (m/s, signed towards the target) to absolute targets, and reads `samples` times at equal times on the way,
-    /// the last at the end of the motion; no settling in between. Each reading is given to `each` as it is made; where
-    /// `each` refuses, the rig holds at once and the refusal is the error.
+    /// Moves at constant velocity (m/s, signed towards the target) to absolute targets, and reads at up to `samples` equal
+    /// times on the way, the last at the end of the motion; no settling in between. A rig that cannot keep up reads as
+    /// often as it can, at least twice; every reading carries its own time and place. Each is given to `each` as it is
+    /// made; where `each` refuses, the rig holds at once and the refusal is the error.
     ///
     /// # Errors
-    /// As `execute`, `read` and `each`.
+    /// As `execute`, `read` and `each`; fewer than two readings, where as many are wanted.
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault>;
 
     /// Stops all motion and keeps the load.

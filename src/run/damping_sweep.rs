@@ -4,6 +4,9 @@
 //! X and R are as measured, X from the rig's zero. An offset of the cell, or an error of K, adds the same to both
 //! directions at one place: the fit is of half the difference between a reading and the one at the same place on the way
 //! back, so that neither reaches c, `F_c` or their standard errors.
+//!
+//! A rig that reads at the times it was asked has the same places out and back. One that reads when it can has not: there
+//! the measured share of the stroke says what is steady, and the sparser way is paired with the other one interpolated.
 
 use std::ops::Range;
 
@@ -13,9 +16,10 @@ use super::results::{largest, measured, result};
 use super::session::{Session, first};
 use super::stop::Stop;
 use crate::formula::Estimate;
-use crate::mechanics::identification::{damping_ratio, fit_damping};
+use crate::mechanics::identification::{damping_ratio, fit_damping, fit_line};
 use crate::plan::{DampingSweep, Plan};
 use crate::quantity::Dimension;
+use crate::quantity::display::readable;
 use crate::record::{EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep};
 
 /// Part of the stroke left out at either end: the actuator starts and stops there.
@@ -28,19 +32,29 @@ const LAGS: f64 = 5.0;
 /// Readings on the steady part where the plan gives no rate.
 const STEADY_SAMPLES: f64 = 50.0;
 
+/// Fewer pairs of steady readings than this in a stroke are worth a word.
+const FEW: usize = 3;
+
+/// A share of the velocity by which the piston may miss it.
+const OFF_SPEED: f64 = 0.05;
+
 /// Readings of one traverse, at most.
 pub const MOST_SAMPLES: f64 = 1e6;
 
 pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     // A real actuator ends each stroke at the velocity asked for, or its own firmware says so: its lag is not known here.
-    let lag = whole.rig.link.as_virtual().map_or(0.0, |link| link.lag);
-    let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag };
+    let link = whole.rig.link.as_virtual();
+    let lag = link.map_or(0.0, |link| link.lag);
+    let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag, exact: link.is_some() };
     let stop = sweep.run(plan, inputs, session).err();
     let pairs: Vec<(f64, f64)> = sweep.strokes.iter().flat_map(|stroke| sweep.pairs(stroke)).collect();
     let fit = fit_of(&pairs);
     if fit.is_none() && stop.is_none() {
         let text =
             "no damping: the steady parts of the strokes hold too few readings, or too few velocities, for a line".to_owned();
+        session.event(EventKind::Remark, text);
+    }
+    for text in sweep.remarks() {
         session.event(EventKind::Remark, text);
     }
     let results = sweep.results(fit.as_ref(), whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
@@ -56,6 +70,10 @@ fn fit_of(pairs: &[(f64, f64)]) -> Option<LineFit> {
 struct Stroke {
     out: Range<usize>,
     back: Range<usize>,
+    /// Asked for, m/s.
+    speed: f64,
+    /// Whether every reading came at the time it was asked for.
+    on_grid: bool,
 }
 
 struct Sweep {
@@ -65,6 +83,21 @@ struct Sweep {
     stiffness: Option<Estimate>,
     /// s
     lag: f64,
+    /// Whether the rig keeps the times it is asked for.
+    exact: bool,
+}
+
+/// One way of a stroke as it is asked for.
+#[derive(Clone, Copy)]
+struct Way {
+    /// m
+    from: f64,
+    to: f64,
+    /// Signed, m/s.
+    velocity: f64,
+    /// s
+    seconds: f64,
+    samples: usize,
 }
 
 impl Sweep {
@@ -85,9 +118,11 @@ impl Sweep {
             let seconds = (stroke / velocity).abs();
             let samples = self.samples(seconds, rate)?;
             let speed = velocity.abs().copysign(stroke);
-            let out = self.traverse(home + stroke, speed, seconds, samples, session)?;
-            let back = self.traverse(home, -speed, seconds, samples, session)?;
-            self.strokes.push(Stroke { out, back });
+            let there = Way { from: home, to: home + stroke, velocity: speed, seconds, samples };
+            let out = self.traverse(there, session)?;
+            let back = self.traverse(Way { from: there.to, to: home, velocity: -speed, ..there }, session)?;
+            let on_grid = self.exact && out.len() == samples && back.len() == samples;
+            self.strokes.push(Stroke { out, back, speed: speed.abs(), on_grid });
             // A traverse ends in motion: the piston comes to rest at home before anything is read or asked of it there.
             session.guard.move_to(&[home], None)?;
         }
@@ -119,14 +154,8 @@ impl Sweep {
     }
 
     /// One way of a stroke; the steps it added.
-    fn traverse(
-        &mut self,
-        to: f64,
-        velocity: f64,
-        seconds: f64,
-        samples: usize,
-        session: &mut Session<'_>,
-    ) -> Result<Range<usize>, Stop> {
+    fn traverse(&mut self, way: Way, session: &mut Session<'_>) -> Result<Range<usize>, Stop> {
+        let Way { from, to, velocity, seconds, samples } = way;
         let began = self.steps.len();
         let stiffness = self.stiffness.map_or(0.0, |estimate| estimate.value);
         let steady_from = self.steady_from(seconds);
@@ -134,7 +163,7 @@ impl Sweep {
         for (sample, reading) in (1_u32..).zip(&traversed.readings) {
             let (displacement, restoring_force) = first(reading);
             #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
-            let passed = f64::from(sample) / samples as f64;
+            let passed = if self.exact { f64::from(sample) / samples as f64 } else { (displacement - from) / (to - from) };
             let step = self.steps.len() as u64 + 1;
             self.steps.push(SweepStep {
                 step,
@@ -151,12 +180,30 @@ impl Sweep {
     }
 
     /// Velocity, and half the difference of `F_d` between the way out and the way back at one place, over what is steady
-    /// on both. The last reading of a way is where the next one starts, and has no partner.
-    fn pairs(&self, stroke: &Stroke) -> impl Iterator<Item = (f64, f64)> {
-        let out = self.steps[stroke.out.clone()].iter();
-        let back = self.steps[stroke.back.clone()].iter().rev().skip(1);
-        let steady = out.zip(back).filter(|(out, back)| out.steady && back.steady);
-        steady.map(|(out, back)| (out.velocity, 0.5 * (out.damping_force - back.damping_force)))
+    /// on both.
+    fn pairs(&self, stroke: &Stroke) -> Vec<(f64, f64)> {
+        let (out, back) = (&self.steps[stroke.out.clone()], &self.steps[stroke.back.clone()]);
+        if stroke.on_grid { paired_by_time(out, back) } else { paired_by_place(out, back) }
+    }
+
+    /// What a person should know of the readings before believing c.
+    fn remarks(&self) -> Vec<String> {
+        let told = |stroke: &Stroke| {
+            let pairs = self.pairs(stroke).len();
+            let shown = readable(stroke.speed, Dimension::VELOCITY);
+            let few = (!stroke.on_grid && pairs < FEW).then(|| {
+                format!("the strokes at {shown} give {pairs} steady pairs of readings: the line is too slow, or the stroke too short")
+            });
+            let off = [&stroke.out, &stroke.back].into_iter().filter(|_| !stroke.on_grid).find_map(|way| {
+                let moved = moved_at(&self.steps[way.clone()])?;
+                let error = (moved.slope.abs() - stroke.speed).abs();
+                let differs = error > OFF_SPEED * stroke.speed + 3.0 * moved.slope_error;
+                let measured = readable(moved.slope.abs(), Dimension::VELOCITY);
+                differs.then(|| format!("the piston went at {measured} where {shown} was asked for: c is as wrong as that"))
+            });
+            few.into_iter().chain(off)
+        };
+        self.strokes.iter().flat_map(told).collect()
     }
 
     fn results(&self, fit: Option<&LineFit>, mass: Option<f64>) -> Vec<NamedResult> {
@@ -175,4 +222,46 @@ impl Sweep {
             result("max_velocity", Dimension::VELOCITY, largest(self.steps.iter().map(|step| step.velocity))),
         ]
     }
+}
+
+/// Pairs of readings at the same place by their times: the last reading of a way is where the next one starts, and has no
+/// partner.
+fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<(f64, f64)> {
+    let steady = out.iter().zip(back.iter().rev().skip(1)).filter(|(out, back)| out.steady && back.steady);
+    steady.map(|(out, back)| (out.velocity, 0.5 * (out.damping_force - back.damping_force))).collect()
+}
+
+/// Pairs at the places where the sparser way was read; there the other one lies between two of its readings.
+fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<(f64, f64)> {
+    let steady = |way: &[SweepStep]| {
+        let mut way: Vec<SweepStep> = way.iter().filter(|step| step.steady).copied().collect();
+        way.sort_by(|one, other| one.displacement.total_cmp(&other.displacement));
+        way
+    };
+    let (out, back) = (steady(out), steady(back));
+    let (sparse, dense) = if out.len() <= back.len() { (out, back) } else { (back, out) };
+    let pair = |step: &SweepStep| {
+        let there = interpolated(&dense, step.displacement)?;
+        Some((step.velocity, 0.5 * (step.damping_force - there)))
+    };
+    sparse.iter().filter_map(pair).collect()
+}
+
+/// `F_d` at `place` (m) between the two readings about it, which are sorted by place.
+fn interpolated(steps: &[SweepStep], place: f64) -> Option<f64> {
+    let after = steps.iter().position(|step| step.displacement >= place)?;
+    let above = steps[after];
+    if above.displacement == place {
+        return Some(above.damping_force);
+    }
+    let below = steps[after.checked_sub(1)?];
+    let share = (place - below.displacement) / (above.displacement - below.displacement);
+    Some(below.damping_force + share * (above.damping_force - below.damping_force))
+}
+
+/// Measured place over time on the steady part: its slope is the velocity, m/s.
+fn moved_at(way: &[SweepStep]) -> Option<LineFit> {
+    let steady = way.iter().filter(|step| step.steady);
+    let (times, places): (Vec<f64>, Vec<f64>) = steady.map(|step| (step.wall_time, step.displacement)).unzip();
+    fit_line(&times, &places)
 }

@@ -10,19 +10,31 @@ use crate::rig::port::{Clock, Emergency, Port};
 
 /// Between two looks at the controllers while time passes, s.
 const SLICE: f64 = 0.001;
-/// One byte at 115200 baud, s: every byte takes its time, so that no loop of questions stands still.
-const BYTE: f64 = 10.0 / 115_200.0;
+/// Bits on the line for a byte: a start, eight, a stop.
+const BITS: f64 = 10.0;
+/// Bits a second, where nothing else is said.
+const BAUD: f64 = 115_200.0;
 /// What a line takes in while its controller does not read, bytes.
 const LINE_BUFFER: usize = 4096;
 
 /// A stand whose time is passed by its ports and clock.
 #[derive(Clone)]
-pub struct InProcess(Arc<Mutex<Stand>>);
+pub struct InProcess {
+    stand: Arc<Mutex<Stand>>,
+    /// Time of one byte, s: every byte takes its time, so that no loop of questions stands still.
+    byte: f64,
+}
 
 impl InProcess {
     #[must_use]
     pub fn new(stand: Stand) -> Self {
-        Self(Arc::new(Mutex::new(stand)))
+        Self { stand: Arc::new(Mutex::new(stand)), byte: BITS / BAUD }
+    }
+
+    /// The same with lines of `baud` bits a second.
+    #[must_use]
+    pub fn at_baud(self, baud: f64) -> Self {
+        Self { byte: BITS / baud, ..self }
     }
 
     /// Opens a line, 0 being the actuator's.
@@ -39,7 +51,7 @@ impl InProcess {
 
     /// The stand itself, between two calls of its ports: not to be kept.
     pub fn stand(&self) -> MutexGuard<'_, Stand> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.stand.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Lets time pass.
@@ -98,7 +110,7 @@ impl Port for SimulatedPort {
             }
             return Ok(());
         }
-        self.shared.pass(bytes.len() as f64 * BYTE);
+        self.shared.pass(bytes.len() as f64 * self.shared.byte);
         self.shared.stand().give(self.line, bytes);
         Ok(())
     }
@@ -118,7 +130,7 @@ impl Port for SimulatedPort {
         let count = self.come.len().min(buffer.len());
         buffer[..count].copy_from_slice(&self.come[..count]);
         self.come.drain(..count);
-        self.shared.pass(count as f64 * BYTE);
+        self.shared.pass(count as f64 * self.shared.byte);
         Ok(count)
     }
 

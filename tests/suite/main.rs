@@ -13,3 +13,4 @@ mod physics;
 mod plans;
 mod reference;
 mod serve;
+mod sweep;

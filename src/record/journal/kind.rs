@@ -17,6 +17,8 @@ pub enum EntryKind {
     Intent,
     /// A reading, with the bytes it was made of.
     Sample,
+    /// The end of a stroke read on the way, with how many readings it gave.
+    Stroke,
     /// The end of a step, as computed.
     Step,
     /// What a person answered, or asked for.
@@ -34,12 +36,13 @@ pub enum EntryKind {
 }
 
 impl EntryKind {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Header,
         Self::Plan,
         Self::Rig,
         Self::Intent,
         Self::Sample,
+        Self::Stroke,
         Self::Step,
         Self::Operator,
         Self::Event,
@@ -59,6 +62,7 @@ impl EntryKind {
             Self::Rig => "RIG",
             Self::Intent => "INTENT",
             Self::Sample => "SAMPLE",
+            Self::Stroke => "STROKE",
             Self::Step => "STEP",
             Self::Operator => "OPERATOR",
             Self::Event => "EVENT",

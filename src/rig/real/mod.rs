@@ -6,6 +6,7 @@ mod motion;
 mod open;
 mod poll;
 mod settle;
+mod stroke;
 mod validity;
 
 use crate::plan::{Calibration, Limits, RealLink, Settle};

@@ -1,12 +1,12 @@
-//! Motion of a real rig. In: a move that was offered. Out: the rig at its target and settled, or why not; readings on the
-//! way. Every wait is bounded, sees a wish to hold, and keeps the devices hearing that the program lives.
+//! Motion of a real rig. In: a move that was offered. Out: the rig at its target and settled, or why not.
+//! Every wait is bounded, sees a wish to hold, and keeps the devices hearing that the program lives.
 
 use super::poll::Point;
 use super::settle::Settling;
 use super::{Part, Proposed, RealRig};
 use crate::rig::device::SLICE;
 use crate::rig::failpoint::{Guarding, on};
-use crate::rig::{EachReading, LimitedQuantity, Rig as _, RigFault};
+use crate::rig::{LimitedQuantity, RigFault};
 
 impl RealRig {
     /// Sends the offered move and waits until settled.
@@ -45,44 +45,6 @@ impl RealRig {
         }
     }
 
-    /// Moves evenly to `targets` and gives `samples` readings at equal times on the way.
-    pub(super) fn stroke(
-        &mut self,
-        targets: &[f64],
-        velocity: f64,
-        samples: usize,
-        each: EachReading<'_>,
-    ) -> Result<(), RigFault> {
-        let from = self.poll()?.displacement;
-        self.propose(targets, Some(velocity.abs()))?;
-        let ahead = targets.iter().all(|target| (target - from) * velocity > 0.0);
-        if samples == 0 || !ahead {
-            return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
-        }
-        let (_, seconds) = self.set_off()?;
-        let began = self.clock.now();
-        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
-        for sample in 1..=samples {
-            let interval = seconds / samples as f64;
-            let due = began + interval * sample as f64;
-            self.stay_until(due)?;
-            let late = self.clock.now() - due;
-            if late > interval {
-                let reason = format!("the readings cannot keep up: sample {sample} of {samples} came {late:.3} s late");
-                return Err(RigFault::Device(reason));
-            }
-            each(self.reading_now()?)?;
-        }
-        let deadline = self.clock.now() + self.settle.timeout;
-        while self.poll()?.moving == Some(true) {
-            if self.clock.now() > deadline {
-                return Err(self.unsettled());
-            }
-            self.wait_until(self.heard + self.period())?;
-        }
-        Ok(())
-    }
-
     /// Stays until the moment `until` (s, by the clock), and asks often enough that the devices hear that the program
     /// lives.
     pub(super) fn stay_until(&mut self, until: f64) -> Result<(), RigFault> {
@@ -96,7 +58,7 @@ impl RealRig {
     }
 
     /// Holds a reading on the way against the limits: the settled one would come too late. One alone may be a spike.
-    fn watch(&mut self, point: &Point) -> Result<(), RigFault> {
+    pub(super) fn watch(&mut self, point: &Point) -> Result<(), RigFault> {
         let displacement = (LimitedQuantity::MeasuredDisplacement, self.limits.displacement, point.displacement);
         let force = (LimitedQuantity::Force, self.limits.force, point.force);
         let breach = [displacement, force].into_iter().find(|(_, limit, value)| !limit.contains(*value));
@@ -125,7 +87,7 @@ impl RealRig {
     }
 
     /// Sends the offered move. Gives its target (m) and the time the way takes, s.
-    fn set_off(&mut self) -> Result<(f64, f64), RigFault> {
+    pub(super) fn set_off(&mut self) -> Result<(f64, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
         let Proposed { going, target, from } = self.proposed.take().ok_or_else(nothing)?;
         self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
@@ -135,7 +97,7 @@ impl RealRig {
         Ok((target, (target - from).abs() / going.speed))
     }
 
-    const fn unsettled(&self) -> RigFault {
+    pub(super) const fn unsettled(&self) -> RigFault {
         RigFault::NotSettled { timeout: self.settle.timeout }
     }
 }

@@ -398,7 +398,7 @@ fn a_stroke_reads_at_equal_times_and_ends_at_its_target() {
 }
 
 #[test]
-fn a_stroke_stops_at_a_refused_reading_and_when_the_readings_cannot_keep_up() {
+fn a_stroke_stops_at_a_refused_reading() {
     let mut stand = stand();
     let mut count = 0;
     let refused = stand.rig.traverse(&[0.008], 0.001, 8, &mut |_| {
@@ -408,9 +408,37 @@ fn a_stroke_stops_at_a_refused_reading_and_when_the_readings_cannot_keep_up() {
     assert_eq!((refused, count), (Err(RigFault::Interrupted), 3));
     let stood = stand.device.inside().position;
     assert!((0.003..0.0031).contains(&stood) && stand.device.inside().target == stood);
+}
+
+#[test]
+fn a_stroke_reads_as_often_as_the_line_carries_and_waits_until_it_rests() {
+    let mut stand = stand();
     stand.device.inside().answer_time = 0.3;
-    let late = stand.rig.traverse(&[0.008], 0.001, 100, &mut |_| Ok(())).unwrap_err();
-    assert!(late.to_string().starts_with("the readings cannot keep up"), "{late}");
+    let mut readings = Vec::new();
+    let mut keep = |reading: Reading| {
+        readings.push((reading.time, reading.displacement[0]));
+        Ok(())
+    };
+    // 100 readings in 8 s would come every 0.08 s: one takes 0.3 s.
+    stand.rig.traverse(&[0.008], 0.001, 100, &mut keep).unwrap();
+    assert!((25..=27).contains(&readings.len()), "{}", readings.len());
+    let began = readings[0].0 - readings[0].1 / 0.001;
+    for (time, x) in &readings {
+        assert!((x - (0.001 * (time - began)).min(0.008)).abs() < 1e-6, "each with its own time and place: {readings:?}");
+    }
+    assert_eq!(readings.last().unwrap().1, 0.008, "the last at the end");
+    // Of a stroke that is over before the first answer there is only one.
+    let late = stand.rig.traverse(&[0.0], -0.1, 8, &mut |_| Ok(())).unwrap_err();
+    assert!(late.to_string().starts_with("the readings cannot keep up: 1 in a stroke of 0.080 s"), "{late}");
+}
+
+#[test]
+fn a_stroke_that_ends_elsewhere_is_a_following_error() {
+    let mut stand = stand();
+    stand.device.inside().reaches = 0.9;
+    let short = stand.rig.traverse(&[0.008], 0.001, 8, &mut |_| Ok(())).unwrap_err();
+    assert!(matches!(short, RigFault::Following { error, .. } if (error - 0.0008).abs() < 1e-9), "{short:?}");
+    assert_eq!(stand.device.inside().holds, 1);
 }
 
 #[test]

@@ -101,11 +101,8 @@ pub fn decide(
     let intent: IntentBody = body(&lines[at])?;
     let before = place_before(&lines[..at])?;
     let target = intent.to[0];
-    if let Some(samples) = intent.samples {
-        let read = lines[at..].iter().filter(|line| line.kind == EntryKind::Sample).count();
-        if read < samples {
-            return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before }));
-        }
+    if intent.samples.is_some() && lines[at..].iter().all(|line| line.kind != EntryKind::Stroke) {
+        return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before }));
     }
     if at + 1 < lines.len() {
         place.expect(target)?;

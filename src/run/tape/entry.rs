@@ -95,7 +95,7 @@ pub struct IntentBody {
     pub wire: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u64>,
-    /// Of a stroke read on the way: how many readings.
+    /// Of a stroke read on the way: how many readings, at most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -116,6 +116,15 @@ pub struct SampleBody {
     pub raw: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
+}
+
+/// STROKE: a stroke came to its end. A record that has readings and not this was cut off on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StrokeBody {
+    /// Rig time of the last reading, s.
+    pub t: f64,
+    /// Readings it gave: a rig that cannot keep up gives fewer than were asked for.
+    pub samples: usize,
 }
 
 /// STEP: the end of a step, as computed; in a replay it must come out the same, bit for bit.

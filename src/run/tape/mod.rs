@@ -15,7 +15,7 @@ mod state;
 mod tests;
 
 pub use decide::{Bands, Decision, Refusal, decide, same_rig};
-pub use entry::{AmendBody, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody};
+pub use entry::{AmendBody, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody, StrokeBody};
 pub use observer::TapedObserver;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;

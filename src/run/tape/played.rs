@@ -115,6 +115,7 @@ impl Played {
             EntryKind::Header | EntryKind::End => {}
             EntryKind::Intent
             | EntryKind::Sample
+            | EntryKind::Stroke
             | EntryKind::Step
             | EntryKind::Operator
             | EntryKind::Event

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use super::entry::{Call, Doubt, FaultBody, IntentBody, RigBody, SampleBody, escaped};
+use super::entry::{Call, Doubt, FaultBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped};
 use super::state::{State, ended};
 use crate::record::journal::EntryKind;
 use crate::rig::failpoint::{self, Guarding};
@@ -105,6 +105,34 @@ impl<'rig> TapedRig<'rig> {
         state.consume();
         Ok(Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() })
     }
+
+    /// The readings of a stroke, up to its end or to where it failed.
+    fn played_stroke(&self, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let mut taken = 0;
+        loop {
+            if let Some(fault) = self.state.borrow_mut().played_fault(Call::Traverse) {
+                return Err(fault);
+            }
+            if !self.state.borrow().playing() {
+                return Err(ended());
+            }
+            let mut state = self.state.borrow_mut();
+            if state.next_kind() == Some(EntryKind::Stroke) {
+                let stroke: StrokeBody = state.peek(EntryKind::Stroke, "the end of a stroke")?;
+                if stroke.samples != taken {
+                    return Err(state.disagrees(format!("a stroke of {taken} readings")));
+                }
+                state.consume();
+                return Ok(());
+            }
+            drop(state);
+            if taken == samples {
+                return Err(self.state.borrow_mut().disagrees(format!("a stroke of at most {samples} readings")));
+            }
+            taken += 1;
+            each(self.played_reading()?)?;
+        }
+    }
 }
 
 impl Rig for TapedRig<'_> {
@@ -202,16 +230,7 @@ impl Rig for TapedRig<'_> {
         if self.state.borrow().playing() {
             self.played_intent(targets, Some(velocity), Some(samples))?;
             self.state.borrow_mut().consume();
-            for _ in 0..samples {
-                if let Some(fault) = self.state.borrow_mut().played_fault(Call::Traverse) {
-                    return Err(fault);
-                }
-                if !self.state.borrow().playing() {
-                    return Err(ended());
-                }
-                each(self.played_reading()?)?;
-            }
-            return self.state.borrow_mut().played_fault(Call::Traverse).map_or(Ok(()), Err);
+            return self.played_stroke(samples, each);
         }
         self.rig()?;
         let doubt = self.state.borrow_mut().take_doubt();
@@ -224,14 +243,14 @@ impl Rig for TapedRig<'_> {
         let (offset, state) = (self.offset.unwrap_or(0.0), Rc::clone(&self.state));
         let Some(rig) = self.live.as_deref_mut() else { return Err(ended()) };
         // A refusal of the guard, or of the record, is not the rig's fault, and comes out again when the record is played.
-        let mut refused = false;
+        let (mut refused, mut taken) = (false, 0);
         let traversed = rig.traverse(targets, velocity, samples, &mut |reading| {
-            let taken = finite(Reading { time: reading.time + offset, ..reading }).and_then(|reading| {
+            let recorded = finite(Reading { time: reading.time + offset, ..reading }).and_then(|reading| {
                 append_sample(&mut state.borrow_mut(), &reading)?;
                 Ok(reading)
             });
-            taken.and_then(|reading| {
-                refused = true;
+            recorded.and_then(|reading| {
+                (refused, taken) = (true, taken + 1);
                 each(reading)?;
                 refused = false;
                 Ok(())
@@ -239,9 +258,15 @@ impl Rig for TapedRig<'_> {
         });
         match traversed {
             Err(fault) if !refused => self.failed(Call::Traverse, fault),
-            other => {
+            Err(refusal) => {
                 self.state.borrow_mut().promise()?;
-                other
+                Err(refusal)
+            }
+            Ok(()) => {
+                let mut state = self.state.borrow_mut();
+                let stroke = StrokeBody { t: state.time, samples: taken };
+                state.append(EntryKind::Stroke, &stroke)?;
+                state.promise()
             }
         }
     }

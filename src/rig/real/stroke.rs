@@ -1,0 +1,75 @@
+//! A stroke of a real rig: an even way, read as it goes. In: a target, a velocity, how many readings are wanted. Out: as
+//! many as the line can carry, each with its own time and place, and the rig at rest at the end of the way.
+
+use super::settle::Settling;
+use super::{Proposed, RealRig};
+use crate::rig::failpoint::{Guarding, on};
+use crate::rig::{EachReading, Rig as _, RigFault};
+
+/// Readings that a stroke of which more are wanted must give.
+const LEAST: usize = 2;
+
+impl RealRig {
+    /// Moves evenly to `targets` and reads at up to `samples` equal times on the way. A time that has passed while a
+    /// reading was on the line is left out: what is late is read at once, and not twice.
+    pub(super) fn stroke(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.propose(targets, Some(velocity.abs()))?;
+        let ahead = self.proposed.as_ref().is_some_and(|Proposed { target, from, .. }| (target - from) * velocity > 0.0);
+        if samples == 0 || !ahead {
+            return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
+        }
+        let (target, seconds) = self.set_off()?;
+        let began = self.clock.now();
+        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+        let interval = seconds / samples as f64;
+        let (mut sample, mut taken) = (1, 0);
+        while sample <= samples {
+            #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+            let due = interval * sample as f64;
+            self.stay_until(began + due)?;
+            each(self.reading_now()?)?;
+            taken += 1;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and ends the stroke")]
+            let passed = ((self.clock.now() - began) / interval).floor() as usize;
+            sample = passed.max(sample + 1);
+        }
+        if taken < LEAST.min(samples) {
+            let reason = format!("the readings cannot keep up: {taken} in a stroke of {seconds:.3} s, {samples} are wanted");
+            return Err(RigFault::Device(reason));
+        }
+        self.come_to_rest(target, began + seconds)
+    }
+
+    /// Waits at the end of a stroke until it rests there, so that the next one sets off from rest. How the force settles
+    /// is of no matter to a stroke.
+    fn come_to_rest(&mut self, target: f64, arrival: f64) -> Result<(), RigFault> {
+        let settling = Settling::new(self.settle, target);
+        let deadline = arrival + self.settle.timeout;
+        loop {
+            let point = self.poll()?;
+            let now = self.clock.now();
+            self.watch(&point)?;
+            let rests = point.moving != Some(true) && now >= arrival;
+            if rests && settling.in_position(point.displacement) {
+                return Ok(());
+            }
+            if now > deadline {
+                return match rests {
+                    true if on(Guarding::Following) => {
+                        let error = (point.displacement - target).abs();
+                        Err(RigFault::Following { error, band: self.settle.band })
+                    }
+                    true => Ok(()),
+                    false => Err(self.unsettled()),
+                };
+            }
+            self.wait_until(self.heard + self.period())?;
+        }
+    }
+}
