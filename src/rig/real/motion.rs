@@ -68,7 +68,10 @@ impl RealRig {
             self.stay_until(due)?;
             let late = self.clock.now() - due;
             if late > interval {
-                let reason = format!("the readings cannot keep up: sample {sample} of {samples} came {late:.3} s late");
+                let reason = format!(
+                    "the readings cannot keep up: sample {sample} of {samples} came {late:.3} s late; \
+                     ask for fewer by a lower `rate` of the sweep, or give the computer less else to do"
+                );
                 return Err(RigFault::Device(reason));
             }
             each(self.reading_now()?)?;
