@@ -161,7 +161,8 @@ fn garbage_moves_nothing_and_a_client_may_hang_up_anywhere() {
         let (closed, session) = served(GENERIC, LIMITS, |address| {
             let mut stream = TcpStream::connect(address).unwrap();
             stream.write_all(bytes).unwrap();
-            stream.shutdown(std::net::Shutdown::Write).unwrap();
+            // The server may have hung up by now.
+            stream.shutdown(std::net::Shutdown::Write).ok();
             !matches!(stream.read(&mut [0; 8]), Ok(1..))
         });
         assert!(closed && matches!(session.ended, Ended::Misspoken(_) | Ended::HungUp), "{session:?}");
