@@ -6,6 +6,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
 use super::bench_fault::{BenchFault, BenchFaults};
+use crate::mechanics::damping::CellDamping;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Interval};
 
@@ -65,8 +66,8 @@ pub struct Bench {
     speed: f64,
     /// N, without noise.
     restoring_force: f64,
-    /// N, against every motion.
-    friction: f64,
+    /// What the cell feels beside it.
+    damping: CellDamping,
     faults: BenchFaults,
     /// Force readings so far.
     readings: u64,
@@ -84,6 +85,7 @@ impl Bench {
         let restoring_force = specimen.move_to(0.0);
         let generator = Pcg64::seed_from_u64(settings.seed);
         let faults = BenchFaults::none(settings.seed);
+        let damping = CellDamping::new(settings.damping, 0.0);
         Self {
             settings,
             specimen,
@@ -95,7 +97,7 @@ impl Bench {
             target: 0.0,
             speed: 0.0,
             restoring_force,
-            friction: 0.0,
+            damping,
             faults,
             readings: 0,
             violations: Vec::new(),
@@ -104,10 +106,10 @@ impl Bench {
         }
     }
 
-    /// The same bench with friction on its cell while it moves, N.
+    /// The same bench with friction on its cell, N: against the last motion, also through a pause, as a virtual rig has it.
     #[must_use]
     pub const fn with_friction(mut self, friction: f64) -> Self {
-        self.friction = friction;
+        self.damping.coulomb = friction;
         self
     }
 
@@ -142,6 +144,7 @@ impl Bench {
         let left = self.target - self.position;
         let before = self.position;
         if left != 0.0 {
+            self.damping.last_direction = left.signum();
             let way = self.speed * seconds;
             self.position = if left.abs() <= way { self.target } else { self.position + way.copysign(left) };
         }
@@ -211,7 +214,7 @@ impl Bench {
         self.readings += 1;
         let way = if self.moving() { (self.target - self.position).signum() } else { 0.0 };
         let noise = Normal::new(0.0, self.settings.noise).map_or(0.0, |normal| normal.sample(&mut self.generator));
-        let felt = self.restoring_force + (self.settings.damping * self.speed + self.friction) * way + noise;
+        let felt = self.restoring_force + self.damping.force(self.speed * way) + noise;
         self.faults.read_force(felt, self.time)
     }
 
@@ -285,6 +288,18 @@ mod tests {
         assert_eq!(bench.moves()[1], SentMove { time: 10.0, id: None, target: 0.02, speed: 0.01 });
         bench.refuse(f64::NAN);
         assert_eq!(bench.violations().len(), 2, "what is no number is outside");
+    }
+
+    #[test]
+    fn friction_stays_at_rest_and_viscous_damping_does_not() {
+        let mut bench = bench().with_friction(3.0);
+        assert_eq!(bench.force(), 0.0, "not before the first motion");
+        bench.go(0.005, 0.01);
+        bench.advance(1.0);
+        assert!((bench.force() - 503.0).abs() < 1e-9);
+        bench.go(0.004, 0.01);
+        bench.advance(2.0);
+        assert!((bench.force() - 397.0).abs() < 1e-9, "it is against the last motion");
     }
 
     /// The bench sent to 5 mm, a second after `fault` struck: displacement in mm, force in N.

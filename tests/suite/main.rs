@@ -3,6 +3,7 @@
 mod cli;
 mod cli_rig;
 mod cli_screen;
+mod dialects;
 mod docs;
 mod explain;
 mod house;

@@ -1,0 +1,305 @@
+//! psd's own time per step of an impact on a real rig, with no reply to wait for and no disk; and round trips of a
+//! reading over a pseudo-terminal and over TCP. Items are steps, or round trips. The stand-in's own share of the first is
+//! a bench of its own, to be taken off.
+
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::net::TcpListener;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use psd::check::{LoadFault, Loader, Options, check};
+use psd::plan::{Plan, RealLink};
+use psd::record::journal::{Durability, EntryKind, Journal, Storage};
+use psd::record::{History, Outcome, Record};
+use psd::rig::Wish;
+use psd::rig::device::{self, Device};
+use psd::rig::port::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
+use psd::rig::real::RealRig;
+use psd::run::{Unwatched, tape};
+use psd::simulator::serve::Carrier as _;
+use psd::simulator::{Log, PseudoTerminal, Script, Stand, of_plan};
+
+const PLAN: &str = r#"
+specimen beam {
+  mass      = 0.73 kg
+  behaviour = elastic(stiffness: 300 kN/m)
+  damping   = 6 N*s/m
+}
+
+limits {
+  displacement = -1 mm .. 12 mm
+  force        = 5 kN
+  speed        = 400 mm/s
+}
+
+rig real {
+  link        = serial(port: "/dev/none", dialect: native)
+  settle      = within(0.002 mm, 50 kN/s, timeout: 5 s)
+  safe_state  = hold
+  gate        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
+  rate        = 200 Hz
+  samples     = 1
+  resolution  = 1 um
+  calibration = "none"
+}
+
+striker pendulum {
+  mass     = 20 kg
+  velocity = 1 m/s
+}
+
+impact hit {
+  striker   = pendulum
+  stiffness = 300 kN/m
+  contact   = rigid
+  time_step = 0.01 ms
+  duration  = 12 ms
+}
+"#;
+
+fn main() {
+    divan::main();
+}
+
+struct NoFiles;
+
+impl Loader for NoFiles {
+    fn load(&self, _: &str) -> Result<String, LoadFault> {
+        unreachable!("the plan uses no file")
+    }
+}
+
+fn plan() -> Plan {
+    let options = Options { rig: Some("real".to_owned()), ..Options::default() };
+    let checked = check("plan.psd", PLAN, &NoFiles, &options);
+    checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
+}
+
+fn stand(plan: &Plan) -> Stand {
+    of_plan(plan, &Script::default(), Log::none(), 1, Some(1)).expect("a stand")
+}
+
+fn link(plan: &Plan) -> &RealLink {
+    plan.rig.link.as_real().expect("a real rig")
+}
+
+fn device(plan: &Plan, port: Box<dyn Port>, clock: Box<dyn Clock>) -> Box<dyn Device> {
+    device::open(&link(plan).actuator, port, clock, Wish::default(), plan.rig.settle.timeout)
+}
+
+/// A stand that answers as soon as it is asked, and a time that passes while someone waits.
+#[derive(Clone)]
+struct AtOnce(Arc<Mutex<Shared>>);
+
+struct Shared {
+    stand: Stand,
+    /// s
+    now: f64,
+    coming: Vec<u8>,
+    /// What was sent, and when, s.
+    sent: Vec<(f64, Vec<u8>)>,
+}
+
+impl AtOnce {
+    fn new(mut stand: Stand) -> Self {
+        stand.connect(0);
+        Self(Arc::new(Mutex::new(Shared { stand, now: 0.0, coming: Vec::new(), sent: Vec::new() })))
+    }
+
+    fn shared(&self) -> std::sync::MutexGuard<'_, Shared> {
+        self.0.lock().expect("nobody panicked")
+    }
+}
+
+/// What the stand says to some bytes a millisecond after it heard them: by then it is where it was sent.
+fn answer(stand: &mut Stand, now: f64, bytes: &[u8], answer: &mut Vec<u8>) {
+    stand.advance(now);
+    stand.give(0, bytes);
+    while let Some(piece) = stand.take(0) {
+        answer.extend(piece);
+    }
+}
+
+impl Port for AtOnce {
+    fn write(&mut self, bytes: &[u8], _: Duration) -> io::Result<()> {
+        let shared = &mut *self.shared();
+        shared.now += 0.001;
+        shared.sent.push((shared.now, bytes.to_vec()));
+        answer(&mut shared.stand, shared.now, bytes, &mut shared.coming);
+        Ok(())
+    }
+
+    fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let mut shared = self.shared();
+        if shared.coming.is_empty() {
+            shared.now += timeout.as_secs_f64();
+            return Err(ErrorKind::TimedOut.into());
+        }
+        let count = shared.coming.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&shared.coming[..count]);
+        shared.coming.drain(..count);
+        Ok(count)
+    }
+
+    fn discard(&mut self) -> io::Result<()> {
+        self.shared().coming.clear();
+        Ok(())
+    }
+
+    fn emergency(&self) -> io::Result<Box<dyn Emergency>> {
+        Ok(Box::new(self.clone()))
+    }
+}
+
+impl Emergency for AtOnce {
+    fn send(&mut self, bytes: &[u8]) {
+        let _ = self.write(bytes, Duration::ZERO);
+    }
+}
+
+impl Clock for AtOnce {
+    fn now(&self) -> f64 {
+        self.shared().now
+    }
+
+    fn sleep(&mut self, seconds: f64) {
+        self.shared().now += seconds;
+    }
+
+    fn wall(&self) -> Option<String> {
+        None
+    }
+}
+
+/// Takes everything and keeps nothing.
+struct Nowhere;
+
+impl Storage for Nowhere {
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        divan::black_box(bytes);
+        Ok(())
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn cut(&mut self, _: u64) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The plan on a rig that answers at once, recorded to memory.
+fn run(plan: &Plan, line: &AtOnce) -> Record {
+    let actuator = device(plan, Box::new(line.clone()), Box::new(line.clone()));
+    let mut rig =
+        RealRig::open(&plan.rig, &plan.limits, actuator, None, Box::new(line.clone()), Wish::default()).expect("it opens");
+    let mut journal = Journal::create(Box::new(Nowhere), Durability::EveryPromise);
+    journal.append(EntryKind::Header, &serde_json::json!({})).expect("the header is taken");
+    let wall = Box::new(|| None);
+    tape::record(plan, &mut rig, &mut Unwatched, journal, wall).record
+}
+
+fn steps(record: &Record) -> usize {
+    assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
+    match &record.procedures[0].history {
+        History::Impact(history) => history.steps.len() - 1,
+        _ => unreachable!("the plan is an impact"),
+    }
+}
+
+/// Everything of a step: prediction, guard, intent, move, settling, reading, sample, integration, record.
+#[divan::bench]
+fn step(bencher: Bencher) {
+    let plan = plan();
+    let count = steps(&run(&plan, &AtOnce::new(stand(&plan))));
+    bencher
+        .counter(ItemsCount::new(count))
+        .with_inputs(|| AtOnce::new(stand(&plan)))
+        .bench_local_values(|line| steps(&run(&plan, &line)));
+}
+
+/// The part of `step` that is the stand-in's: the same bytes at the same times.
+#[divan::bench]
+fn step_of_the_stand_in_alone(bencher: Bencher) {
+    let plan = plan();
+    let line = AtOnce::new(stand(&plan));
+    let count = steps(&run(&plan, &line));
+    let sent = std::mem::take(&mut line.shared().sent);
+    let connected = || {
+        let mut stand = stand(&plan);
+        stand.connect(0);
+        stand
+    };
+    bencher.counter(ItemsCount::new(count)).with_inputs(connected).bench_local_values(|mut stand| {
+        let mut said = Vec::new();
+        for (now, bytes) in &sent {
+            said.clear();
+            answer(&mut stand, *now, bytes, &mut said);
+        }
+        said
+    });
+}
+
+fn round_trip(bencher: Bencher, mut device: Box<dyn Device>) {
+    device.identify().expect("it answers");
+    bencher.counter(ItemsCount::new(1_u8)).bench_local(|| device.sample().expect("a reading"));
+}
+
+/// One reading over a pseudo-terminal. The stand-in does not nap.
+#[divan::bench]
+fn reading_over_a_pseudo_terminal(bencher: Bencher) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("rig");
+    let plan = plan();
+    let mut line = PseudoTerminal::linked(&path).expect("a pseudo-terminal");
+    let mut stand = stand(&plan);
+    let over = Arc::new(AtomicBool::new(false));
+    let served = Arc::clone(&over);
+    let server = std::thread::spawn(move || {
+        stand.connect(0);
+        let (began, mut buffer, mut said) = (Instant::now(), [0; 512], Vec::new());
+        while !served.load(Ordering::Relaxed) {
+            let count = line.read(&mut buffer).unwrap_or(0);
+            if count == 0 {
+                std::thread::yield_now();
+                continue;
+            }
+            answer(&mut stand, began.elapsed().as_secs_f64(), &buffer[..count], &mut said);
+            while !said.is_empty() {
+                let written = line.write(&said).unwrap_or(0);
+                said.drain(..written);
+            }
+        }
+    });
+    let port = SerialPort::open(path.to_str().expect("a plain path"), 115_200).expect("it opens");
+    round_trip(bencher, device(&plan, Box::new(port), Box::new(MonotonicClock::start())));
+    over.store(true, Ordering::Relaxed);
+    server.join().expect("it ends well");
+}
+
+/// One reading over TCP on this machine.
+#[divan::bench]
+fn reading_over_tcp(bencher: Bencher) {
+    let plan = plan();
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port is free");
+    let address = listener.local_addr().expect("it is bound").to_string();
+    let mut stand = stand(&plan);
+    let server = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().expect("a client");
+        stream.set_nodelay(true).expect("it can");
+        stand.connect(0);
+        let (began, mut buffer, mut said) = (Instant::now(), [0; 512], Vec::new());
+        while let Ok(count @ 1..) = stream.read(&mut buffer) {
+            said.clear();
+            answer(&mut stand, began.elapsed().as_secs_f64(), &buffer[..count], &mut said);
+            stream.write_all(&said).expect("it is taken");
+        }
+    });
+    let port = TcpPort::connect(&address, Duration::from_secs(5)).expect("it connects");
+    round_trip(bencher, device(&plan, Box::new(port), Box::new(MonotonicClock::start())));
+    server.join().expect("it ends well");
+}

@@ -1,0 +1,168 @@
+//! The paper's beam over real pseudo-terminals and TCP: each dialect's stand-in and `psd run` as two processes. In: the
+//! rigs of `rigs`. Out: the virtual run's results, within what the rig resolves. No time is measured.
+
+mod rigs;
+
+use std::fs::{self, File};
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use rigs::{CASES, Case};
+use serde_json::Value;
+
+/// Longest wait for anything: far beyond what a machine under load takes.
+const PATIENCE: Duration = Duration::from_secs(240);
+/// N/m
+const STIFFNESS: f64 = 3e5;
+/// Of the beam's free vibration, √(K/M) with M = 0.73038 kg, 1/s.
+const FREQUENCY: f64 = 641.0;
+/// When the striker has stopped, s, and the largest velocity of the beam until then, m/s.
+const STOP: f64 = 0.0135;
+const VELOCITY: f64 = 2.2;
+/// Largest displacement of the paper's beam, m.
+const LARGEST: f64 = 7.9e-3;
+/// m: of one step of 0.5 ms.
+const INCREMENT: f64 = 1.1e-3;
+
+#[test]
+fn every_dialect_gives_the_virtual_runs_results_within_its_resolution() {
+    let faults = std::thread::scope(|scope| {
+        let running: Vec<_> = CASES.iter().map(|case| (case, scope.spawn(|| run(case)))).collect();
+        let ended = running.into_iter().map(|(case, thread)| (case, thread.join()));
+        let faults = ended.filter_map(|(case, ended)| match ended {
+            Ok(Ok(())) => None,
+            Ok(Err(fault)) => Some(format!("{}: {fault}", case.name)),
+            Err(_) => Some(format!("{}: panicked", case.name)),
+        });
+        faults.collect::<Vec<_>>()
+    });
+    assert!(faults.is_empty(), "{}", faults.join("\n\n"));
+}
+
+/// A process that does not outlive the test.
+struct Process(Child);
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn psd(folder: &Path, output: &str, arguments: &[&str]) -> Process {
+    let file = || File::create(folder.join(output)).expect("a log can be made");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
+    command.current_dir(folder).args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(file());
+    Process(command.spawn().expect("psd starts"))
+}
+
+/// The end of a process, or None where it does not come.
+fn end(process: &mut Process) -> Option<ExitStatus> {
+    let until = Instant::now() + PATIENCE;
+    while Instant::now() < until {
+        if let Some(status) = process.0.try_wait().expect("it is ours") {
+            return Some(status);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    None
+}
+
+/// Whether the stand-in says that it stands in.
+fn ready(folder: &Path) -> bool {
+    let until = Instant::now() + PATIENCE;
+    while Instant::now() < until {
+        if fs::read_to_string(folder.join("simulator.txt")).is_ok_and(|text| text.contains("stands in until")) {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    false
+}
+
+/// Runs a case on both rigs; the error says what was wrong, with what both processes said.
+fn run(case: &Case) -> Result<(), String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let beam = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/lib/gfrp_beam.psd");
+    fs::copy(beam, folder.join("gfrp_beam.psd")).expect("the beam");
+    let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a free port");
+    fs::write(folder.join("plan.psd"), case.plan(folder, &free.to_string())).expect("the plan");
+    let said = |what: &str| {
+        let log = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_default();
+        let bytes = log("bytes.txt");
+        let last = bytes.lines().rev().take(30).collect::<Vec<_>>().into_iter().rev().collect::<Vec<_>>().join("\n");
+        format!("{what}\n{}\n{}\n{}\n{last}", log("virtual.txt"), log("real.txt"), log("simulator.txt"))
+    };
+
+    let mut ideal = psd(folder, "virtual.txt", &["run", "plan.psd", "--rig", "ideal", "--out", "virtual"]);
+    let simulate = ["rig", "simulate", "plan.psd", "--rig", "real", "--once", "--log", "bytes.txt"];
+    let mut simulator = psd(folder, "simulator.txt", &simulate);
+    if !ready(folder) {
+        return Err(said("the stand-in does not begin"));
+    }
+    let mut real =
+        psd(folder, "real.txt", &["run", "plan.psd", "--rig", "real", "--yes", "--operator", "A. Tester", "--out", "real"]);
+    for (process, what) in [(&mut ideal, "virtual run"), (&mut real, "real run"), (&mut simulator, "stand-in")] {
+        match end(process) {
+            Some(status) if status.success() => {}
+            Some(status) => return Err(said(&format!("the {what} ended with {status}"))),
+            None => return Err(said(&format!("the {what} does not end"))),
+        }
+    }
+    let summary = |name: &str| -> Value {
+        let text = fs::read(folder.join(name).join("summary.json")).expect("a summary");
+        serde_json::from_slice(&text).expect("JSON")
+    };
+    compare(case, &summary("virtual"), &summary("real")).map_err(|fault| said(&fault))
+}
+
+fn result(summary: &Value, procedure: &str, name: &str) -> Option<f64> {
+    summary["procedures"][procedure]["results"][name]["value"].as_f64()
+}
+
+/// Holds the real run's results against the virtual run's.
+///
+/// A target is rounded by at most half the resolution r, and so is the reading of where it ended: the force read lies
+/// within e = K·r/2 + q of that of the ideal rig, q being half a quantum of the force.
+/// - K of the ramp's line: Σ|x − m|/Σ(x − m)² of 0.25, 0.5, 0.75, 1 mm is 3200/m, and the displacements err by r/2 too.
+/// - c of two velocities: each mean errs by at most e, so that the slope errs by 2e/Δv.
+/// - The impact: K foretells one increment and c adds c·v, so that e grows by what both err times these. A beam that
+///   vibrates freely answers a force error with ∫ e·sin ω(t − s)/(Mω) ds: at most (2/π)·ωt·e/K, its mean over whole
+///   half waves. The work of e is along the way, at most v·t, and the spring's is K·X times the error of X.
+/// - The striker stops one step sooner or later.
+fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
+    let mut error = STIFFNESS * case.resolution / 2.0 + case.force_error;
+    let stiffness = (error + STIFFNESS * case.resolution / 2.0) * 3200.0;
+    error += near(ideal, real, ("k0", "stiffness"), stiffness)? * INCREMENT;
+    if case.sweep {
+        error += near(ideal, real, ("c", "damping"), 2.0 * error / 2e-3)? * VELOCITY;
+    }
+    let displacement = std::f64::consts::FRAC_2_PI * FREQUENCY * STOP * error / STIFFNESS + case.resolution;
+    near(ideal, real, ("hit", "max_displacement"), displacement)?;
+    near(ideal, real, ("hit", "absorbed_energy"), error * VELOCITY * STOP + STIFFNESS * LARGEST * displacement)?;
+    let stops = |summary| result(summary, "hit", "stop_time").is_some();
+    let whole = case.duration > 1e3 * STOP;
+    if stops(ideal) != whole || stops(real) != whole {
+        return Err("the striker stops in one of the runs only".to_owned());
+    }
+    if whole {
+        near(ideal, real, ("hit", "stop_time"), 0.5e-3 * 1.001)?;
+        let found = result(real, "hit", "max_displacement").unwrap_or(f64::NAN);
+        if !((found - LARGEST).abs() < 0.1e-3) {
+            return Err(format!("{found} m is not the paper's 7.9 mm"));
+        }
+    }
+    Ok(())
+}
+
+/// By how much a result of the two runs differs, if that is at most `allowed`.
+fn near(ideal: &Value, real: &Value, (procedure, name): (&str, &str), allowed: f64) -> Result<f64, String> {
+    let (expected, found) = (result(ideal, procedure, name), result(real, procedure, name));
+    match expected.zip(found).map(|(expected, found)| (found - expected).abs()) {
+        Some(difference) if difference <= allowed => Ok(difference),
+        _ => Err(format!("{procedure}.{name}: {found:?} is not within {allowed} of {expected:?}")),
+    }
+}

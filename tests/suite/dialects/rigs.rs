@@ -1,0 +1,165 @@
+//! The rigs of the dialect test. In: nothing. Out: what each says in a plan, and what its readings resolve. It starts
+//! nothing.
+
+use std::path::Path;
+
+/// A rig that the paper's beam is bent on.
+pub struct Case {
+    pub name: &'static str,
+    /// `link`, or `actuator` and `load_cell`, and what only they need; FOLDER and ADDRESS stand for ports.
+    pub devices: &'static str,
+    /// `resolution` in the plan, and half of it the error of a target and of a displacement reading, m.
+    pub resolution: f64,
+    /// Half the quantum of its force readings, N.
+    pub force_error: f64,
+    /// mm/s
+    pub speed: f64,
+    /// Virtual time of the impact, ms: what is slow by nature is given few steps.
+    pub duration: f64,
+    /// It streams readings on the way.
+    pub sweep: bool,
+}
+
+/// Every actuator and every load cell at least once. Quanta of the force are those of the dialect's text.
+pub const CASES: &[Case] = &[
+    // Six decimals of a millimetre, three of a newton.
+    Case {
+        sweep: true,
+        resolution: 1e-9,
+        force_error: 5e-4,
+        ..serial("native", "link = serial(port: \"FOLDER/a\", dialect: native)")
+    },
+    // Counts of 0.01 N.
+    Case {
+        force_error: 5e-3,
+        ..serial(
+            "grbl with hx711",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: hx711)\n  \
+             force_per_count = 0.01 N\n  zero_count = 8123",
+        )
+    },
+    // Hundredths of a kilogram, ten a second.
+    Case {
+        force_error: 0.05,
+        duration: 7.0,
+        ..serial(
+            "grbl with indicator",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)",
+        )
+    },
+    Case {
+        force_error: 0.05,
+        ..serial(
+            "grbl with scpi",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))",
+        )
+    },
+    // Eight decimals of 1 m and of 15 kN; it bears ten polls a second.
+    Case {
+        force_error: 1e-4,
+        duration: 7.0,
+        ..serial("instron", "link = serial(port: \"FOLDER/a\", dialect: instron)\n  force_range = 15 kN")
+    },
+    // Hundredths of a millimetre; 0.1 N.
+    Case {
+        resolution: 1e-5,
+        force_error: 0.05,
+        speed: 150.0,
+        ..serial("mark10", "link = serial(port: \"FOLDER/a\", dialect: mark10)")
+    },
+    Case {
+        force_error: 0.05,
+        ..serial(
+            "modbus with mark10 gauge",
+            "actuator = serial(port: \"FOLDER/a\", dialect: modbus(unit: 1, number: int32(low_word_first), target: 100, \
+             position: 102, length_unit: 1 um, speed: 106, speed_unit: 1 um/s, status: 108, moving_mask: 1, command: 109, \
+             start_word: 1, stop_word: 2))\n  load_cell = serial(port: \"FOLDER/b\", dialect: mark10_gauge)",
+        )
+    },
+    // Seven digits of at most 3 kN.
+    Case {
+        force_error: 1e-3,
+        ..serial(
+            "modbus",
+            "link = serial(port: \"FOLDER/a\", dialect: modbus(unit: 1, number: float32(high_word_first), target: 100, \
+             position: 102, length_unit: 1 mm, force: 104, force_unit: 1 kN, speed: 106, speed_unit: 1 mm/s, status: 108, \
+             moving_mask: 1, command: 109, start_word: 1, stop_word: 2))",
+        )
+    },
+    Case { force_error: 1e-3, ..serial("nees", "link = tcp(address: \"ADDRESS\", dialect: nees(\"MDL-00-01\"))") },
+];
+
+/// One that resolves a micrometre, and is as fast as the limits allow.
+const fn serial(name: &'static str, devices: &'static str) -> Case {
+    Case { name, devices, resolution: 1e-6, force_error: 0.05, speed: 400.0, duration: 50.0, sweep: false }
+}
+
+impl Case {
+    /// The beam of the paper's section 5, in a plan that runs on this rig and on an ideal virtual one. Its velocities are
+    /// slow and its readings far apart: a machine under load must keep up with them.
+    pub fn plan(&self, folder: &Path, address: &str) -> String {
+        let devices = self.devices.replace("FOLDER", &folder.display().to_string()).replace("ADDRESS", address);
+        let (speed, resolution, duration) = (self.speed, self.resolution * 1e6, self.duration);
+        // Half a quantum of the target and half a one of the reading, and a little for the last bit.
+        let band = resolution.max(1.0) * 1.5;
+        let (sweep, damping) = if self.sweep { (SWEEP, "c.damping") } else { ("", "6 N*s/m") };
+        format!(
+            r#"use "gfrp_beam.psd"
+
+limits {{
+  displacement = -1 mm .. 12 mm
+  force        = 5 kN
+  speed        = {speed} mm/s
+}}
+
+rig ideal {{
+  link = virtual()
+}}
+
+rig real {{
+  {devices}
+  settle      = within({band} um, 50 kN/s, timeout: 20 s)
+  safe_state  = hold
+  gate        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
+  speed       = {speed} mm/s
+  watchdog    = 20 s
+  rate        = 200 Hz
+  samples     = 1
+  resolution  = {resolution} um
+  calibration = "of a stand-in"
+}}
+
+striker pendulum {{
+  mass     = 20 kg
+  velocity = 1 m/s
+}}
+
+stiffness ramp k0 {{
+  displacements = 0.25 mm .. 1 mm step 0.25 mm
+  pause         = 0 s
+  samples       = 1
+}}
+{sweep}
+impact hit {{
+  striker   = pendulum
+  stiffness = k0.stiffness
+  damping   = {damping}
+  contact   = rigid
+  time_step = 0.5 ms
+  duration  = {duration} ms
+}}
+
+require "stays in travel" hit.max_displacement < 9 mm
+"#
+        )
+    }
+}
+
+const SWEEP: &str = "
+damping sweep c {
+  velocities = [2, 4] mm/s
+  stroke     = 8 mm
+  stiffness  = k0.stiffness
+  rate       = 1 Hz
+}
+";
