@@ -204,9 +204,7 @@ impl Stage {
         }
         text += &summary["verdict"].to_string();
         text += &summary["requirements"].to_string();
-        for procedure in summary["procedures"].as_array().unwrap() {
-            text += &procedure["results"].to_string();
-        }
+        text += &summary["procedures"].to_string();
         text
     }
 }
