@@ -1,0 +1,49 @@
+//! The plan is another one when the run is to go on: refused with both digests, or on record as a deviation.
+
+use std::fs;
+
+use rustix::process::Signal;
+
+use crate::stage::{Stage, finish, signal, start, wait};
+
+/// A run that a person has stopped after some moves.
+fn stopped() -> Stage {
+    let stage = Stage::new();
+    let run = start(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(8);
+    signal(&run, Signal::INT);
+    let run = finish(run);
+    assert_eq!(run.code, Some(4), "{}", run.told);
+    stage
+}
+
+#[test]
+fn one_byte_of_the_plan_is_refused_and_amended_only_by_name() {
+    let stage = stopped();
+    let plan = stage.path("plan.psd");
+    let same = plan.to_str().unwrap().to_owned();
+    let text = fs::read_to_string(&plan).unwrap();
+    fs::write(&plan, text.replace("A short run", "a short run")).unwrap();
+    let said = stage.requests().len();
+    let refused = wait(&mut stage.resume_with(&["--plan", &same]));
+    assert_eq!(refused.code, Some(2), "{}", refused.told);
+    let digests = refused.told.split(|letter: char| !letter.is_ascii_hexdigit()).filter(|word| word.len() == 64).count();
+    assert_eq!(digests, 2, "{}", refused.told);
+    assert_eq!(stage.requests().len(), said, "not one byte");
+
+    let amended = wait(&mut stage.resume_with(&["--plan", &same, "--amend"]));
+    assert_eq!(amended.code, Some(0), "{}", amended.told);
+    assert_eq!(stage.verify().code, Some(0), "{}", stage.verify().told);
+    for file in ["certificate.html", "summary.json"] {
+        let text = fs::read_to_string(stage.path("run").join(file)).unwrap();
+        assert!(text.contains("B. Tester") && text.contains("it was interrupted"), "{file} names who and why");
+        assert!(text.contains("became"), "{file} names what changed");
+    }
+}
+
+#[test]
+fn the_same_plan_needs_no_amendment() {
+    let stage = stopped();
+    let plan = stage.path("plan.psd");
+    stage.goes_on(&["--plan", plan.to_str().unwrap()]);
+}

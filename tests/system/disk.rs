@@ -1,0 +1,139 @@
+//! The disk fails under a run: one sync that fails, no room, a limit on the size of files. The rig is held, nothing more
+//! is sent, the failed sync is never tried again, and the run goes on when there is room.
+
+use std::fs;
+use std::process::Command;
+
+use crate::needs;
+use crate::stage::{PSD, Stage, wait};
+
+/// The last word about moving is the one to stop.
+fn held(stage: &Stage) {
+    let requests = stage.requests();
+    let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
+    let stop = last(">STOP").max(last("!"));
+    assert!(stop.is_some() && stop > last(">MOVE"), "not held: {requests:#?}");
+}
+
+#[test]
+fn a_sync_that_fails_once_ends_the_run_and_is_not_tried_again() {
+    if !needs::strace() {
+        return;
+    }
+    let stage = Stage::new();
+    let trace = stage.path("trace");
+    let mut command = Command::new("strace");
+    command.args(["-f", "-o"]).arg(&trace).arg("-P").arg(stage.journal());
+    command.args(["-e", "trace=fdatasync", "-e", "inject=fdatasync:error=EIO:when=40", PSD]);
+    stage.run_arguments(&mut command, &["--yes"]);
+    let ran = wait(&mut command);
+    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert!(ran.told.contains("the record could not be kept"), "{}", ran.told);
+    held(&stage);
+    let syncs = fs::read_to_string(&trace).unwrap();
+    let syncs: Vec<&str> = syncs.lines().filter(|line| line.contains("fdatasync(")).collect();
+    assert!(syncs.len() == 40 && syncs[39].contains("EIO"), "after a failed sync no other says anything: {syncs:#?}");
+    stage.goes_on(&[]);
+}
+
+#[test]
+fn a_limit_on_the_size_of_files_is_a_full_disk_and_no_signal_ends_the_program() {
+    if !needs::prlimit() {
+        return;
+    }
+    let whole = Stage::new();
+    assert_eq!(wait(&mut whole.run_with(&["--yes"])).code, Some(0));
+    let size = fs::metadata(whole.journal()).unwrap().len();
+    let stage = Stage::new();
+    let mut command = Command::new("prlimit");
+    // Above the reserve that lies beside the record, which is 1 MiB, nothing would ever fail: the record is made longer.
+    assert!(size < 1 << 20);
+    command.args([&format!("--fsize={}", size / 2), PSD]);
+    stage.run_arguments(&mut command, &["--yes"]);
+    let ran = wait(&mut command);
+    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert!(ran.told.contains("error:"), "{}", ran.told);
+    assert!(stage.moves().is_empty(), "nothing moves where the reserve cannot be laid");
+}
+
+#[test]
+fn a_write_that_finds_no_room_holds_the_rig_and_the_run_goes_on_later() {
+    if !needs::strace() {
+        return;
+    }
+    for error in ["ENOSPC", "EFBIG", "EDQUOT", "EIO"] {
+        let stage = Stage::new();
+        let mut command = Command::new("strace");
+        command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(stage.journal());
+        command.args(["-e", "trace=write", "-e", &format!("inject=write:error={error}:when=70"), PSD]);
+        stage.run_arguments(&mut command, &["--yes"]);
+        let ran = wait(&mut command);
+        assert_eq!(ran.code, Some(3), "{error}: {}", ran.told);
+        assert!(ran.told.contains("the record could not be kept"), "{error}: {}", ran.told);
+        held(&stage);
+        stage.goes_on(&[]);
+    }
+}
+
+#[test]
+fn a_storm_of_interrupted_and_short_writes_loses_and_doubles_nothing() {
+    if !needs::strace() {
+        return;
+    }
+    let stage = Stage::new();
+    let mut command = Command::new("strace");
+    command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(stage.journal());
+    command.args(["-e", "trace=write", "-e", "inject=write:error=EINTR:when=2+2", PSD]);
+    stage.run_arguments(&mut command, &["--yes"]);
+    let ran = wait(&mut command);
+    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    assert_eq!(stage.verify().code, Some(0));
+}
+
+#[test]
+fn a_disk_that_lies_about_what_it_took_is_found_out_by_verify() {
+    if !needs::strace() {
+        return;
+    }
+    let stage = Stage::new();
+    let mut command = Command::new("strace");
+    command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(stage.journal());
+    command.args(["-e", "trace=write", "-e", "inject=write:retval=2:when=70", PSD]);
+    stage.run_arguments(&mut command, &["--yes"]);
+    wait(&mut command);
+    let verified = stage.verify();
+    assert!(verified.code == Some(3) && verified.told.contains("WRONG"), "{}", verified.told);
+}
+
+#[test]
+fn a_disk_that_fills_up_holds_the_rig_and_the_run_goes_on_when_there_is_room() {
+    if !needs::own_mounts() {
+        return;
+    }
+    let stage = Stage::new();
+    fs::create_dir(stage.path("run")).unwrap();
+    fs::create_dir(stage.path("kept")).unwrap();
+    // Room for the reserve, the first records and little more; a file beside takes the rest once the run moves.
+    let script = r#"set -e
+mount -t tmpfs -o size=1200k tmpfs "$1/run"
+"$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out "$1/run" & ran=$!
+for wait in $(seq 2000); do
+  if grep -q "bench move 5 " "$1/simulator-1.log"; then break; fi
+  sleep 0.01
+done
+cat /dev/zero > "$1/run/journal.filler" 2>/dev/null || true
+status=0; wait $ran || status=$?
+rm "$1/run/journal.filler"
+cp -a "$1/run/." "$1/kept/"
+exit $status
+"#;
+    let ran = wait(Command::new("unshare").args(["-rm", "bash", "-c", script, "bash"]).arg(stage.path("")).arg(PSD));
+    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert!(ran.told.contains("the record could not be kept"), "{}", ran.told);
+    held(&stage);
+    fs::remove_dir_all(stage.path("run")).unwrap();
+    fs::rename(stage.path("kept"), stage.path("run")).unwrap();
+    let journal = fs::read_to_string(stage.journal()).unwrap();
+    assert!(journal.contains(" FAULT "), "the reserve leaves room for the last words: {journal}");
+    stage.goes_on(&[]);
+}

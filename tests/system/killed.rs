@@ -1,0 +1,128 @@
+//! The program is killed at each of its writes to the record, its syncs, and its words to the rig: the run goes on to
+//! the same end, and no target is executed twice.
+
+use std::process::Command;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::needs;
+use crate::stage::{PSD, Stage, wait};
+
+/// Runs under way at once: nearly all of their time is waiting.
+const AT_ONCE: usize = 16;
+
+/// Where a kill strikes.
+#[derive(Clone, Copy, Debug)]
+enum At {
+    Write,
+    Sync,
+    Word,
+}
+
+/// An uninterrupted run: its results, its moves, and how often each place is passed.
+struct Whole {
+    results: String,
+    moves: Vec<String>,
+}
+
+fn whole() -> Whole {
+    let stage = Stage::new();
+    let ran = wait(&mut stage.run_with(&["--yes"]));
+    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    Whole { results: stage.results(), moves: stage.moves() }
+}
+
+/// The run under strace, killed when it is at a place for the `count`-th time. False: it came to its end before.
+fn killed(stage: &Stage, at: At, count: usize) -> bool {
+    let (call, path) = match at {
+        At::Write => ("write", stage.journal()),
+        At::Sync => ("fdatasync", stage.journal()),
+        At::Word => ("write", stage.path("rig").canonicalize().unwrap()),
+    };
+    let mut command = Command::new("strace");
+    command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(path);
+    command.args(["-e", &format!("trace={call}"), "-e", &format!("inject={call}:signal=KILL:when={count}"), PSD]);
+    stage.run_arguments(&mut command, &["--yes"]);
+    let ended = wait(&mut command);
+    match ended.code {
+        None => true,
+        Some(0) => false,
+        _ => panic!("{at:?} {count}: {}", ended.told),
+    }
+}
+
+/// One kill, and what comes after. False: there was nothing left to kill.
+fn one(whole: &Whole, at: At, count: usize) -> bool {
+    let stage = Stage::new();
+    if !killed(&stage, at, count) {
+        return false;
+    }
+    let resumed = wait(&mut stage.resume_with(&[]));
+    if stage.moves().is_empty() {
+        // Before the record knew the rig there is nothing to go on with, and it is said.
+        assert_eq!(resumed.code, Some(3), "{at:?} {count}: {}", resumed.told);
+        assert!(resumed.told.contains("error:"), "{at:?} {count}: {}", resumed.told);
+        return true;
+    }
+    // Only the last words of a run that is over can be cut off without anything being left to do.
+    let over = resumed.told.contains("there is nothing to go on with");
+    assert!(resumed.code == Some(0) || over, "{at:?} {count}: {}", resumed.told);
+    let verified = stage.verify();
+    assert!(verified.code == Some(0) && !verified.told.contains("INCOMPLETE"), "{at:?} {count}: {}", verified.told);
+    assert_eq!(stage.moves(), whole.moves, "{at:?} {count}: each target once, in order");
+    if !over {
+        assert_eq!(stage.results(), whole.results, "{at:?} {count}");
+    }
+    true
+}
+
+/// Every `step`-th place until the run comes to its end unharmed; how many there were.
+fn everywhere(at: At, step: usize) -> usize {
+    let whole = whole();
+    let (next, kills) = (AtomicUsize::new(1), AtomicUsize::new(0));
+    let failures = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..AT_ONCE {
+            scope.spawn(|| {
+                loop {
+                    let count = next.fetch_add(step, Ordering::SeqCst);
+                    match std::panic::catch_unwind(|| one(&whole, at, count)) {
+                        Ok(true) => kills.fetch_add(1, Ordering::SeqCst),
+                        Ok(false) => return,
+                        Err(why) => {
+                            failures.lock().unwrap().push(why.downcast_ref::<String>().cloned().unwrap_or_default());
+                            return;
+                        }
+                    };
+                }
+            });
+        }
+    });
+    let failures = failures.into_inner().unwrap();
+    assert!(failures.is_empty(), "{} of {at:?} failed:\n{}", failures.len(), failures.join("\n\n"));
+    kills.into_inner()
+}
+
+#[test]
+fn at_every_write_of_the_record() {
+    if needs::strace() {
+        let kills = everywhere(At::Write, 1);
+        assert!(kills > 150, "{kills}");
+    }
+}
+
+#[test]
+fn at_syncs_of_the_record() {
+    if needs::strace() {
+        let kills = everywhere(At::Sync, 3);
+        assert!(kills > 30, "{kills}");
+    }
+}
+
+#[test]
+fn at_words_to_the_rig() {
+    if needs::strace() {
+        let kills = everywhere(At::Word, 9);
+        assert!(kills > 30, "{kills}");
+    }
+}

@@ -1,0 +1,86 @@
+//! The rig goes away: it hangs up, starts anew, or takes no byte any more. The program ends by itself, soon and without
+//! burning time, the target in doubt is on record, and the run goes on when the rig is back.
+
+use std::time::{Duration, Instant};
+
+use rustix::process::{Signal, WaitOptions, waitpid};
+
+use crate::stage::{Stage, finish, signal, start, wait};
+
+#[test]
+fn it_hangs_up() {
+    for script in ["after 3 moves: hang up", "after 12 moves: hang up before reply", "after 25 moves: hang up after reply"] {
+        let stage = Stage::of(str::to_owned, script);
+        let began = Instant::now();
+        let ran = wait(&mut stage.run_with(&["--yes"]));
+        // A whole run is some 2 s; what is bounded is that it does not wait for a rig that is gone.
+        assert!(began.elapsed() < Duration::from_secs(30), "{script}");
+        assert_eq!(ran.code, Some(3), "{script}: {}", ran.told);
+        // The same rig, still on: it hung up the line only.
+        stage.goes_on(&[]);
+        let mut moves = stage.moves();
+        let count = moves.len();
+        moves.dedup();
+        assert_eq!(moves.len(), count, "{script}: {moves:?}");
+    }
+}
+
+#[test]
+fn one_that_started_anew_since_must_be_referenced_first() {
+    let mut stage = Stage::of(str::to_owned, "after 1 moves: hang up");
+    let ran = wait(&mut stage.run_with(&["--yes"]));
+    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    stage.power_up("");
+    let refused = wait(&mut stage.resume_with(&[]));
+    assert_eq!(refused.code, Some(3), "{}", refused.told);
+    assert!(refused.told.contains("started anew") && refused.told.contains("--re-referenced"), "{}", refused.told);
+    assert!(stage.moves().is_empty());
+}
+
+#[test]
+fn a_rig_that_was_referenced_again_goes_on_where_it_stands() {
+    // Held at the inspection, at rest and at zero: a rig that starts anew stands there too.
+    let mut stage = Stage::new();
+    let ran = wait(&mut stage.run_with(&[]));
+    assert_eq!(ran.code, Some(4), "{}", ran.told);
+    stage.power_up("");
+    let refused = wait(&mut stage.resume_with(&[]));
+    assert!(refused.code == Some(3) && refused.told.contains("--re-referenced"), "{}", refused.told);
+    stage.goes_on(&["--re-referenced"]);
+}
+
+#[test]
+fn it_starts_anew_in_the_middle() {
+    let stage = Stage::of(str::to_owned, "after 10 moves: reboot");
+    let ran = wait(&mut stage.run_with(&["--yes"]));
+    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert!(ran.told.contains("started anew"), "{}", ran.told);
+    let moves = stage.moves().len();
+    let refused = wait(&mut stage.resume_with(&[]));
+    assert_eq!(refused.code, Some(3), "{}", refused.told);
+    assert!(refused.told.contains("--re-referenced"), "{}", refused.told);
+    assert_eq!(stage.moves().len(), moves, "nothing moved");
+}
+
+#[test]
+fn it_takes_no_byte_any_more() {
+    let stage = Stage::of(str::to_owned, "after 10 moves: stop reading");
+    let ran = wait(&mut stage.run_with(&["--yes"]));
+    assert_eq!(ran.code, Some(3), "{}", ran.told);
+}
+
+#[test]
+fn the_program_was_away_for_longer_than_the_watchdog() {
+    let stage = Stage::of(|plan| plan.replace("  rate       =", "  watchdog   = 4 s\n  rate       ="), "");
+    let run = start(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(10);
+    signal(&run, Signal::STOP);
+    waitpid(Some(rustix::process::Pid::from_child(&run)), WaitOptions::UNTRACED).unwrap();
+    std::thread::sleep(Duration::from_secs(5));
+    let moves = stage.moves().len();
+    signal(&run, Signal::CONT);
+    let run = finish(run);
+    assert_eq!(run.code, Some(3), "{}", run.told);
+    assert_eq!(stage.moves().len(), moves, "it did not go on by itself");
+    stage.goes_on(&[]);
+}

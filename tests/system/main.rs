@@ -1,0 +1,11 @@
+//! Whole runs as processes: `psd` against `psd rig simulate` over real pseudo-terminals, killed, starved, frozen and
+//! talked at. What needs a program of the system is skipped without it, and fails where `PSD_REQUIRE_SYSTEM=1`.
+
+mod amended;
+mod disk;
+mod killed;
+mod lost;
+mod needs;
+mod person;
+mod stage;
+mod twice;

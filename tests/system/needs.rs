@@ -1,0 +1,32 @@
+//! What a test needs of the system. In: a program and something it must be able to do here. Out: whether it can; if
+//! not, the test says that it is skipped, and fails where `PSD_REQUIRE_SYSTEM=1` asks for all of them.
+
+use std::process::{Command, Stdio};
+
+/// Whether `strace` is here and may trace.
+pub fn strace() -> bool {
+    able("strace", "trace", Command::new("strace").args(["-f", "-o", "/dev/null", "true"]))
+}
+
+/// Whether a file system of one's own can be mounted.
+pub fn own_mounts() -> bool {
+    able("unshare", "mount a tmpfs of its own", Command::new("unshare").args(["-rm", "mount", "-t", "tmpfs", "tmpfs", "/mnt"]))
+}
+
+/// Whether limits of a process can be set.
+pub fn prlimit() -> bool {
+    able("prlimit", "set a limit", Command::new("prlimit").args(["--fsize=100000", "true"]))
+}
+
+fn able(program: &str, what: &str, proof: &mut Command) -> bool {
+    let proven = proof.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let missing = match proven {
+        Ok(status) if status.success() => return true,
+        Ok(_) => format!("{program} cannot {what} here"),
+        Err(_) => format!("no {program}"),
+    };
+    println!("SKIPPED: {missing}");
+    let required = std::env::var_os("PSD_REQUIRE_SYSTEM").is_some_and(|value| value == "1");
+    assert!(!required, "{missing}, and PSD_REQUIRE_SYSTEM=1 wants every test");
+    false
+}

@@ -1,0 +1,78 @@
+//! A person stops the run: Ctrl-C once and twice, a terminal that goes away, nobody to ask. The rig is held, the record
+//! sound, and the run goes on later.
+
+use std::fs;
+
+use rustix::process::Signal;
+
+use crate::stage::{Ended, Stage, finish, signal, start, wait};
+
+/// The rig stands where it was held, and the record can be gone on with.
+fn held_and_sound(stage: &Stage, ran: &Ended) {
+    assert_eq!(ran.code, Some(4), "{}", ran.told);
+    let requests = stage.requests();
+    let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
+    assert!(last(">STOP").max(last("!")) > last(">MOVE"), "not held: {requests:#?}");
+    let verified = stage.verify();
+    assert!(verified.code == Some(0) && verified.told.contains("INCOMPLETE"), "{}", verified.told);
+    stage.goes_on(&[]);
+}
+
+#[test]
+fn each_signal_stops_at_the_end_of_the_step() {
+    for sent in [Signal::INT, Signal::TERM, Signal::HUP] {
+        let stage = Stage::new();
+        let run = start(&mut stage.run_with(&["--yes"]));
+        stage.after_moves(10);
+        signal(&run, sent);
+        held_and_sound(&stage, &finish(run));
+    }
+}
+
+#[test]
+fn the_second_holds_at_once() {
+    // The second step takes ten seconds at this speed: nobody waits for its end.
+    let slow = |plan: &str| plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s").replace("probe(0.1 mm", "probe(0.02 mm");
+    let stage = Stage::of(slow, "");
+    let run = start(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(3);
+    signal(&run, Signal::INT);
+    // Two signals at once may count as one.
+    std::thread::sleep(std::time::Duration::from_millis(100));
+    signal(&run, Signal::INT);
+    let ran = finish(run);
+    assert_eq!(ran.code, Some(4), "{}", ran.told);
+    assert_eq!(stage.moves().len(), 3, "{}", stage.log());
+    assert!(stage.requests().iter().any(|request| request.contains('!') || request.contains(">STOP")));
+    let journal = fs::read_to_string(stage.journal()).unwrap();
+    assert_eq!(journal.matches(" STEP ").count(), 0, "held on its way, not at its end");
+}
+
+#[test]
+fn nobody_at_an_inspection_is_no_yes() {
+    let stage = Stage::new();
+    // The input is at its end from the start.
+    let ran = wait(&mut stage.run_with(&[]));
+    assert_eq!(ran.code, Some(4), "{}", ran.told);
+    assert!(stage.moves().is_empty() || !ran.told.contains("hit: impact"), "{}", ran.told);
+    assert!(ran.told.contains("nobody to ask"), "{}", ran.told);
+}
+
+#[test]
+fn a_record_cut_short_says_so() {
+    let stage = Stage::new();
+    assert_eq!(wait(&mut stage.run_with(&["--yes"])).code, Some(0));
+    let whole = fs::read_to_string(stage.journal()).unwrap();
+    assert!(!stage.verify().told.contains("INCOMPLETE"));
+    let mut cut: Vec<&str> = whole.lines().collect();
+    cut.pop();
+    fs::write(stage.journal(), cut.join("\n") + "\n").unwrap();
+    // Nothing but the record: the manifest would find it out anyway.
+    fs::remove_file(stage.path("run").join("manifest.sha256")).unwrap();
+    let verified = stage.verify();
+    assert!(verified.told.contains("INCOMPLETE") || verified.told.contains("WRONG"), "{}", verified.told);
+    cut.truncate(60);
+    fs::write(stage.journal(), cut.join("\n") + "\n").unwrap();
+    let verified = stage.verify();
+    assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
+}

@@ -1,0 +1,276 @@
+//! A stage for one run: a folder of its own, a short plan, and `psd rig simulate` behind a pseudo-terminal. In: what is
+//! to go wrong. Out: programs that have ended, and what the simulator's log says was asked of the rig.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
+use tempfile::TempDir;
+
+pub const PSD: &str = env!("CARGO_BIN_EXE_psd");
+
+/// Longest wait for anything, far beyond what it takes: only a program that hangs reaches it.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Some forty steps without noise, so that two runs measure the same.
+const PLAN: &str = r#"plan "A short run on a real rig" {
+  edition     = 1
+  specimen_id = "SYS-1"
+}
+
+limits {
+  displacement = -5 mm .. 10 mm
+  force        = -5 kN .. 5 kN
+  speed        = 200 mm/s
+}
+
+rig bench {
+  link       = serial(port: "PORT", dialect: native)
+  settle     = within(0.01 mm, 1000 N/s, for: 0.01 s, timeout: 20 s)
+  safe_state = hold
+  rate       = 500 Hz
+  samples    = 1
+  speed      = 20 mm/s
+  gate       = probe(0.1 mm, stiffness: 90 kN/m .. 110 kN/m, zero: 20 N)
+}
+
+specimen bar {
+  mass      = 20 kg
+  behaviour = elastic(stiffness: 100 kN/m)
+}
+
+striker hammer {
+  mass     = 5 kg
+  velocity = 0.1 m/s
+}
+
+stiffness ramp k0 {
+  displacements = 0.1 mm .. 0.8 mm step 0.1 mm
+  pause         = 0 s
+  return        = true
+}
+
+inspect look {
+  note = "look at the specimen"
+}
+
+impact hit {
+  striker   = hammer
+  stiffness = k0.stiffness
+  damping   = 0 N*s/m
+  contact   = rigid
+  time_step = 1 ms
+  duration  = 24 ms
+  pause     = 0 s
+}
+
+require "stiffness recovered" k0.stiffness within 1 % of 100 kN/m
+
+report {
+  figures = []
+}
+"#;
+
+/// What a program that has ended left.
+#[derive(Debug)]
+pub struct Ended {
+    pub code: Option<i32>,
+    /// Standard error and standard output.
+    pub told: String,
+}
+
+pub struct Stage {
+    folder: TempDir,
+    simulator: Option<Child>,
+    logs: usize,
+}
+
+impl Stage {
+    /// A stage whose simulator is up.
+    pub fn new() -> Self {
+        Self::of(|plan| plan.to_owned(), "")
+    }
+
+    /// A stage with a plan of its own, and a script of faults.
+    pub fn of(plan: impl Fn(&str) -> String, script: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let port = folder.path().join("rig");
+        fs::write(folder.path().join("plan.psd"), plan(&PLAN.replace("PORT", port.to_str().unwrap()))).unwrap();
+        let mut stage = Self { folder, simulator: None, logs: 0 };
+        stage.power_up(script);
+        stage
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn journal(&self) -> PathBuf {
+        self.path("run").join("journal.psdj")
+    }
+
+    /// Starts the simulator anew, with faults of its own: what it was told before it has forgotten.
+    pub fn power_up(&mut self, script: &str) {
+        self.power_down();
+        self.logs += 1;
+        fs::write(self.path("script"), script).unwrap();
+        let mut command = Command::new(PSD);
+        command.args(["rig", "simulate"]).arg(self.path("plan.psd")).args(["--rig", "bench", "--log"]).arg(self.log_path());
+        command.arg("--script").arg(self.path("script"));
+        let told = File::create(self.path("simulator.told")).unwrap();
+        self.simulator = Some(command.stdin(Stdio::null()).stderr(told).spawn().unwrap());
+        let (port, told) = (self.path("rig"), self.path("simulator.told"));
+        until("the simulator stands in", || port.exists() && fs::read_to_string(&told).unwrap().contains("stands in"));
+    }
+
+    fn log_path(&self) -> PathBuf {
+        self.path(&format!("simulator-{}.log", self.logs))
+    }
+
+    /// Ends the simulator; no target may have lain outside the limits.
+    pub fn power_down(&mut self) {
+        if let Some(mut simulator) = self.simulator.take() {
+            signal(&simulator, Signal::INT);
+            let status = ended(&mut simulator);
+            assert_eq!(status.code(), Some(0), "the simulator: {}", fs::read_to_string(self.path("simulator.told")).unwrap());
+        }
+    }
+
+    /// What the simulator has logged since its last power-up.
+    pub fn log(&self) -> String {
+        fs::read_to_string(self.log_path()).unwrap()
+    }
+
+    /// Number and target of every move since the last power-up, in order.
+    pub fn moves(&self) -> Vec<String> {
+        let log = self.log();
+        let moves = log.lines().filter_map(|line| line.split_once(" bench move "));
+        moves.map(|(_, what)| what.split(" m at ").next().unwrap().to_owned()).collect()
+    }
+
+    /// What the host has sent since the last power-up, one request a line.
+    pub fn requests(&self) -> Vec<String> {
+        let log = self.log();
+        log.lines().filter_map(|line| line.split_once(" actuator > ")).map(|(_, what)| what.to_owned()).collect()
+    }
+
+    /// Waits until so many moves are done.
+    pub fn after_moves(&self, count: usize) {
+        until("the run moves", || self.moves().len() >= count);
+    }
+
+    /// `psd run` of the stage's plan into `run`, with more arguments.
+    pub fn run_with(&self, more: &[&str]) -> Command {
+        let mut command = Command::new(PSD);
+        self.run_arguments(&mut command, more);
+        command
+    }
+
+    /// The same as a program that another program starts.
+    pub fn run_arguments(&self, command: &mut Command, more: &[&str]) {
+        command.arg("run").arg(self.path("plan.psd")).args(["--rig", "bench", "--operator", "A. Tester", "--out"]);
+        command.arg(self.path("run")).args(more);
+    }
+
+    pub fn resume_with(&self, more: &[&str]) -> Command {
+        let mut command = Command::new(PSD);
+        command.arg("resume").arg(self.path("run")).args(["--operator", "B. Tester", "--reason", "it was interrupted", "--yes"]);
+        command.args(more);
+        command
+    }
+
+    pub fn verify(&self) -> Ended {
+        wait(Command::new(PSD).arg("verify").arg(self.path("run")))
+    }
+
+    /// Goes on with the run to its end, whose record is then proven.
+    pub fn goes_on(&self, more: &[&str]) -> Ended {
+        let resumed = wait(&mut self.resume_with(more));
+        assert_eq!(resumed.code, Some(0), "{}", resumed.told);
+        let verified = self.verify();
+        assert!(verified.code == Some(0) && !verified.told.contains("INCOMPLETE"), "{}", verified.told);
+        resumed
+    }
+
+    /// Everything the run measured and computed, without the times at which it did.
+    pub fn results(&self) -> String {
+        let run = self.path("run");
+        let mut text: String = ["k0", "hit"].map(|name| without_times(&run.join("tables").join(format!("{name}.csv")))).concat();
+        let summary: serde_json::Value = serde_json::from_slice(&fs::read(run.join("summary.json")).unwrap()).unwrap();
+        for part in ["verdict", "requirements", "procedures"] {
+            assert!(!summary[part].is_null(), "{part}");
+        }
+        text += &summary["verdict"].to_string();
+        text += &summary["requirements"].to_string();
+        text += &summary["procedures"].to_string();
+        text
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        if let Some(mut simulator) = self.simulator.take() {
+            let _ = simulator.kill();
+            let _ = simulator.wait();
+        }
+    }
+}
+
+/// A table without the columns that the clock fills.
+fn without_times(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap();
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    assert!(header.contains(&"wall_time_s"));
+    let kept = |line: &str| -> String {
+        let fields = line.split(',').zip(&header).filter(|(_, name)| **name != "wall_time_s");
+        fields.map(|(field, _)| format!("{field},")).collect::<String>() + "\n"
+    };
+    text.lines().map(kept).collect()
+}
+
+/// Starts a program whose words are kept until [`finish`].
+pub fn start(command: &mut Command) -> Child {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Waits for the end of what [`start`] started.
+pub fn finish(mut child: Child) -> Ended {
+    let status = ended(&mut child);
+    let output = child.wait_with_output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    Ended { code: status.code(), told: text(output.stderr) + &text(output.stdout) }
+}
+
+/// Runs a program to its end.
+pub fn wait(command: &mut Command) -> Ended {
+    finish(start(command))
+}
+
+fn ended(child: &mut Child) -> ExitStatus {
+    let since = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        if since.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("a program did not come to its end");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+pub fn signal(child: &Child, signal: Signal) {
+    kill_process(Pid::from_child(child), signal).unwrap();
+}
+
+/// Waits for something that is to happen.
+pub fn until(what: &str, mut happened: impl FnMut() -> bool) {
+    let since = Instant::now();
+    while !happened() {
+        assert!(since.elapsed() < PATIENCE, "in vain: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
