@@ -23,6 +23,7 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
             EventKind::LimitBreach => "Limit reached",
             EventKind::Hold => "Hold",
             EventKind::Fault => "Rig fault",
+            EventKind::Mended => "Mended on the lines of the rig",
             EventKind::Resume => "Interruption",
             EventKind::Amendment => "Amendment",
             EventKind::Note | EventKind::Inspection | EventKind::Remark => continue,

@@ -23,6 +23,8 @@ pub enum EntryKind {
     Operator,
     Event,
     Fault,
+    /// What was mended on the lines of the rig by the end of the run, where anything was.
+    Tally,
     /// A torn tail was put aside.
     Recover,
     /// The plan or the program is no longer the one of the header; who says so, and why.
@@ -34,7 +36,7 @@ pub enum EntryKind {
 }
 
 impl EntryKind {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Header,
         Self::Plan,
         Self::Rig,
@@ -44,6 +46,7 @@ impl EntryKind {
         Self::Operator,
         Self::Event,
         Self::Fault,
+        Self::Tally,
         Self::Recover,
         Self::Amend,
         Self::Resume,
@@ -63,6 +66,7 @@ impl EntryKind {
             Self::Operator => "OPERATOR",
             Self::Event => "EVENT",
             Self::Fault => "FAULT",
+            Self::Tally => "TALLY",
             Self::Recover => "RECOVER",
             Self::Amend => "AMEND",
             Self::Resume => "RESUME",

@@ -117,6 +117,7 @@ impl Played {
             | EntryKind::Sample
             | EntryKind::Step
             | EntryKind::Operator
+            | EntryKind::Tally
             | EntryKind::Event
             | EntryKind::Fault => {
                 self.doubt = None;
