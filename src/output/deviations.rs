@@ -25,6 +25,7 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
             EventKind::LimitBreach => "Limit reached",
             EventKind::Hold => "Hold",
             EventKind::Fault => "Rig fault",
+            EventKind::Mended => "Mended on the lines of the rig",
             EventKind::Resume => "Interruption",
             EventKind::Amendment => "Amendment",
             EventKind::Note if is_of_the_line(&event.text) => "Line",

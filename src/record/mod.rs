@@ -54,6 +54,8 @@ pub enum EventKind {
     LimitBreach,
     Hold,
     Fault,
+    /// What went wrong on the lines of the rig and was mended: frames sent again, replies ignored, readings taken again.
+    Mended,
     /// A numerical remark: the last blow is cut, the peak is not a peak, …
     Remark,
     /// The run goes on after it was cut off or stopped.

@@ -6,6 +6,7 @@
 pub enum Guarding {
     TargetLimits,
     ReadingLimits,
+    EnergyError,
     WireNumber,
     Following,
     Settling,

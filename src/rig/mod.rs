@@ -6,6 +6,8 @@ mod connect;
 pub mod device;
 pub mod dialect;
 pub mod failpoint;
+#[cfg(test)]
+mod fault_table;
 mod guard;
 mod load_cell;
 pub mod port;
@@ -72,7 +74,7 @@ pub struct LastMove {
 }
 
 /// What went wrong on the line and was mended without harm: for the report.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// Frames sent again for want of an answer.
     pub resent: u64,
@@ -80,6 +82,20 @@ pub struct Tally {
     pub ignored: u64,
     /// Readings taken again because one was not usable.
     pub reread: u64,
+}
+
+impl std::fmt::Display for Tally {
+    /// Only what is not zero.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let counted =
+            [(self.resent, "frame", "sent again"), (self.ignored, "reply", "ignored"), (self.reread, "reading", "taken again")];
+        let said = counted.into_iter().filter(|(count, ..)| *count > 0).map(|(count, what, became)| match (count, what) {
+            (1, _) => format!("1 {what} {became}"),
+            (_, "reply") => format!("{count} replies {became}"),
+            _ => format!("{count} {what}s {became}"),
+        });
+        f.write_str(&said.collect::<Vec<_>>().join(", "))
+    }
 }
 
 /// Why a rig could not do what was asked. The rig holds its position in every case.

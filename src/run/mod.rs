@@ -150,7 +150,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         && let Err(stop) = gate::pass(plan, link, &mut session)
     {
         session.end(&stop);
-        return Record { events: session.into_events(), outcome: stop.outcome(), ..record };
+        return Record { events: session.finish(), outcome: stop.outcome(), ..record };
     }
     for procedure in &plan.procedures {
         session.enter(procedure);
@@ -176,7 +176,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
         session.leave();
     }
-    record.events = session.into_events();
+    record.events = session.finish();
     record
 }
 

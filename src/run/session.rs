@@ -7,7 +7,7 @@ use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
 use crate::plan::{Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
-use crate::rig::{Guard, Reading, Rig, RigFault};
+use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
 
 /// How long a real rig stays where it is between two looks at whether the person has decided, s of rig time: it takes a
 /// sign of life at least this often.
@@ -57,7 +57,12 @@ impl<'run> Session<'run> {
         }
     }
 
-    pub(super) fn into_events(self) -> Vec<Event> {
+    /// The events, the last of which says what was mended on the lines of the rig: a deviation, though it did no harm.
+    pub(super) fn finish(mut self) -> Vec<Event> {
+        let tally = self.guard.tally();
+        if tally != Tally::default() {
+            self.event(EventKind::Mended, tally.to_string());
+        }
         self.events
     }
 

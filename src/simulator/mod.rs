@@ -14,7 +14,7 @@ pub mod serve;
 mod stand;
 mod tcp;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use bench::{Bench, BenchSettings, SentMove};
 pub use bench_fault::BenchFault;

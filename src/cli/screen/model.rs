@@ -147,6 +147,7 @@ impl Model {
             EventKind::LimitBreach => "limit breach",
             EventKind::Hold => "hold",
             EventKind::Fault => "fault",
+            EventKind::Mended => "mended",
             EventKind::Remark => "remark",
             EventKind::Resume => "resume",
             EventKind::Amendment => "amendment",

@@ -83,6 +83,7 @@ pub(in crate::output) const fn event_kind(kind: EventKind) -> &'static str {
         EventKind::LimitBreach => "limit breach",
         EventKind::Hold => "hold",
         EventKind::Fault => "fault",
+        EventKind::Mended => "mended",
         EventKind::Remark => "remark",
         EventKind::Resume => "resume",
         EventKind::Amendment => "amendment",

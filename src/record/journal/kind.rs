@@ -25,6 +25,8 @@ pub enum EntryKind {
     Operator,
     Event,
     Fault,
+    /// What was mended on the lines of the rig by the end of the run, where anything was.
+    Tally,
     /// A torn tail was put aside.
     Recover,
     /// The plan or the program is no longer the one of the header; who says so, and why.
@@ -47,6 +49,7 @@ impl EntryKind {
         Self::Operator,
         Self::Event,
         Self::Fault,
+        Self::Tally,
         Self::Recover,
         Self::Amend,
         Self::Resume,
@@ -67,6 +70,7 @@ impl EntryKind {
             Self::Operator => "OPERATOR",
             Self::Event => "EVENT",
             Self::Fault => "FAULT",
+            Self::Tally => "TALLY",
             Self::Recover => "RECOVER",
             Self::Amend => "AMEND",
             Self::Resume => "RESUME",

@@ -132,7 +132,7 @@ fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
     let mut lines: Vec<Line> = played.lines.iter().cloned().collect();
     while let Some(last) = lines.last() {
         match last.kind {
-            EntryKind::Fault => {}
+            EntryKind::Fault | EntryKind::Tally => {}
             EntryKind::Event => {
                 let event: Event = body(last)?;
                 if event.kind == EventKind::Hold && event.text == UNLOADING {

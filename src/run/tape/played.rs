@@ -118,6 +118,7 @@ impl Played {
             | EntryKind::Stroke
             | EntryKind::Step
             | EntryKind::Operator
+            | EntryKind::Tally
             | EntryKind::Event
             | EntryKind::Fault => {
                 self.doubt = None;

@@ -299,7 +299,21 @@ impl Rig for TapedRig<'_> {
     }
 
     fn tally(&self) -> Tally {
-        self.live.as_deref().map_or_else(Tally::default, Rig::tally)
+        let mut state = self.state.borrow_mut();
+        if state.playing() {
+            if state.next_kind() != Some(EntryKind::Tally) {
+                return Tally::default();
+            }
+            let tally = state.peek(EntryKind::Tally, "what was mended").unwrap_or_default();
+            state.consume();
+            return tally;
+        }
+        let tally = self.live.as_deref().map_or_else(Tally::default, Rig::tally);
+        if tally != Tally::default() {
+            // Of a record that cannot be kept the run knows already.
+            let _ = state.append(EntryKind::Tally, &tally);
+        }
+        tally
     }
 }
 

@@ -1,0 +1,33 @@
+//! The table of faults that a run on a real rig must survive, each shown in whole runs: the real drivers and the real rig
+//! over a simulated stand with a script of faults, in one thread and on the stand's own time. In: a plan, a script. Out:
+//! the record, the journal, the simulator's log. Every guard is also switched off, and its fault then gets through.
+//!
+//! | Row | Fault | Shown by |
+//! |---|---|---|
+//! | 10 | no reply | `line::a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held` |
+//! | 11 | parts of replies, two in one read | `line::a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply`, `line::a_reply_cut_anywhere_is_never_a_shorter_number` |
+//! | 12 | garbage, a megabyte without an end | `line::garbage_of_any_kind_is_counted_and_none_of_it_is_used` |
+//! | 13 | every bit of a reply flipped | `line::every_flipped_bit_of_a_reply_is_seen` |
+//! | 14 | doubled, late, out of turn | `line::a_doubled_a_late_and_an_old_reply_are_ignored`, `unnumbered::*` |
+//! | 16 | reboot | `device::a_rig_that_starts_anew_is_held_and_not_moved_any_more`, `unnumbered::a_start_of_grbl_is_seen` |
+//! | 18 | lag, stuck | `motion::a_ram_that_sticks_or_lags_is_a_following_error` |
+//! | 19 | sign, unit, scale, offset | `gate::*` |
+//! | 20 | what is no number | `device::what_is_no_number_is_never_integrated` |
+//! | 21 | saturation | `device::a_clipped_force_holds_the_rig` |
+//! | 22 | frozen sensor | `device::a_frozen_sensor_holds_the_rig` |
+//! | 23 | drift | `gate::the_drift_at_rest_is_told` |
+//! | 24 | spike | `device::a_spike_does_not_move_the_median` |
+//! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
+//! | 26 | targets beyond limits, no numbers | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
+//! | 27 | energy error | `motion::an_energy_error_beyond_its_limit_holds_the_rig` |
+//! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration` |
+//! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
+
+mod device;
+mod gate;
+mod line;
+mod long;
+mod motion;
+mod stage;
+mod targets;
+mod unnumbered;
