@@ -37,6 +37,8 @@ use exit::Failure;
 /// Runs one command line, the program's name first, and says how it ended.
 #[must_use]
 pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
+    // If it cannot be caught, a file that grows too large ends the program, and the rig's own watchdog holds.
+    let _ = watch::catch_full_files();
     let arguments = match args::Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {

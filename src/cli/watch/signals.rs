@@ -1,7 +1,9 @@
 //! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the
 //! second holds the rig now.
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use std::sync::Arc;
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator;
 
 use crate::rig::Wish;
@@ -23,6 +25,11 @@ impl Signals {
         });
         Ok(Self { handle })
     }
+}
+
+/// From here on a file that may not grow any further is a write that fails, and holds the rig, not the program's end.
+pub fn catch_full_files() -> std::io::Result<()> {
+    signal_hook::flag::register(SIGXFSZ, Arc::default()).map(drop)
 }
 
 /// One Ctrl-C: the first stops the run at the end of its step, the second holds the rig now.
