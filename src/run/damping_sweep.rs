@@ -192,7 +192,9 @@ impl Sweep {
             let pairs = self.pairs(stroke).len();
             let shown = readable(stroke.speed, Dimension::VELOCITY);
             let few = (!stroke.on_grid && pairs < FEW).then(|| {
-                format!("the strokes at {shown} give {pairs} steady pairs of readings: the line is too slow, or the stroke too short")
+                format!(
+                    "the strokes at {shown} give {pairs} steady pairs of readings: the line is too slow, or the stroke too short"
+                )
             });
             let off = [&stroke.out, &stroke.back].into_iter().filter(|_| !stroke.on_grid).find_map(|way| {
                 let moved = moved_at(&self.steps[way.clone()])?;
