@@ -107,6 +107,7 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
 /// The provenance that the record gives; the plan's own date counts where none was given on the command line.
 fn provenance_of(header: &Header, plan: &Plan) -> Provenance {
     let date = plan.particulars.iter().find(|(field, _)| *field == "date").map(|(_, date)| date.clone());
+    let date = date.or_else(|| header.began.as_ref().and_then(|began| began.get(..10)).map(str::to_owned));
     Provenance {
         run_id: header.run_id.clone(),
         psd_version: header.psd.clone(),
