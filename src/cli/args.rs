@@ -24,6 +24,8 @@ pub enum Command {
     Run(RunArguments),
     /// Goes on with a run on a real rig that was stopped or cut off
     Resume(ResumeArguments),
+    /// Makes the results of a run anew, from its record alone; nothing moves and nothing is overwritten
+    Report(ReportArguments),
     /// Proves that a run's record, targets and files belong together; nothing moves
     #[command(after_help = "Exit codes: 0 all is proven, 3 something is not.")]
     Verify {
@@ -220,6 +222,16 @@ pub struct ResumeArguments {
     /// Answers routine questions with yes
     #[arg(long)]
     pub yes: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// The run folder
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Where the results go, a new or empty folder [default: the run folder, if it has none]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -19,8 +19,20 @@ use crate::plan::Plan;
 use crate::run::tape::Recorded;
 use crate::verdict;
 
-/// Tells the verdict and writes every result. The files come back for who blesses or prints them.
+/// Tells the verdict and writes every result into the run's own folder. The files come back for who blesses or prints them.
 pub fn conclude(
+    folder: &Path,
+    plan: &Plan,
+    provenance: &Provenance,
+    recorded: &Recorded,
+    settings: Settings,
+) -> Result<(Exit, Vec<OutputFile>), Failure> {
+    conclude_into(folder, folder, plan, provenance, recorded, settings)
+}
+
+/// [`conclude`] of the record in `run_folder`, with the results written into `folder`.
+pub fn conclude_into(
+    run_folder: &Path,
     folder: &Path,
     plan: &Plan,
     provenance: &Provenance,
@@ -32,7 +44,7 @@ pub fn conclude(
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
     tell(&output::console::verdict_text(&run, settings.color));
     let mut files = output::everything(&run)?;
-    let journal = (JOURNAL.to_owned(), digest(&journal_of(folder))?);
+    let journal = (JOURNAL.to_owned(), digest(&journal_of(run_folder))?);
     let manifest = output::manifest_with(&files, &[journal]);
     let results = files.iter().filter(|file| file.path != manifest.path);
     results.chain([&manifest]).try_for_each(|file| write_new(folder, file))?;

@@ -18,6 +18,7 @@ mod plan_file;
 mod provenance;
 mod real_rig;
 mod record_file;
+mod report;
 mod resume;
 mod rig;
 mod run;
@@ -51,6 +52,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
     let outcome = match &arguments.command {
         args::Command::Run(arguments) => run::run(arguments, settings),
         args::Command::Resume(arguments) => resume::resume(arguments, settings),
+        args::Command::Report(arguments) => report::report(arguments, settings),
         args::Command::Verify { run } => verify::verify(run, settings),
         args::Command::Check(arguments) => check::check(arguments, settings),
         args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),

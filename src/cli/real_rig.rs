@@ -4,7 +4,7 @@ use super::args::PlanSettings;
 use super::exit::Failure;
 use super::record_file::Circumstances;
 use super::settings::Settings;
-use super::watch::{Attendance, Watcher};
+use super::watch::{Attendance, Signals, Watcher};
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, Wish, connect};
 use crate::run::tape::Wall;
@@ -18,9 +18,13 @@ pub struct Opened {
 /// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on.
 pub fn open(plan: &Plan, attendance: &Attendance, settings: Settings) -> Result<Opened, Failure> {
     let wish = Wish::default();
+    // Caught before the first byte: to be killed in the middle of a word is no way to leave a rig.
+    let early = Signals::caught(&wish).map_err(Failure::Signals)?;
     let connected = connect(&plan.rig, &plan.limits, &wish)?;
     let simulated = connected.rig.identity().simulated;
     let watcher = Watcher::new(settings, attendance, plan, simulated, wish).map_err(Failure::Signals)?;
+    // A signal that both heard counts twice, which holds at once: the safe side.
+    drop(early);
     Ok(Opened { connected, watcher })
 }
 

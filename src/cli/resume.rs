@@ -38,6 +38,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     };
     let (plan, provenance, amendment) = what_holds(arguments, &read)?;
 
+    // Before a port is opened or a byte written: the record, by the plan that is to go on.
+    tape::same_measure(&read.plan.rig, &plan.rig)?;
+    tape::rehearse(&plan, &read.played)?;
+
     let torn = storage.truncate_to(read.recovered.whole)?;
     let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
     if let Some(torn) = torn {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Component, Path};
 
 use super::exit::{Exit, Failure};
 use super::loader::plain;
@@ -15,6 +15,9 @@ use crate::diagnostic::excerpt::escape;
 use crate::record::Outcome;
 use crate::record::journal::EntryKind;
 use crate::run::tape;
+
+/// The largest file of a run folder that is read, bytes.
+const LISTED_BYTES: u64 = 1 << 30;
 
 /// What one part of the proof says.
 struct Finding {
@@ -75,6 +78,26 @@ fn record(read: record_file::ReadRecord, findings: &mut Vec<Finding>) {
     });
 }
 
+/// A file that a manifest names: a regular one inside the folder, through no link. Manifests may come from anybody.
+fn listed(run: &Path, name: &str) -> std::io::Result<Vec<u8>> {
+    let refused = |reason: &str| std::io::Error::new(std::io::ErrorKind::InvalidInput, reason);
+    let mut path = run.to_owned();
+    let mut metadata = None;
+    for part in Path::new(name).components() {
+        let Component::Normal(part) = part else { return Err(refused("lies outside the folder")) };
+        path.push(part);
+        metadata = Some(std::fs::symlink_metadata(&path)?);
+        if metadata.as_ref().is_some_and(std::fs::Metadata::is_symlink) {
+            return Err(refused("is a link"));
+        }
+    }
+    match metadata {
+        Some(metadata) if metadata.is_file() && metadata.len() <= LISTED_BYTES => std::fs::read(path),
+        Some(metadata) if metadata.is_file() => Err(refused("is larger than any run's")),
+        _ => Err(refused("is no file")),
+    }
+}
+
 /// Every file of the folder against its manifest.
 fn files(run: &Path) -> Result<Finding, Failure> {
     let path = run.join("manifest.sha256");
@@ -91,7 +114,7 @@ fn files(run: &Path) -> Result<Finding, Failure> {
             return Ok(Finding::wrong("files", "the manifest is no list of digests".to_owned()));
         };
         named.insert(name.to_owned());
-        match std::fs::read(run.join(name)) {
+        match listed(run, name) {
             Ok(bytes) if sha256(&bytes) == hash => {}
             Ok(_) => return Ok(Finding::wrong("files", format!("`{name}` is not the one of the manifest"))),
             Err(error) => return Ok(Finding::wrong("files", format!("`{name}`: {}", plain(&error)))),
@@ -101,4 +124,24 @@ fn files(run: &Path) -> Result<Finding, Failure> {
         return Ok(Finding::wrong("files", "the manifest does not name the record".to_owned()));
     }
     Ok(Finding::sound("files", format!("all {} are those of the manifest", named.len() - 1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_manifest_leads_nowhere_outside_its_folder() {
+        let root = tempfile::tempdir().unwrap();
+        let run = root.path().join("run");
+        std::fs::create_dir(&run).unwrap();
+        std::fs::write(root.path().join("secret"), "x").unwrap();
+        std::fs::write(run.join("own"), "x").unwrap();
+        std::os::unix::fs::symlink(root.path(), run.join("link")).unwrap();
+        assert_eq!(listed(&run, "own").unwrap(), b"x");
+        let absolute = root.path().join("secret").display().to_string();
+        for name in ["../secret", "link/secret", "link", "", ".", absolute.as_str()] {
+            assert!(listed(&run, name).is_err(), "{name}");
+        }
+    }
 }

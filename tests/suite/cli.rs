@@ -320,3 +320,23 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
     let summary: Value = serde_json::from_str(&bench.read("here/summary.json")).unwrap();
     assert_eq!((&summary["verdict"], &summary["procedures"]["hit"]["complete"]), (&"aborted".into(), &false.into()));
 }
+
+#[test]
+fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
+    let bench = Bench::new(&[("hit.psd", SOUND)]);
+    assert_eq!(bench.psd(&["run", "hit.psd", "--out", "run"]).code, Some(0));
+    assert_eq!(bench.psd(&["report", "run"]).code, Some(3), "nothing is overwritten");
+    let again = bench.psd(&["report", "run", "--out", "again"]);
+    assert_eq!(again.code, Some(0), "{}", again.stderr);
+    let mut diff = Command::new("diff");
+    let compared = diff.args(["-r", "-x", "journal.psdj", "run", "again"]).current_dir(bench.folder.path()).output().unwrap();
+    assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stdout));
+
+    // A record cut off after its last step but one: said before anything else.
+    let record = bench.read("run/journal.psdj");
+    let lines: Vec<&str> = record.lines().collect();
+    std::fs::create_dir(bench.path("cut")).unwrap();
+    std::fs::write(bench.path("cut/journal.psdj"), lines[..lines.len() - 4].join("\n") + "\n").unwrap();
+    assert_eq!(bench.psd(&["report", "cut"]).code, Some(3));
+    assert!(bench.read("cut/certificate.html").contains("INCOMPLETE: the record ends here"));
+}

@@ -2,7 +2,8 @@
 //! from which record on it is done again, or why it must not be. A target is sent again only if it never arrived.
 
 use super::entry::{Doubt, IntentBody, OperatorBody, RigBody, SampleBody};
-use super::played::{Played, Unplayable, body};
+use super::played::{Mismatch, Played, Unplayable, body};
+use crate::plan::RigPlan;
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
 use crate::rig::{Identity, Reading};
@@ -50,6 +51,12 @@ pub enum Refusal {
         "the force is {found} N, the record left it at {recorded} N, {band} N is allowed: look at the specimen, then say so with --accept-relaxation"
     )]
     Relaxed { recorded: f64, found: f64, band: f64 },
+    #[error("the plan is not the one of the record: {0}")]
+    Otherwise(#[from] Mismatch),
+    #[error("done again from its record, the run ends where it ended: {reason}")]
+    EndsAgain { reason: String },
+    #[error("`{what}` of the rig is no longer the one of the record: what was measured would mean something else")]
+    OtherMeasure { what: &'static str },
     #[error(transparent)]
     Unplayable(#[from] Unplayable),
 }
@@ -66,6 +73,29 @@ pub fn same_rig(recorded: &Identity, found: &Identity, re_referenced: bool) -> R
     if recorded.boot != found.boot && !re_referenced {
         let boot = |identity: &Identity| identity.boot.clone().unwrap_or_else(|| "none".to_owned());
         return Err(Refusal::Rebooted { recorded: boot(recorded), found: boot(found) });
+    }
+    Ok(())
+}
+
+/// Whether a number on record means the same place and the same force by another plan: no amendment may turn or scale them.
+///
+/// # Errors
+/// Sign, calibration or dialect differ.
+pub fn same_measure(recorded: &RigPlan, now: &RigPlan) -> Result<(), Refusal> {
+    let dialects = |rig: &RigPlan| {
+        let link = rig.link.as_real();
+        link.map(|link| (link.actuator.dialect.clone(), link.load_cell.as_ref().map(|cell| cell.dialect.clone())))
+    };
+    let scale = |rig: &RigPlan| (rig.calibration.newtons_per_count.map(f64::to_bits), rig.calibration.zero_count.to_bits());
+    let differs = |what| Err(Refusal::OtherMeasure { what });
+    if recorded.sign.to_bits() != now.sign.to_bits() {
+        return differs("sign");
+    }
+    if scale(recorded) != scale(now) {
+        return differs("calibration");
+    }
+    if dialects(recorded) != dialects(now) {
+        return differs("link");
     }
     Ok(())
 }
@@ -128,7 +158,7 @@ pub fn decide(
 }
 
 /// The records without what only says that the run stopped: those are said anew, or no more.
-fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
+pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
     let mut lines: Vec<Line> = played.lines.iter().cloned().collect();
     while let Some(last) = lines.last() {
         match last.kind {

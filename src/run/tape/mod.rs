@@ -14,11 +14,12 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use decide::{Bands, Decision, Refusal, decide, same_rig};
+pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_rig};
 pub use entry::{AmendBody, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody, StrokeBody};
 pub use observer::TapedObserver;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;
+pub use state::CUT_OFF;
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -50,6 +51,25 @@ pub fn replay(plan: &Plan, played: Played) -> Replayed {
     let state = State::replaying(played);
     let Recorded { record, mismatch, .. } = perform(plan, None, &mut Unwatched, state);
     Replayed { record, mismatch }
+}
+
+/// Plays a record that is to be gone on with, without a rig: before anything is opened it is known that the plan asks for
+/// the very targets on record, and does not end again where the record ends.
+///
+/// # Errors
+/// The plan and the record part ways, or the run would only end again.
+pub fn rehearse(plan: &Plan, played: &Played) -> Result<(), Refusal> {
+    let lines = decide::without_the_end(played)?.into();
+    let Replayed { record, mismatch } = replay(plan, Played { lines, ..played.clone() });
+    if let Some(mismatch) = mismatch {
+        return Err(mismatch.into());
+    }
+    match record.outcome {
+        Outcome::Aborted { reason } | Outcome::Faulted { reason } if !reason.contains(state::CUT_OFF) => {
+            Err(Refusal::EndsAgain { reason })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Plays a record back and goes on with it on the rig. RESUME stands in the journal already and is the last of `played`.
@@ -88,6 +108,11 @@ fn perform(plan: &Plan, rig: Option<&mut dyn Rig>, observer: &mut dyn Observer, 
     let mut observer = TapedObserver::new(observer, Rc::clone(&state));
     let mut record = run(plan, &mut rig, &mut observer);
     let mut state = state.borrow_mut();
+    if record.outcome == Outcome::Completed && state.mismatch().is_none() && state.next_kind().is_some() {
+        // What is on record beyond the plan's end belongs to another plan.
+        let reason = state.disagrees("its end".to_owned()).to_string();
+        record.outcome = Outcome::Faulted { reason };
+    }
     add_interruptions(&mut record, state.take_interruptions());
     if state.mismatch().is_none() && record.outcome == Outcome::Completed {
         state.end();

@@ -223,9 +223,11 @@ impl State {
     }
 }
 
-/// Of a record without an end, when it has been played.
+/// Said where a record without an end has been played.
+pub const CUT_OFF: &str = "the record ends here: the run was cut off";
+
 pub(super) fn ended() -> RigFault {
-    RigFault::Device("the record ends here: the run was cut off".to_owned())
+    RigFault::Device(CUT_OFF.to_owned())
 }
 
 fn unkept(fault: &JournalFault) -> RigFault {

@@ -450,3 +450,33 @@ fn a_disk_that_fails_holds_the_rig_and_nothing_more_is_sent() {
     }
     assert_eq!(stopped, 54);
 }
+
+#[test]
+fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
+    let plan = plan();
+    let (_, _, bytes) = recorded(&plan);
+    let (mut recovered, _) = played(&bytes);
+    recovered.lines.pop();
+    recovered.ended = false;
+    let steps = recovered.lines.iter().rposition(|line| line.kind == EntryKind::Intent).unwrap();
+    recovered.lines.truncate(steps);
+    let cut_off = Played::of(&recovered).unwrap();
+    rehearse(&plan, &cut_off).unwrap();
+
+    let mut other = plan.clone();
+    if let ProcedureKind::StiffnessRamp(ramp) = &mut other.procedures[0].kind {
+        ramp.displacements[0] = crate::formula::Formula::Constant(5e-5);
+    }
+    assert!(matches!(rehearse(&other, &cut_off), Err(Refusal::Otherwise(_))), "another target than the recorded one");
+    let mut shorter = plan.clone();
+    shorter.procedures.truncate(1);
+    assert!(matches!(rehearse(&shorter, &cut_off), Err(Refusal::Otherwise(_))), "the record goes on beyond the plan");
+    let mut narrow = plan.clone();
+    narrow.limits.displacement.high = 1e-6;
+    assert!(rehearse(&narrow, &cut_off).is_err(), "a limit that the record is past already");
+
+    let mut turned = plan.rig.clone();
+    same_measure(&plan.rig, &turned).unwrap();
+    turned.sign = -turned.sign;
+    assert_eq!(same_measure(&plan.rig, &turned), Err(Refusal::OtherMeasure { what: "sign" }));
+}
