@@ -136,7 +136,7 @@ mod tests {
         lines.procedure_started("k0", "stiffness ramp", Some(2));
         lines.step_done(&step(1, 0.1, 0.002_002, -600.0));
         lines.step_done(&step(2, 0.2, 0.001, 10.0));
-        assert_eq!(lines.line("k0"), "  k0: stiffness ramp, 2 steps, largest X 2.000 mm, largest R 0.6000 kN\n");
+        assert_eq!(lines.line("k0"), "  k0: stiffness ramp, 2 steps, largest X 2.000 mm, largest R 600.0 N\n");
         lines.procedure_started("look", "inspect", Some(0));
         assert_eq!(lines.line("lo\u{1b}ok"), "  lo\\u{1b}ok: inspect\n");
     }

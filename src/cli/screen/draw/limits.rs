@@ -8,7 +8,7 @@ use ratatui::text::{Line, Span};
 use super::{View, head};
 use crate::cli::screen::model::LimitRow;
 use crate::quantity::Dimension;
-use crate::quantity::display::{plain, readable};
+use crate::quantity::display::{plain, readable, stated};
 
 /// Widths of the name, of either end, and of the margin.
 const NAME: usize = 15;
@@ -56,7 +56,7 @@ fn end(bound: f64, dimension: Dimension) -> String {
     } else if dimension == Dimension::NUMBER {
         format!("{} %", plain(bound * 100.0, dimension, 3))
     } else {
-        plain(bound, dimension, 3)
+        stated(bound, dimension)
     }
 }
 
