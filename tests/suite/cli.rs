@@ -226,7 +226,7 @@ fn check_draws_on_stderr_and_gives_json_on_stdout() {
 fn explain_predicts_the_run_on_stdout() {
     let bench = Bench::new(&[("small.psd", SOUND)]);
     let text = bench.psd(&["check", "--explain", "small.psd"]).with(0).stdout;
-    for expected in ["critical time step", "34.71 ms", "10.00 ms", "0.1579 m", "Limits", "-0.1000 .. 0.2000 m", "stays in travel"]
+    for expected in ["critical time step", "34.71 ms", "10.00 ms", "0.1579 m", "Limits", "−0.1000 .. 0.2000 m", "stays in travel"]
     {
         assert!(text.contains(expected), "{expected} in\n{text}");
     }

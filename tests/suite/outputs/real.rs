@@ -1,0 +1,155 @@
+//! What the outputs of a run on a real rig say of it: its standing, its equipment, its record.
+
+use psd::output::standing::{self, Standing};
+use psd::output::{RealRun, console};
+use psd::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, ReadingRules, RealLink, SafeState};
+use psd::record::{Event, EventKind, Outcome};
+
+use super::fixture::{Finished, finished};
+use super::{files, text};
+
+/// A test of a specimen that lacks nothing.
+fn real() -> Finished {
+    let mut finished = finished();
+    finished.plan.rig.link = Link::Real(RealLink {
+        actuator: DeviceLink {
+            port: PortPlan::Serial { path: "/dev/ttyUSB7".into(), baud: 115_200 },
+            dialect: Dialect::Native,
+            reply_timeout: 0.1,
+            serial_number: Some("PSD-0001".into()),
+        },
+        load_cell: Some(DeviceLink {
+            port: PortPlan::Tcp { address: "10.0.0.7:5025".into() },
+            dialect: Dialect::Indicator,
+            reply_timeout: 0.1,
+            serial_number: None,
+        }),
+        safe_state: SafeState::Hold,
+        gate: Gate { zero: 20.0, probe: 20e-6, stiffness: Interval { low: 250e3, high: 350e3 } },
+        readings: ReadingRules {
+            samples: 5,
+            rate: 100.0,
+            resolution: 1e-6,
+            noise: 2.0,
+            force_range: Interval { low: -15e3, high: 15e3 },
+            frozen_after: 50,
+        },
+        watchdog: 2.0,
+        own_speed: 1e-3,
+    });
+    finished.plan.rig.calibration =
+        Calibration { reference: Some("UKAS 4711".into()), due: Some("2027-03-01".into()), ..Calibration::default() };
+    finished.record.rig.simulated = false;
+    finished.record.rig.boot = Some("7F3A".into());
+    finished.provenance.real = Some(RealRun {
+        operator: Some("A. Tester".into()),
+        host: Some("rig-pc".into()),
+        began: Some("2027-02-28T23:58:00.000Z".into()),
+        ended: Some("2027-03-01T00:04:00.000Z".into()),
+        sealed: Some((1234, "c0ffee".repeat(10) + "abcd")),
+    });
+    finished
+}
+
+fn missing(finished: &Finished) -> Vec<String> {
+    match standing::of(&finished.run()) {
+        Standing::NotCertifiable { missing } => missing,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with() {
+    let finished = real();
+    assert_eq!(standing::of(&finished.run()), Standing::Certifiable);
+    let files = files(&finished);
+    let html = text(&files, "certificate.html").replace('\u{a0}', " ");
+    for told in [
+        "serial, 115200 baud",
+        "TCP",
+        "only serial number PSD-0001",
+        "7F3A",
+        "UKAS 4711",
+        "2027-03-01; the test ended on 2027-03-01",
+        "displacement to 1 µm",
+        "median of 5 settled readings",
+        "at most 20 N at rest; 250 kN/m to 350 kN/m in a move of 20 µm",
+        "A. Tester",
+        "rig-pc",
+        "<td>1234</td>",
+        "c0ffee",
+    ] {
+        assert!(html.contains(told), "{told}");
+    }
+    for secret in ["ttyUSB7", "10.0.0.7", "class=\"watermark\"", "REHEARSAL", "NOT CERTIFIABLE", "Seed"] {
+        assert!(!html.contains(secret), "{secret}");
+    }
+    let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
+    assert_eq!((&summary["standing"], &summary["record"]["records"]), (&"certifiable".into(), &1234.into()));
+    assert_eq!(summary["procedures"]["hit"]["results"]["contacts"]["value"].to_string(), "6");
+    assert!(!console::verdict_text(&finished.run(), false).contains("CERTIFIABLE"));
+}
+
+#[test]
+fn what_a_certificate_must_state_and_lacks_is_named() {
+    let mut anonymous = real();
+    anonymous.provenance.real.as_mut().unwrap().operator = Some("  ".into());
+    assert_eq!(missing(&anonymous), ["the operator's name"]);
+    let mut uncalibrated = real();
+    uncalibrated.plan.rig.calibration = Calibration::default();
+    assert_eq!(missing(&uncalibrated), ["the calibration's reference", "the day until which the calibration holds"]);
+    // It held when the run began, and no more when it ended, a day later.
+    let mut expired = real();
+    expired.plan.rig.calibration.due = Some("2027-02-28".into());
+    assert_eq!(missing(&expired), ["a valid calibration (it held until 2027-02-28, the test ended on 2027-03-01)"]);
+    let files = files(&expired);
+    let html = text(&files, "certificate.html");
+    assert!(html.contains("class=\"watermark\"") && html.contains("NOT CERTIFIABLE") && html.contains("EXPIRED"));
+    assert!(console::verdict_text(&expired.run(), false).contains("(NOT CERTIFIABLE: lacks a valid calibration"));
+    // Without times in the record the plan's own date is judged, and a date that is none is none.
+    let mut undated = real();
+    undated.provenance.real = Some(RealRun { operator: Some("A. Tester".into()), ..RealRun::default() });
+    undated.provenance.date = Some("next week, perhaps".into());
+    assert_eq!(missing(&undated), ["the day of the test"]);
+    undated.provenance.date = Some("2026-05-31".into());
+    assert_eq!(standing::of(&undated.run()), Standing::Certifiable);
+}
+
+#[test]
+fn a_simulated_rig_on_a_real_line_is_marked_across_the_page_whatever_else_is_wrong() {
+    let mut rehearsed = real();
+    rehearsed.record.rig.simulated = true;
+    assert_eq!(standing::of(&rehearsed.run()), Standing::Rehearsal);
+    rehearsed.record.outcome = Outcome::Aborted { reason: "stopped on request".into() };
+    assert_eq!(standing::grounds(&rehearsed.run()), [Standing::Rehearsal, Standing::Incomplete]);
+    let files = files(&rehearsed);
+    let html = text(&files, "certificate.html");
+    assert!(html.contains("<div>REHEARSAL ON A SIMULATED RIG</div><div>INCOMPLETE</div>"));
+    // The virtual rig of the blessed reports has no word across its page.
+    assert!(!text(&super::files(&finished()), "certificate.html").contains("watermark"));
+}
+
+#[test]
+fn what_went_otherwise_comes_before_the_requirements() {
+    let mut finished = real();
+    let event = |kind, text: &str| Event { time: 1.0, procedure: None, step: None, kind, text: text.into() };
+    finished.plan.particulars.push(("deviations", "The supports were greased".into()));
+    finished.record.events = vec![
+        event(EventKind::Note, "gate passed: 0.1 N at rest"),
+        event(EventKind::Note, "line: 3 frames sent again"),
+        event(EventKind::Resume, "resumed by B. Second: power came back"),
+        event(EventKind::Inspection, "look: no crack (A. Tester)"),
+    ];
+    let files = files(&finished);
+    let html = text(&files, "certificate.html");
+    let at = |words: &str| html.find(words).unwrap_or_else(|| panic!("{words}"));
+    let order = [
+        "The supports were greased.",
+        "Line: 3 frames sent again.",
+        "resumed by B. Second",
+        "no crack (A. Tester)",
+        "<h2>Requirements",
+        "Gate, found</th><td>0.1 N at rest",
+    ];
+    assert!(order.map(at).is_sorted(), "{:?}", order.map(at));
+}
