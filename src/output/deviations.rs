@@ -3,11 +3,15 @@
 
 use super::Run;
 use crate::record::{EventKind, Outcome};
+use crate::run::rehearsal;
 
 /// Every deviation and interruption of the run.
 pub(super) fn of(run: &Run<'_>) -> Vec<String> {
     let mut found: Vec<String> =
         run.plan.settings.iter().map(|(name, value)| format!("Parameter {name} was set to {value} for this run.")).collect();
+    if let Some(told) = rehearsal::told(run.plan) {
+        found.insert(0, format!("Rehearsal: {told}."));
+    }
     match &run.record.outcome {
         Outcome::Completed => {}
         Outcome::Aborted { reason } => found.push(format!("The run was stopped: {reason}.")),

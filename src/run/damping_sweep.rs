@@ -187,14 +187,18 @@ impl Sweep {
             let pairs = self.pairs(stroke).len();
             let shown = readable(stroke.speed, Dimension::VELOCITY);
             let few = (!stroke.on_grid && pairs < FEW).then(|| {
-                format!("the strokes at {shown} give {pairs} steady pairs of readings: the line is too slow, or the stroke too short")
+                format!(
+                    "the strokes at {shown} give {pairs} steady pairs of readings: the line is too slow, or the stroke too short"
+                )
             });
             let off = [&stroke.out, &stroke.back].into_iter().filter(|_| !stroke.on_grid).find_map(|way| {
                 let moved = moved_at(&self.steps[way.clone()])?;
                 let error = (moved.slope.abs() - stroke.speed).abs();
                 let differs = error > OFF_SPEED * stroke.speed + 3.0 * moved.slope_error;
                 let measured = readable(moved.slope.abs(), Dimension::VELOCITY);
-                differs.then(|| format!("the piston went at {measured} where {shown} was asked for: c is as wrong as that"))
+                differs.then(|| {
+                    format!("by the times of the readings the piston went at {measured}, not at {shown}: c is as wrong as that")
+                })
             });
             few.into_iter().chain(off)
         };

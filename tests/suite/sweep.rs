@@ -71,8 +71,7 @@ fn over_a_line(baud: f64, seed: u64) -> Record {
     let shared = InProcess::new(stand).at_baud(baud);
     let link = plan.rig.link.as_real().expect("a real rig");
     let (wish, clock) = (Wish::default(), || Box::new(shared.clock()));
-    let actuator =
-        device::open(&link.actuator, Box::new(shared.port(0)), clock(), wish.clone(), plan.rig.settle.timeout);
+    let actuator = device::open(&link.actuator, Box::new(shared.port(0)), clock(), wish.clone(), plan.rig.settle.timeout);
     let mut rig = RealRig::open(&plan.rig, &plan.limits, actuator, None, clock(), wish).expect("it answers");
     run(&plan, &mut rig, &mut Unwatched)
 }

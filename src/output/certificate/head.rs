@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::super::{Run, deviations, number, summary};
 use super::title;
 use crate::record::{EventKind, Outcome};
+use crate::run::rehearsal;
 use crate::verdict::{RequirementOutcome, Verdict};
 
 /// Title, run id, verdict and marks.
@@ -31,6 +32,12 @@ pub(super) fn title_and_verdict(run: &Run<'_>) -> Markup {
                 span.mark { "REHEARSAL" }
                 span.mark { "NOT CERTIFIABLE" }
                 span { "Simulated rig: rehearsal, not a test of a specimen." }
+            }
+        } @else if rehearsal::told(run.plan).is_some() {
+            div.marks {
+                span.mark { "REHEARSAL" }
+                span.mark { "NOT CERTIFIABLE" }
+                span { "Only the gate and the leading stiffness ramps ran on the rig: not the test of the plan." }
             }
         }
     }

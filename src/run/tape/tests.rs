@@ -168,6 +168,7 @@ fn header() -> Header {
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
+        rehearsal: false,
         date: None,
         operator: None,
         host: None,
