@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Run, deviations, number, summary};
+use crate::run::rehearsal;
 use crate::verdict::Verdict;
 
 /// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
@@ -15,7 +16,11 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         "{}  {}{}",
         paint(run.assessment.verdict, &run.assessment.verdict.name().to_uppercase()),
         printable(&run.plan.title),
-        if run.record.rig.simulated { "  (simulated rig: rehearsal)" } else { "" }
+        match (rehearsal::told(run.plan).is_some(), run.record.rig.simulated) {
+            (true, _) => "  (REHEARSAL: not the test of the plan)",
+            (false, true) => "  (simulated rig: rehearsal)",
+            (false, false) => "",
+        }
     );
     if run.assessment.requirements.is_empty() {
         text.push_str("  no requirement\n");

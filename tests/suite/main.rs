@@ -11,5 +11,6 @@ mod outputs;
 mod physics;
 mod plans;
 mod reference;
+mod rehearse;
 mod serve;
 mod sweep;

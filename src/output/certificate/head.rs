@@ -47,6 +47,9 @@ fn sentence(run: &Run<'_>) -> String {
     let all = &run.assessment.requirements;
     let with = |verdict: Verdict| all.iter().filter(|requirement| requirement.verdict == verdict).count();
     match run.assessment.verdict {
+        Verdict::Pass if rehearsal::told(run.plan).is_some() => {
+            "A rehearsal decides no requirement: it came to its end.".to_owned()
+        }
         Verdict::Pass if all.is_empty() => "The plan states no requirement.".to_owned(),
         Verdict::Pass if all.len() == 1 => "The requirement is met.".to_owned(),
         Verdict::Pass => format!("All {} requirements are met.", all.len()),
