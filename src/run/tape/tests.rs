@@ -68,7 +68,7 @@ impl Rig for Standing {
         let mut due = 0_usize;
         self.0.borrow_mut().rig.traverse(targets, velocity, samples, &mut |reading| {
             due += 1;
-            if due % 5 == 0 { Ok(()) } else { each(reading) }
+            if due.is_multiple_of(5) { Ok(()) } else { each(reading) }
         })
     }
     fn hold(&mut self) {
