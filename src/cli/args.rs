@@ -190,6 +190,10 @@ pub struct RunArguments {
     /// Also replaces the blessed results in reports/PLAN, beside the plan's folder
     #[arg(long)]
     pub bless: bool,
+    /// Runs only the gate and the leading stiffness ramps, on record; predicts the rest on a virtual specimen that is as
+    /// stiff, and how far it stays from each limit. Exit code 4: a limit would stop the run
+    #[arg(long, conflicts_with = "bless")]
+    pub rehearse: bool,
 }
 
 #[derive(Debug, Args)]

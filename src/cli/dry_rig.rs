@@ -30,15 +30,17 @@ pub struct Reach {
 /// The rig. It shares what it notes with the observer that hears which procedure runs.
 pub struct Watched {
     inner: VirtualRig,
+    /// Of the rig that it stands for, m/s.
+    own_speed: Option<f64>,
     reaches: Rc<RefCell<Vec<Reach>>>,
     target: f64,
 }
 
 impl Watched {
-    /// Runs `plan` on its own virtual rig.
-    pub fn run(plan: &Plan) -> (Record, Vec<Reach>) {
+    /// Runs `plan` on its own virtual rig. `own_speed` is that of the rig that it stands for, m/s.
+    pub fn run(plan: &Plan, own_speed: Option<f64>) -> (Record, Vec<Reach>) {
         let reaches = Rc::new(RefCell::new(Vec::new()));
-        let mut rig = Self { inner: VirtualRig::of_plan(plan), reaches: Rc::clone(&reaches), target: 0.0 };
+        let mut rig = Self { inner: VirtualRig::of_plan(plan), own_speed, reaches: Rc::clone(&reaches), target: 0.0 };
         let record = run::run(plan, &mut rig, &mut Listener { reaches: Rc::clone(&reaches) });
         let noted = reaches.borrow().clone();
         (record, noted)
@@ -140,6 +142,10 @@ impl Rig for Watched {
 
     fn declared_noise(&self) -> DeclaredNoise {
         self.inner.declared_noise()
+    }
+
+    fn own_speed(&self) -> Option<f64> {
+        self.own_speed
     }
 }
 

@@ -74,6 +74,8 @@ pub enum Failure {
     Journal(#[from] crate::record::journal::JournalFault),
     #[error("{0}")]
     Rig(#[from] crate::rig::RigFault),
+    #[error("no rehearsal: {0}")]
+    Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
     #[error("the run cannot go on: {0}")]
     Refused(#[from] crate::run::tape::Refusal),
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
@@ -100,7 +102,7 @@ impl Failure {
 
     pub const fn exit(&self) -> Exit {
         match self {
-            Self::CommandLine { .. } | Self::NotAPlan { .. } => Exit::Wrong,
+            Self::CommandLine { .. } | Self::NotAPlan { .. } | Self::Unrehearsed(_) => Exit::Wrong,
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted) => Exit::Stopped,
             Self::File { .. }
             | Self::Output(_)

@@ -62,6 +62,8 @@ impl<'a> Explained<'a> {
 /// A run that moved nothing but numbers.
 pub struct DryRun<'a> {
     plan: &'a Plan,
+    /// What it ran on, in words.
+    model: String,
     record: Record,
     reaches: Vec<Reach>,
     assessment: Assessment,
@@ -72,9 +74,16 @@ impl<'a> DryRun<'a> {
         let mut ideal = plan.clone();
         let seed = plan.rig.link.as_virtual().map_or(0, |link| link.seed);
         ideal.rig.link = Link::Virtual(VirtualLink { seed, ..VirtualLink::default() });
-        let (record, reaches) = Watched::run(&ideal);
-        let assessment = verdict::assess(&ideal, &record);
-        Self { plan, record, reaches, assessment }
+        let model =
+            format!("dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift", plan.rig.name);
+        Self::on(plan, &ideal, model)
+    }
+
+    /// Runs the plan as `stand_in` has it, whose rig is virtual.
+    pub fn on(plan: &'a Plan, stand_in: &Plan, model: String) -> Self {
+        let (record, reaches) = Watched::run(stand_in, plan.rig.link.as_real().map(|link| link.own_speed));
+        let assessment = verdict::assess(stand_in, &record);
+        Self { plan, model, record, reaches, assessment }
     }
 
     /// A dry run that a limit stops ends as the run would.
@@ -88,11 +97,7 @@ impl<'a> DryRun<'a> {
 
     pub fn text(&self, settings: Settings) -> String {
         let mut text = format!("{}\n", settings.paint_heading(&escape(&self.plan.title)));
-        let _ = writeln!(
-            text,
-            "dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift\n",
-            self.plan.rig.name
-        );
+        let _ = writeln!(text, "{}\n", self.model);
         let mut section = |heading: &str, rows: Vec<Vec<String>>| {
             if !rows.is_empty() {
                 let _ = writeln!(text, "{}\n{}", settings.paint_heading(heading), columns(&rows));
@@ -111,13 +116,25 @@ impl<'a> DryRun<'a> {
         match &self.record.outcome {
             Outcome::Completed => {}
             Outcome::Aborted { reason } => {
-                let _ = writeln!(text, "{}", settings.paint_heading(&format!("The run would be stopped: {}", escape(reason))));
+                let place = self.stopped_in();
+                let told = format!("The run would be stopped{place}: {}", escape(reason));
+                let _ = writeln!(text, "{}", settings.paint_heading(&told));
             }
             Outcome::Faulted { reason } => {
                 let _ = writeln!(text, "{}", settings.paint_heading(&format!("The rig would fail: {}", escape(reason))));
             }
         }
         text
+    }
+
+    /// ` in hit, step 12`: where it was stopped.
+    fn stopped_in(&self) -> String {
+        let last = self.record.events.iter().rev().find(|event| event.procedure.is_some());
+        last.map_or_else(String::new, |event| {
+            let name = event.procedure.as_deref().map_or_else(String::new, |name| format!(" in {name}"));
+            let next = event.step.map_or(1, |step| step + 1);
+            format!("{name}, step {next}")
+        })
     }
 
     /// One row a procedure: how far, how hard, how fast, how long.

@@ -18,6 +18,7 @@ mod plan_file;
 mod provenance;
 mod real_rig;
 mod record_file;
+mod rehearse;
 mod report;
 mod resume;
 mod rig;

@@ -8,6 +8,7 @@ use sha2::{Digest as _, Sha256};
 use super::record_file::Circumstances;
 use crate::output::{Provenance, RealRun};
 use crate::plan::Plan;
+use crate::run::rehearsal;
 
 /// The provenance of a run of `plan` by this version of the program.
 pub fn of(plan: &Plan) -> Provenance {
@@ -63,6 +64,10 @@ fn run_id(plan: &Plan, version: &str) -> String {
     }
     part(&plan.rig.name);
     part(&plan.rig.link.as_virtual().map_or(0, |link| link.seed).to_string());
+    // A rehearsal is not the run that it rehearses.
+    if rehearsal::told(plan).is_some() {
+        digest.update(rehearsal::REHEARSAL);
+    }
     hex(&digest.finalize())[..16].to_owned()
 }
 

@@ -10,6 +10,7 @@ use crate::check::{LoadFault, Loader, Options, check};
 use crate::output::{Provenance, RealRun};
 use crate::plan::Plan;
 use crate::record::journal::{Line, Recovered, recover};
+use crate::run::rehearsal;
 use crate::run::tape::{Header, HeaderFile, Played};
 
 /// Name of the journal in its run folder.
@@ -41,6 +42,7 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
+        rehearsal: rehearsal::told(plan).is_some(),
         date: settings.date.clone(),
         operator,
         host,
@@ -97,11 +99,12 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
     };
     let options = Options { rig: header.rig.clone(), settings: header.settings.clone(), date: header.date.clone() };
     let checked = check(&first.name, text, &files, &options);
-    checked.plan.ok_or_else(|| {
+    let plan = checked.plan.ok_or_else(|| {
         let fault = checked.diagnostics.iter().find(|found| found.is_error());
         let fault = fault.map_or_else(String::new, |fault| format!(": {}", fault.message));
         format!("this version of psd finds the recorded plan faulty{fault}")
-    })
+    })?;
+    if header.rehearsal { rehearsal::measured_part(&plan).map_err(|fault| fault.to_string()) } else { Ok(plan) }
 }
 
 /// The provenance that the record gives; the plan's own date counts where none was given on the command line.

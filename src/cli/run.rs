@@ -7,6 +7,7 @@ use super::conclude::conclude;
 use super::exit::{Exit, Failure};
 use super::output::{give, tell};
 use super::record_file::{self, Circumstances, journal_of};
+use super::rehearse::rehearse;
 use super::run_folder::RunFolder;
 use super::settings::Settings;
 use super::watch::{Attendance, Watcher};
@@ -28,12 +29,11 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         }
         return Ok(Exit::Wrong);
     };
+    if arguments.rehearse {
+        return rehearse(plan, arguments, settings);
+    }
     let blessed = arguments.bless.then(|| BlessedFolder::of(&arguments.plan)).transpose()?;
-    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
-    let (folder, provenance, recorded) = match plan.rig.link {
-        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, &attendance, settings)?,
-        Link::Real(_) => on_a_real_rig(plan, arguments, &attendance, settings)?,
-    };
+    let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, settings)?;
     let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         if exit <= Exit::Missed {
@@ -50,7 +50,21 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     Ok(exit)
 }
 
-type Ran = (RunFolder, Provenance, Recorded);
+/// A run that came to an end, one way or another.
+pub(super) struct Ran {
+    pub(super) folder: RunFolder,
+    pub(super) provenance: Provenance,
+    pub(super) recorded: Recorded,
+}
+
+/// Runs the plan on the rig that it names, and keeps the record.
+pub(super) fn on_its_rig(plan: &Plan, arguments: &RunArguments, settings: Settings) -> Result<Ran, Failure> {
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    match plan.rig.link {
+        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, &attendance, settings),
+        Link::Real(_) => on_a_real_rig(plan, arguments, &attendance, settings),
+    }
+}
 
 /// Nothing is read of the machine, and no time passes.
 fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
@@ -61,7 +75,7 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
     let journal = begin(&folder, plan, &header)?;
     let recorded = tape::record(plan, &mut VirtualRig::of_plan(plan), &mut watcher, journal, Box::new(|| None));
     watcher.finish();
-    Ok((folder, provenance, recorded))
+    Ok(Ran { folder, provenance, recorded })
 }
 
 /// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
@@ -75,7 +89,7 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let wall = real_rig::wall_clock();
     let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
     opened.watcher.finish();
-    Ok((folder, provenance, recorded))
+    Ok(Ran { folder, provenance, recorded })
 }
 
 /// Opens the record of a run that is about to begin.
@@ -87,6 +101,6 @@ fn begin(folder: &RunFolder, plan: &Plan, header: &tape::Header) -> Result<Journ
     Ok(journal)
 }
 
-fn summary(files: &[OutputFile]) -> &[u8] {
+pub(super) fn summary(files: &[OutputFile]) -> &[u8] {
     files.iter().find(|file| file.path == "summary.json").map_or(&[], |file| &file.bytes)
 }

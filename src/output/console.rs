@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::standing::Standing;
 use super::{Run, deviations, number, standing, summary};
+use crate::run::rehearsal;
 use crate::verdict::Verdict;
 
 /// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
@@ -16,7 +17,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         "{}  {}{}",
         paint(run.assessment.verdict, &run.assessment.verdict.name().to_uppercase()),
         printable(&run.plan.title),
-        standing_text(&standing::of(run))
+        standing_text(&standing::of(run), rehearsal::told(run.plan).is_some())
     );
     if run.assessment.requirements.is_empty() {
         text.push_str("  no requirement\n");
@@ -52,9 +53,10 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
 }
 
 /// What the report may be taken for, where it is no certificate.
-fn standing_text(standing: &Standing) -> String {
+fn standing_text(standing: &Standing, rehearsed: bool) -> String {
     match standing {
         Standing::Certifiable => String::new(),
+        Standing::Rehearsal if rehearsed => "  (REHEARSAL: not the test of the plan)".to_owned(),
         Standing::Rehearsal => "  (simulated rig: rehearsal)".to_owned(),
         Standing::Incomplete => "  (INCOMPLETE)".to_owned(),
         Standing::NotCertifiable { missing } => format!("  (NOT CERTIFIABLE: lacks {})", printable(&missing.join(", "))),

@@ -3,6 +3,7 @@
 
 use super::Run;
 use crate::record::{EventKind, Outcome};
+use crate::run::rehearsal;
 
 /// Every deviation and interruption of the run.
 pub(super) fn of(run: &Run<'_>) -> Vec<String> {
@@ -10,6 +11,9 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
     let mut found: Vec<String> = stated.map(|(_, text)| format!("{}.", text.trim_end_matches('.'))).collect();
     let set = |(name, value): &(String, String)| format!("Parameter {name} was set to {value} for this run.");
     found.extend(run.plan.settings.iter().map(set));
+    if let Some(told) = rehearsal::told(run.plan) {
+        found.insert(0, format!("Rehearsal: {told}."));
+    }
     match &run.record.outcome {
         Outcome::Completed => {}
         Outcome::Aborted { reason } => found.push(format!("The run was stopped: {reason}.")),

@@ -3,13 +3,14 @@
 
 use super::Run;
 use crate::record::Outcome;
+use crate::run::rehearsal;
 
 /// Whether a report may be signed as one of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// A real rig, a run to its end, nothing missing.
     Certifiable,
-    /// Nothing real moved.
+    /// Nothing real moved, or only the beginning of the plan ran, to predict the rest.
     Rehearsal,
     /// The run did not come to its end, or its record has none.
     Incomplete,
@@ -41,7 +42,7 @@ pub fn of(run: &Run<'_>) -> Standing {
 pub fn grounds(run: &Run<'_>) -> Vec<Standing> {
     let missing = missing(run);
     let mut grounds = Vec::new();
-    if run.record.rig.simulated {
+    if run.record.rig.simulated || rehearsal::told(run.plan).is_some() {
         grounds.push(Standing::Rehearsal);
     }
     if run.record.outcome != Outcome::Completed {

@@ -201,7 +201,9 @@ impl Sweep {
                 let error = (moved.slope.abs() - stroke.speed).abs();
                 let differs = error > OFF_SPEED * stroke.speed + 3.0 * moved.slope_error;
                 let measured = readable(moved.slope.abs(), Dimension::VELOCITY);
-                differs.then(|| format!("the piston went at {measured} where {shown} was asked for: c is as wrong as that"))
+                differs.then(|| {
+                    format!("by the times of the readings the piston went at {measured}, not at {shown}: c is as wrong as that")
+                })
             });
             few.into_iter().chain(off)
         };

@@ -8,6 +8,7 @@ mod impact_tests;
 mod inputs;
 mod inspect;
 mod move_to;
+pub mod rehearsal;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;

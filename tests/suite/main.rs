@@ -13,5 +13,6 @@ mod outputs;
 mod physics;
 mod plans;
 mod reference;
+mod rehearse;
 mod serve;
 mod sweep;

@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::super::{Run, deviations, number, summary};
 use super::{marks, title};
 use crate::record::{EventKind, Outcome};
+use crate::run::rehearsal;
 use crate::verdict::{RequirementOutcome, Verdict};
 
 /// Title, run id, verdict and marks.
@@ -34,6 +35,9 @@ fn sentence(run: &Run<'_>) -> String {
     let all = &run.assessment.requirements;
     let with = |verdict: Verdict| all.iter().filter(|requirement| requirement.verdict == verdict).count();
     match run.assessment.verdict {
+        Verdict::Pass if rehearsal::told(run.plan).is_some() => {
+            "A rehearsal decides no requirement: it came to its end.".to_owned()
+        }
         Verdict::Pass if all.is_empty() => "The plan states no requirement.".to_owned(),
         Verdict::Pass if all.len() == 1 => "The requirement is met.".to_owned(),
         Verdict::Pass => format!("All {} requirements are met.", all.len()),

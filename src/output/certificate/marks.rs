@@ -21,7 +21,11 @@ pub(super) fn boxed(run: &Run<'_>) -> Markup {
                     Standing::Rehearsal => {
                         span.mark { "REHEARSAL" }
                         span.mark { "NOT CERTIFIABLE" }
-                        span { "Simulated rig: rehearsal, not a test of a specimen." }
+                        @if run.record.rig.simulated {
+                            span { "Simulated rig: rehearsal, not a test of a specimen." }
+                        } @else {
+                            span { "Only the gate and the leading stiffness ramps ran on the rig: not the test of the plan." }
+                        }
                     }
                     Standing::Incomplete => {
                         span.mark { "INCOMPLETE" }
@@ -51,6 +55,7 @@ pub(super) fn watermark(run: &Run<'_>) -> Markup {
 fn across(run: &Run<'_>) -> Vec<&'static str> {
     let real_line = run.plan.rig.link.as_real().is_some();
     let words = standing::grounds(run).into_iter().filter_map(|ground| match ground {
+        Standing::Rehearsal if !run.record.rig.simulated => Some("REHEARSAL"),
         Standing::Rehearsal => real_line.then_some("REHEARSAL ON A SIMULATED RIG"),
         Standing::Incomplete => Some("INCOMPLETE"),
         Standing::NotCertifiable { .. } => Some("NOT CERTIFIABLE"),

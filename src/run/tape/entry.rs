@@ -19,6 +19,9 @@ pub struct Header {
     pub settings: Vec<(String, String)>,
     /// Name of the rig, as `--rig` would say it; None: the default of the plan.
     pub rig: Option<String>,
+    /// Whether only the part that a rehearsal measures was to run.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rehearsal: bool,
     /// As `--date` gave it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,

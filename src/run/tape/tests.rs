@@ -69,7 +69,7 @@ impl Rig for Standing {
         let mut due = 0_usize;
         self.0.borrow_mut().rig.traverse(targets, velocity, samples, &mut |reading| {
             due += 1;
-            if due % 5 == 0 { Ok(()) } else { each(reading) }
+            if due.is_multiple_of(5) { Ok(()) } else { each(reading) }
         })
     }
     fn hold(&mut self) {
@@ -169,6 +169,7 @@ fn header() -> Header {
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
+        rehearsal: false,
         date: None,
         operator: None,
         host: None,

@@ -1,0 +1,55 @@
+//! `psd run --rehearse`: gate and leading stiffness ramps on the rig, on record; then the rest on a virtual specimen as
+//! stiff as they found it. In: a checked plan. Out: a run folder marked as a rehearsal, and how far the whole run would
+//! stay from each limit. It reads no result of the real run, for there is none yet.
+
+use super::args::{Format, RunArguments};
+use super::conclude::conclude;
+use super::exit::{Exit, Failure};
+use super::explain_plan::DryRun;
+use super::output::{give, tell};
+use super::run::{Ran, on_its_rig, summary};
+use super::settings::Settings;
+use crate::diagnostic::excerpt::escape;
+use crate::plan::Plan;
+use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::rig::VirtualRig;
+use crate::run::rehearsal;
+
+/// Measures, predicts, and says with the exit code whether every limit would be kept.
+pub fn rehearse(plan: &Plan, arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
+    let part = rehearsal::measured_part(plan)?;
+    let Ran { folder, provenance, recorded } = on_its_rig(&part, arguments, settings)?;
+    let (exit, files) = conclude(folder.path(), &part, &provenance, &recorded, settings)?;
+    let predicted = if exit <= Exit::Missed {
+        let stand_in = rehearsal::prediction(plan, &recorded.record)?;
+        let dry = DryRun::on(plan, &stand_in, told(plan, &stand_in));
+        let text = dry.text(settings);
+        match arguments.format {
+            Format::Human => give(&text)?,
+            Format::Json => tell(&text),
+        }
+        dry.exit()
+    } else {
+        tell("  no prediction: the rehearsal itself did not come to its end\n");
+        exit
+    };
+    match arguments.format {
+        Format::Human => give(&format!("{}\n", folder.path().display()))?,
+        Format::Json => give(&String::from_utf8_lossy(summary(&files)))?,
+    }
+    Ok(exit.max(predicted))
+}
+
+/// On what it is predicted.
+fn told(plan: &Plan, stand_in: &Plan) -> String {
+    let specimen = VirtualRig::specimen_of(stand_in);
+    let stiffness = specimen.and_then(|specimen| specimen.behaviour).map(|behaviour| behaviour.initial_stiffness());
+    let stiffness = stiffness.map_or_else(|| "unknown".to_owned(), |stiffness| readable(stiffness, Dimension::STIFFNESS));
+    let noise = stand_in.rig.link.as_virtual().map_or(0.0, |link| link.noise);
+    let noise = readable(noise, Dimension::FORCE);
+    let name = escape(&plan.rig.name);
+    format!(
+        "rehearsal of the run on rig `{name}`, predicted on a virtual specimen as measured: stiffness {stiffness}, noise {noise}"
+    )
+}

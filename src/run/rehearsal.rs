@@ -1,0 +1,170 @@
+//! A rehearsal: what of a plan is measured first, and what the rest is predicted on. In: a plan, and the record of its
+//! gate and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen that is as
+//! stiff as the measured one. It moves nothing.
+
+use crate::formula::ResultValue;
+use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
+use crate::record::{History, Record};
+use crate::rig::VirtualRig;
+
+/// The particular of a plan that says it is a rehearsal, and of what.
+pub const REHEARSAL: &str = "rehearsal";
+
+/// Why a plan cannot be rehearsed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unrehearsed {
+    #[error(
+        "specimen `{0}` has no `behaviour`, and the plan does not begin with a stiffness ramp of it: nothing tells how it bends"
+    )]
+    NothingMeasured(String),
+    #[error("`{0}` gave no stiffness above 0")]
+    NoStiffness(String),
+}
+
+/// Procedures of the plan, from the first on, that a rehearsal runs on the rig: stiffness ramps, with the inspections
+/// before and between them.
+fn leading(plan: &Plan) -> usize {
+    let quiet = |kind: &ProcedureKind| matches!(kind, ProcedureKind::StiffnessRamp(_) | ProcedureKind::Inspect { .. });
+    let quiet = plan.procedures.iter().take_while(|procedure| quiet(&procedure.kind));
+    let ramps = quiet.enumerate().filter(|(_, procedure)| matches!(procedure.kind, ProcedureKind::StiffnessRamp(_)));
+    ramps.map(|(place, _)| place + 1).last().unwrap_or(0)
+}
+
+/// The part of the plan that a rehearsal runs on the rig: the gate and the leading stiffness ramps. It requires nothing,
+/// for nothing is decided by it, and says what it is.
+///
+/// # Errors
+/// There would be nothing to predict the rest on.
+pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
+    let ramps = leading(plan);
+    let bent = VirtualRig::specimen_of(plan).filter(|specimen| specimen.behaviour.is_none());
+    if let Some(specimen) = bent.filter(|_| ramps == 0) {
+        return Err(Unrehearsed::NothingMeasured(specimen.name.clone()));
+    }
+    let mut part = plan.clone();
+    let left = part.procedures.split_off(ramps);
+    let names = |procedures: &[crate::plan::Procedure]| {
+        procedures.iter().map(|procedure| procedure.name.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let gate = plan.rig.link.as_real().map(|_| "the gate");
+    let ran: Vec<String> = gate.into_iter().map(str::to_owned).chain((ramps > 0).then(|| names(&part.procedures))).collect();
+    let ran = if ran.is_empty() { "nothing".to_owned() } else { ran.join(" and ") };
+    let predicted = if left.is_empty() { "nothing".to_owned() } else { names(&left) };
+    let text = format!("{ran} ran on the rig; {predicted} did not run and was predicted on a virtual specimen");
+    part.particulars.push((REHEARSAL, text));
+    part.requirements.clear();
+    part.report.figures.retain(|figure| figure.procedure.0 < ramps);
+    Ok(part)
+}
+
+/// What the rehearsal of a plan is of, where it is one.
+#[must_use]
+pub fn told(plan: &Plan) -> Option<&str> {
+    plan.particulars.iter().find(|(field, _)| *field == REHEARSAL).map(|(_, text)| text.as_str())
+}
+
+/// The whole plan on a virtual specimen as stiff as `measured` says, with the noise and the quanta of the rig. Noise is
+/// the larger of what is declared and what the ramps showed.
+///
+/// # Errors
+/// A ramp gave no stiffness.
+pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
+    let mut model = plan.clone();
+    let mut link = match &plan.rig.link {
+        Link::Virtual(link) => *link,
+        Link::Real(link) => {
+            VirtualLink { noise: link.readings.noise, resolution: link.readings.resolution, ..VirtualLink::default() }
+        }
+    };
+    link.noise = link.noise.max(scatter(measured));
+    model.rig.link = Link::Virtual(link);
+    for (procedure, record) in plan.procedures.iter().zip(&measured.procedures) {
+        let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else { continue };
+        let stiffness = match record.result("stiffness").map(|result| &result.value) {
+            Some(ResultValue::Number { value: Some(value), .. }) if *value > 0.0 => *value,
+            _ => return Err(Unrehearsed::NoStiffness(procedure.name.clone())),
+        };
+        if let Some(specimen) = model.specimens.get_mut(ramp.specimen) {
+            specimen.behaviour = Some(as_stiff_as(stiffness, specimen));
+        }
+    }
+    Ok(model)
+}
+
+/// A specimen of the measured stiffness (N/m). One that yields does so at the displacement of the plan.
+fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
+    match specimen.behaviour {
+        Some(Behaviour::Bilinear { stiffness: expected, yield_force, hardening }) if expected > 0.0 => {
+            Behaviour::Bilinear { stiffness, yield_force: yield_force * stiffness / expected, hardening }
+        }
+        _ => Behaviour::Elastic { stiffness },
+    }
+}
+
+/// Standard deviation of a force reading over all pauses of the ramps, N; 0 where each had one reading.
+fn scatter(measured: &Record) -> f64 {
+    let steps = measured.procedures.iter().flat_map(|procedure| match &procedure.history {
+        History::Ramp(history) => history.steps.as_slice(),
+        _ => &[],
+    });
+    let (count, sum) = steps.fold((0.0, 0.0), |(count, sum), step| (count + 1.0, sum + step.force_scatter.powi(2)));
+    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{elastic_plan, impact, ramp, result_of, run_unwatched};
+    use super::*;
+    use crate::formula::Formula::Constant;
+    use crate::plan::{InspectTrigger, Move};
+
+    fn plan() -> Plan {
+        let mut blow = impact(result_of(1, "stiffness"));
+        blow.inspect = vec![InspectTrigger::Every(1000)];
+        elastic_plan(
+            320.0,
+            vec![
+                ProcedureKind::Inspect { note: "look".to_owned() },
+                ProcedureKind::StiffnessRamp(ramp(1e-3)),
+                ProcedureKind::Inspect { note: "again".to_owned() },
+                ProcedureKind::Move(Move { to: Constant(0.001), speed: None }),
+                ProcedureKind::StiffnessRamp(ramp(2e-3)),
+                ProcedureKind::Impact(blow),
+            ],
+        )
+    }
+
+    #[test]
+    fn only_the_leading_ramps_touch_the_rig() {
+        let part = measured_part(&plan()).unwrap();
+        assert_eq!(part.procedures.len(), 2, "not what comes after the move");
+        assert_eq!(
+            told(&part),
+            Some("p0, p1 ran on the rig; p2, p3, p4, p5 did not run and was predicted on a virtual specimen")
+        );
+        assert_eq!(told(&plan()), None);
+        let mut blind = plan();
+        blind.procedures.remove(1);
+        assert_eq!(leading(&blind), 0);
+        assert!(measured_part(&blind).is_ok(), "the plan says how it bends");
+        blind.specimens[0].behaviour = None;
+        assert_eq!(measured_part(&blind).err(), Some(Unrehearsed::NothingMeasured("beam".to_owned())));
+    }
+
+    #[test]
+    fn the_virtual_specimen_is_as_stiff_as_the_measured_one_and_yields_where_the_plan_says() {
+        let mut expected = plan();
+        expected.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 400.0, yield_force: 40.0, hardening: 0.1 });
+        // The rig bends 320 N/m where the plan expects 400.
+        let record = run_unwatched(&measured_part(&plan()).unwrap());
+        let model = prediction(&expected, &record).unwrap();
+        let Some(Behaviour::Bilinear { stiffness, yield_force, hardening }) = model.specimens[0].behaviour else { panic!() };
+        assert!((stiffness - 320.0).abs() < 1e-9 && (yield_force / stiffness - 0.1).abs() < 1e-12 && hardening == 0.1);
+        expected.specimens[0].behaviour = None;
+        let model = prediction(&expected, &record).unwrap();
+        assert!(
+            matches!(model.specimens[0].behaviour, Some(Behaviour::Elastic { stiffness }) if (stiffness - 320.0).abs() < 1e-9)
+        );
+        assert_eq!(model.procedures.len(), 6);
+    }
+}

@@ -1,0 +1,182 @@
+//! `psd run --rehearse`: on a virtual rig, and on a real one over a pseudo-terminal against `psd rig simulate`.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+/// The rig is stiffer than the specimen of the plan only where the simulator's plan says so.
+const PLAN: &str = r#"plan "A blow" {
+  edition = 1
+}
+
+param bench_stiffness = 300 kN/m between 100 kN/m .. 500 kN/m
+
+specimen beam {
+  mass      = 2.6 kg
+  behaviour = elastic(stiffness: bench_stiffness)
+}
+
+striker pendulum {
+  mass     = 20 kg
+  velocity = 1 m/s
+}
+
+limits all {
+  displacement = -5 mm .. 30 mm
+  force        = -15 kN .. FORCE kN
+  speed        = 150 mm/s
+}
+
+rig rehearsal {
+  link = virtual(noise: 2 N, resolution: 1 um, seed: 7)
+}
+
+rig bench {
+  link        = serial(port: "PORT", dialect: native)
+  settle      = within(0.005 mm, 200 N/s, for: 0.02 s, timeout: 10 s)
+  safe_state  = hold
+  gate        = probe(0.1 mm, stiffness: 150 kN/m .. 450 kN/m, zero: 20 N)
+  resolution  = 1 um
+  noise       = 2 N
+  force_range = 15 kN
+  speed       = 10 mm/s
+}
+
+stiffness ramp k0 {
+  displacements = 0.2 mm .. 1 mm step 0.2 mm
+  pause         = 0 s
+}
+
+impact hit {
+  striker   = pendulum
+  stiffness = k0.stiffness
+  contact   = rigid
+  time_step = 0.5 ms
+  duration  = 50 ms
+}
+
+require "stays in travel" hit.max_displacement <= 8.5 mm
+"#;
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    /// A folder with the plan, where `force` (kN) is the highest allowed.
+    fn new(force: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let port = folder.path().join("port");
+        let text = PLAN.replace("FORCE", force).replace("PORT", port.to_str().unwrap());
+        fs::write(folder.path().join("plan.psd"), text).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// Exit code, standard output and standard error of psd in the folder.
+    fn psd(&self, arguments: &[&str]) -> (Option<i32>, String, String) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
+        let ended = command.current_dir(self.path()).args(arguments).stdin(Stdio::null()).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (ended.status.code(), text(ended.stdout), text(ended.stderr))
+    }
+
+    fn summary(&self) -> Value {
+        serde_json::from_str(&fs::read_to_string(self.path().join("out/summary.json")).unwrap()).unwrap()
+    }
+}
+
+/// The stand-in, which ends with the test.
+struct Simulator(Child);
+
+impl Simulator {
+    /// In place of the plan's bench, whose specimen is of `stiffness`.
+    fn start(place: &Place, stiffness: &str) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
+        command.current_dir(place.path()).args(["rig", "simulate", "plan.psd", "--rig", "bench", "--set"]);
+        let set = format!("bench_stiffness={stiffness}");
+        let started = command.arg(set).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let simulator = Self(started);
+        let port = place.path().join("port");
+        let since = Instant::now();
+        while !port.exists() {
+            assert!(since.elapsed() < Duration::from_mins(1), "the stand-in opens its port");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        simulator
+    }
+}
+
+impl Drop for Simulator {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
+    let place = Place::new("15");
+    let (code, told, log) = place.psd(&["run", "plan.psd", "--rehearse", "--yes", "--out", "out"]);
+    assert_eq!(code, Some(0), "{told}{log}");
+    for expected in
+        ["rehearsal of the run on rig `rehearsal`", "stiffness 0.300", "peak displacement", "margin", "-15.00 .. 15.00 kN"]
+    {
+        assert!(told.contains(expected), "{expected} in\n{told}");
+    }
+    assert!(log.contains("REHEARSAL"), "{log}");
+    let summary = place.summary();
+    assert!(summary["procedures"]["k0"]["complete"] == true && summary["procedures"]["hit"].is_null(), "{summary}");
+    assert_eq!(
+        summary["deviations"][0],
+        "Rehearsal: k0 ran on the rig; hit did not run and was predicted on a virtual specimen."
+    );
+    assert!(fs::read_to_string(place.path().join("out/certificate.html")).unwrap().contains("REHEARSAL"));
+    let (code, verified, log) = place.psd(&["verify", "out"]);
+    assert_eq!(code, Some(0), "{verified}{log}");
+    // The run that it rehearses is another one.
+    let (code, ..) = place.psd(&["run", "plan.psd", "--yes", "--out", "real"]);
+    assert_eq!(code, Some(0));
+    let real: Value = serde_json::from_str(&fs::read_to_string(place.path().join("real/summary.json")).unwrap()).unwrap();
+    assert_ne!(real["run_id"], summary["run_id"]);
+}
+
+#[test]
+fn a_limit_that_the_run_would_reach_is_exit_4_with_its_procedure_and_step() {
+    // √(20 kg·300 kN/m)·1 m/s is some 2.4 kN.
+    let place = Place::new("2");
+    let (code, told, log) = place.psd(&["run", "plan.psd", "--rehearse", "--yes", "--out", "out"]);
+    assert_eq!(code, Some(4), "{told}{log}");
+    assert!(told.contains("The run would be stopped in hit, step ") && told.contains("force 2."), "{told}");
+    assert!(place.psd(&["run", "plan.psd", "--rehearse", "--bless"]).0 == Some(2));
+}
+
+#[test]
+fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
+    let place = Place::new("15");
+    let _simulator = Simulator::start(&place, "400 kN/m");
+    let run = ["run", "plan.psd", "--rig", "bench", "--rehearse", "--yes", "--operator", "A. Tester", "--out", "out"];
+    let (code, told, log) = place.psd(&run);
+    assert_eq!(code, Some(0), "{told}{log}");
+    let summary = place.summary();
+    let measured = summary["procedures"]["k0"]["results"]["stiffness"]["value"].as_f64().unwrap();
+    assert!((measured - 4e5).abs() < 0.02 * 4e5, "{measured}");
+    assert!(told.contains("rehearsal of the run on rig `bench`") && told.contains("peak displacement"), "{told}");
+    assert_eq!(
+        summary["deviations"][0],
+        "Rehearsal: the gate and k0 ran on the rig; hit did not run and was predicted on a virtual specimen."
+    );
+    let gate =
+        summary["events"].as_array().unwrap().iter().any(|event| event["text"].as_str().unwrap().starts_with("gate passed"));
+    assert!(gate, "{summary}");
+    // Largest displacement V√((M + Ms)/K)·Ms/(M + Ms) of the rigid blow without damping: 6.7 mm, not the 7.7 mm of the plan.
+    let peak = told.lines().find(|line| line.contains("peak displacement")).unwrap();
+    let millimetres: f64 = peak.split_whitespace().nth(2).unwrap().parse().unwrap();
+    let expected = 1e3 * (22.6_f64 / measured).sqrt() * 20.0 / 22.6;
+    assert!((millimetres - expected).abs() < 0.02 * expected, "{peak}, {expected} expected");
+    assert_eq!(place.psd(&["verify", "out"]).0, Some(0));
+}
