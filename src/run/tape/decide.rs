@@ -155,7 +155,10 @@ fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
     if lines.iter().any(unloading) { Err(Refusal::Unloaded) } else { Ok(lines) }
 }
 
-fn last_reading(lines: &[Line]) -> Result<Option<(Vec<f64>, Vec<f64>)>, Unplayable> {
+/// m and N, one entry a degree of freedom.
+type Measured = (Vec<f64>, Vec<f64>);
+
+fn last_reading(lines: &[Line]) -> Result<Option<Measured>, Unplayable> {
     let last = lines.iter().rev().find(|line| line.kind == EntryKind::Sample);
     last.map(|line| body::<SampleBody>(line).map(|sample| (sample.x, sample.r))).transpose()
 }
