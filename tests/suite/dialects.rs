@@ -13,7 +13,7 @@ use rigs::{CASES, Case};
 use serde_json::Value;
 
 /// Longest wait for anything: far beyond what a machine under load takes.
-const PATIENCE: Duration = Duration::from_secs(240);
+const PATIENCE: Duration = Duration::from_mins(4);
 /// N/m
 const STIFFNESS: f64 = 3e5;
 /// Of the beam's free vibration, √(K/M) with M = 0.73038 kg, 1/s.
@@ -151,7 +151,7 @@ fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
     if whole {
         near(ideal, real, ("hit", "stop_time"), 0.5e-3 * 1.001)?;
         let found = result(real, "hit", "max_displacement").unwrap_or(f64::NAN);
-        if !((found - LARGEST).abs() < 0.1e-3) {
+        if found.is_nan() || (found - LARGEST).abs() >= 0.1e-3 {
             return Err(format!("{found} m is not the paper's 7.9 mm"));
         }
     }

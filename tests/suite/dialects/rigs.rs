@@ -41,7 +41,7 @@ pub const CASES: &[Case] = &[
     // Hundredths of a kilogram, ten a second.
     Case {
         force_error: 0.05,
-        duration: 7.0,
+        duration: 4.0,
         ..serial(
             "grbl with indicator",
             "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)",
@@ -57,7 +57,7 @@ pub const CASES: &[Case] = &[
     // Eight decimals of 1 m and of 15 kN; it bears ten polls a second.
     Case {
         force_error: 1e-4,
-        duration: 7.0,
+        duration: 4.0,
         ..serial("instron", "link = serial(port: \"FOLDER/a\", dialect: instron)\n  force_range = 15 kN")
     },
     // Hundredths of a millimetre; 0.1 N.
