@@ -39,10 +39,22 @@ pub(super) enum Invalid {
 /// What earlier readings tell of this one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Judge {
-    /// How many readings in a row gave this force, N, and where the displacement was then, lowest and highest, m.
-    same: Option<(u32, f64, f64, f64)>,
+    same: Option<Same>,
     /// The device's own clock, s.
     device_time: Option<f64>,
+}
+
+/// Readings in a row that gave the very same force.
+#[derive(Clone, Copy, Debug)]
+struct Same {
+    /// N
+    force: f64,
+    /// How many of them were each at another place than the one before: the rest of a ram at its target is no sign.
+    places: u32,
+    /// The last of these places, and the lowest and highest, m.
+    last: f64,
+    low: f64,
+    high: f64,
 }
 
 impl Judge {
@@ -69,15 +81,19 @@ impl Judge {
     /// The force stays the very same while the specimen is bent.
     fn frozen(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
         let x = said.displacement;
-        let (count, low, high) = match self.same {
-            Some((count, force, low, high)) if force == said.force => (count.saturating_add(1), low.min(x), high.max(x)),
-            _ => (1, x, x),
+        let same = match self.same {
+            Some(same) if same.force == said.force && (x - same.last).abs() <= rules.resolution => same,
+            Some(same) if same.force == said.force => {
+                Same { places: same.places.saturating_add(1), last: x, low: same.low.min(x), high: same.high.max(x), ..same }
+            }
+            _ => Same { force: said.force, places: 1, last: x, low: x, high: x },
         };
-        self.same = Some((count, said.force, low, high));
+        self.same = Some(same);
+        let Same { places, low, high, .. } = same;
         let moved = high - low > FROZEN_OVER * rules.resolution;
-        if on(Guarding::Frozen) && count >= rules.frozen_after.max(2) && moved {
+        if on(Guarding::Frozen) && places >= rules.frozen_after.max(2) && moved {
             return Err(Invalid::Hold(format!(
-                "the force sensor is frozen: {count} readings of {} N while the displacement changed by {:.6} mm",
+                "the force sensor is frozen: {places} readings of {} N while the displacement changed by {:.6} mm",
                 said.force,
                 (high - low) * 1e3
             )));
@@ -224,6 +240,13 @@ mod tests {
         let at = |displacement, force| Said { displacement, ..said(force) };
         let stuck: Vec<Said> = (0..4).map(|i| at(f64::from(i) * 3e-6, 5.0)).collect();
         assert!(matches!(only_caught_by(Guarding::Frozen, RULES, &stuck), Invalid::Hold(_)));
+        // Where displacement and force are asked for one after the other, the first reading after a move may have the
+        // force of its end with a displacement on the way: resting there is not freezing.
+        let mut judge = Judge::default();
+        judge.judge(&at(1e-5, 5.0), &RULES).unwrap();
+        for _ in 0..50 {
+            judge.judge(&at(3e-5, 5.0), &RULES).unwrap();
+        }
         // At rest, or with a force that moves, nothing is frozen.
         let mut judge = Judge::default();
         for i in 0..50 {

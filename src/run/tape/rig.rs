@@ -182,7 +182,7 @@ impl Rig for TapedRig<'_> {
             if let Some(fault) = state.played_fault(Call::Execute) {
                 return Err(fault);
             }
-            if state.playing() {
+            if state.playing() || state.played_out() {
                 return Ok(());
             }
             if !state.goes_on() {
@@ -206,6 +206,9 @@ impl Rig for TapedRig<'_> {
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
         if self.state.borrow().playing() {
             return self.state.borrow_mut().played_fault(Call::Pause).map_or(Ok(()), Err);
+        }
+        if self.state.borrow().played_out() {
+            return Ok(());
         }
         let paused = self.rig()?.pause(seconds);
         paused.or_else(|fault| self.failed(Call::Pause, fault))

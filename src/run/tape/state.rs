@@ -23,6 +23,8 @@ pub(super) struct State {
     pub(super) time: f64,
     /// Targets recorded so far.
     targets: u64,
+    /// The record says that the run came to its end: what it called for last, and nothing followed, was done.
+    ended: bool,
     interruptions: Vec<Event>,
     mismatch: Option<Mismatch>,
     fault: Option<JournalFault>,
@@ -35,7 +37,15 @@ impl State {
     }
 
     pub(super) fn replaying(played: Played) -> Self {
-        Self { lines: played.lines, rig: played.rig, interruptions: played.interruptions, ..Self::empty() }
+        let time = played.rig.as_ref().map_or(0.0, |rig| rig.t);
+        Self {
+            lines: played.lines,
+            time,
+            rig: played.rig,
+            ended: played.ended,
+            interruptions: played.interruptions,
+            ..Self::empty()
+        }
     }
 
     pub(super) fn resuming(played: Played, journal: Journal, wall: Wall) -> Self {
@@ -50,6 +60,7 @@ impl State {
             doubt: None,
             time: 0.0,
             targets: 0,
+            ended: false,
             interruptions: Vec::new(),
             mismatch: None,
             fault: None,
@@ -60,6 +71,11 @@ impl State {
     /// Whether answers still come from the record.
     pub(super) fn playing(&self) -> bool {
         !self.lines.is_empty() || self.mismatch.is_some()
+    }
+
+    /// Whether the record is played to the end that the run came to.
+    pub(super) fn played_out(&self) -> bool {
+        self.ended && !self.playing()
     }
 
     /// Whether there is a journal to write to, so that a rig may move once the record is played.
