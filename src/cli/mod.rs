@@ -46,6 +46,10 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
         }
     };
     let settings = settings::Settings::from_environment(arguments.color);
+    if let Err(error) = watch::survive_full_files() {
+        output::tell(&Failure::Signals(error).report(settings));
+        return Exit::Fault;
+    }
     let outcome = match &arguments.command {
         args::Command::Run(arguments) => run::run(arguments, settings),
         args::Command::Resume(arguments) => resume::resume(arguments, settings),

@@ -248,6 +248,11 @@ pub fn wait(command: &mut Command) -> Ended {
     finish(start(command))
 }
 
+/// Waits for the end of a program whose words go elsewhere.
+pub fn code(child: &mut Child) -> Option<i32> {
+    ended(child).code()
+}
+
 fn ended(child: &mut Child) -> ExitStatus {
     let since = Instant::now();
     loop {

@@ -14,7 +14,7 @@ use crate::run::{Inspection, Next, Observer, StepReport};
 use asking::Person;
 pub use asking::{next_line, typed_lines};
 use plain::{Bar, Lines};
-pub use signals::{Signals, interrupt};
+pub use signals::{Signals, interrupt, survive_full_files};
 
 /// The observer of `psd run`.
 pub struct Watcher {

@@ -1,7 +1,10 @@
 //! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the
-//! second holds the rig now.
+//! second holds the rig now. The signal of a file that is too large is caught too, and does nothing.
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator;
 
 use crate::rig::Wish;
@@ -23,6 +26,12 @@ impl Signals {
         });
         Ok(Self { handle })
     }
+}
+
+/// A file at the limit of its size is a fault of that write, with a rig to hold, and must not end the program: the signal
+/// that says so is caught, for as long as the program lives.
+pub fn survive_full_files() -> std::io::Result<()> {
+    signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false))).map(drop)
 }
 
 /// One Ctrl-C: the first stops the run at the end of its step, the second holds the rig now.
