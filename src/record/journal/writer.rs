@@ -152,7 +152,11 @@ impl Journal {
         let kept = if kind == EntryKind::End { Err(Refusal::OutOfPlace(kind)) } else { self.keep_back(kind, body) };
         // Also without the record: what was kept back belongs into the file. After a failed sync none is tried again: it
         // would succeed, and promise what is lost.
-        if unsynced { self.give()? } else { self.sync()? }
+        if unsynced {
+            self.give()?
+        } else {
+            self.sync()?
+        }
         Ok(kept?)
     }
 
