@@ -60,7 +60,7 @@ fn it_starts_anew_in_the_middle() {
     let moves = stage.moves().len();
     let refused = wait(&mut stage.resume_with(&[]));
     assert_eq!(refused.code, Some(3), "{}", refused.told);
-    assert!(refused.told.contains("--re-referenced"), "{}", refused.told);
+    assert!(refused.told.contains("not referenced"), "{}", refused.told);
     assert_eq!(stage.moves().len(), moves, "nothing moved");
 }
 

@@ -153,9 +153,9 @@ impl Journal {
         // Also without the record: what was kept back belongs into the file. After a failed sync none is tried again: it
         // would succeed, and promise what is lost.
         if unsynced {
-            self.give()?
+            self.give()?;
         } else {
-            self.sync()?
+            self.sync()?;
         }
         Ok(kept?)
     }
