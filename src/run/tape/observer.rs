@@ -136,8 +136,7 @@ impl Observer for TapedObserver<'_> {
             if state.front_is_pause_fault() {
                 return Inspection::Wait;
             }
-            self.inspecting = true;
-            return match state.peek(EntryKind::Operator, "an answer") {
+            let answer = match state.peek(EntryKind::Operator, "an answer") {
                 Ok(OperatorBody::Answered { note: asked, answer }) if asked == note => {
                     state.consume();
                     answer
@@ -146,6 +145,9 @@ impl Observer for TapedObserver<'_> {
                 Ok(_) => stopped(state.disagrees(format!("an answer to `{note}`")).to_string()),
                 Err(fault) => stopped(fault.to_string()),
             };
+            drop(state);
+            self.inspecting = answer == Inspection::Wait;
+            return answer;
         }
         if !self.state.borrow().goes_on() {
             return stopped(super::state::ended().to_string());
