@@ -189,6 +189,7 @@ pub struct RunArguments {
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct ResumeArguments {
     /// The run folder
     #[arg(value_name = "RUN")]

@@ -162,7 +162,7 @@ fn put_results_aside(run: &Path) -> Result<(), Failure> {
     if names.is_empty() {
         return Ok(());
     }
-    let aside = (1..).map(|number: u32| run.join(format!("before-resume-{number}"))).find(|path| !path.exists());
+    let aside = (1..=u32::MAX).map(|number| run.join(format!("before-resume-{number}"))).find(|path| !path.exists());
     let Some(aside) = aside else { return Ok(()) };
     std::fs::create_dir(&aside).map_err(failed(aside.clone()))?;
     names.into_iter().try_for_each(|name| std::fs::rename(run.join(&name), aside.join(&name)).map_err(failed(run.join(name))))

@@ -2,6 +2,7 @@
 //! same targets; and every file of the folder is the one its manifest names. Moves nothing, writes nothing.
 
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 use std::path::Path;
 
 use super::exit::{Exit, Failure};
@@ -44,7 +45,7 @@ pub fn verify(run: &Path, settings: Settings) -> Result<Exit, Failure> {
     let mut text = String::new();
     for finding in &findings {
         let word = if finding.fault.is_some() { settings.paint_bad("WRONG") } else { "ok".to_owned() };
-        text += &format!("  {:<9}{word}  {}\n", finding.part, escape(&finding.told));
+        let _ = writeln!(text, "  {:<9}{word}  {}", finding.part, escape(&finding.told));
     }
     give(&text)?;
     Ok(if findings.iter().any(|finding| finding.fault.is_some()) { Exit::Fault } else { Exit::Met })

@@ -157,7 +157,10 @@ fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
     if lines.iter().any(unloading) { Err(Refusal::Unloaded) } else { Ok(lines) }
 }
 
-fn last_reading(lines: &[Line]) -> Result<Option<(Vec<f64>, Vec<f64>)>, Unplayable> {
+/// Displacements, m, and forces, N.
+type Recorded = (Vec<f64>, Vec<f64>);
+
+fn last_reading(lines: &[Line]) -> Result<Option<Recorded>, Unplayable> {
     let last = lines.iter().rev().find(|line| line.kind == EntryKind::Sample);
     last.map(|line| body::<SampleBody>(line).map(|sample| (sample.x, sample.r))).transpose()
 }
