@@ -201,7 +201,6 @@ pub struct RunArguments {
 #[command(after_help = "Nothing moves before record, plan, program and rig are known to be those of the run, and the rig\n\
     has said what became of the last target. See docs/record.md.\n\n\
     Exit codes: as `psd run`; 3 also where the run must not go on.")]
-#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub struct ResumeArguments {
     /// The run folder
     #[arg(value_name = "RUN")]

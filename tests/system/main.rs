@@ -8,4 +8,5 @@ mod lost;
 mod needs;
 mod person;
 mod stage;
+mod terminal;
 mod twice;

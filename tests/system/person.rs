@@ -5,7 +5,8 @@ use std::fs;
 
 use rustix::process::Signal;
 
-use crate::stage::{Ended, Stage, finish, signal, start, wait};
+use crate::stage::{Ended, Stage, code, finish, signal, start, wait};
+use crate::terminal::Terminal;
 
 /// The rig stands where it was held, and the record can be gone on with.
 fn held_and_sound(stage: &Stage, ran: &Ended) {
@@ -50,13 +51,25 @@ fn the_second_holds_at_once() {
 }
 
 #[test]
-fn nobody_at_an_inspection_is_no_yes() {
+fn the_end_of_the_input_is_no_yes() {
     let stage = Stage::new();
-    // The input is at its end from the start.
-    let ran = wait(&mut stage.run_with(&[]));
-    assert_eq!(ran.code, Some(4), "{}", ran.told);
-    assert!(stage.moves().is_empty() || !ran.told.contains("hit: impact"), "{}", ran.told);
-    assert!(ran.told.contains("nobody to ask"), "{}", ran.told);
+    let mut terminal = Terminal::start(&mut stage.run_with(&[]));
+    // The release of the rig is granted; the look at the specimen is not answered.
+    terminal.answer("go on?", "y\n");
+    terminal.answer("look at the specimen", "\u{4}");
+    let code = code(&mut terminal.child);
+    held_and_sound(&stage, &Ended { code, told: terminal.shown() });
+}
+
+#[test]
+fn a_terminal_that_goes_away_is_no_yes() {
+    let stage = Stage::new();
+    let mut terminal = Terminal::start(&mut stage.run_with(&[]));
+    terminal.answer("go on?", "y\n");
+    terminal.answer("look at the specimen", "");
+    signal(&terminal.child, Signal::HUP);
+    let code = code(&mut terminal.child);
+    held_and_sound(&stage, &Ended { code, told: terminal.shown() });
 }
 
 #[test]

@@ -12,7 +12,7 @@ use tempfile::TempDir;
 pub const PSD: &str = env!("CARGO_BIN_EXE_psd");
 
 /// Longest wait for anything, far beyond what it takes: only a program that hangs reaches it.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// Some forty steps without noise, so that two runs measure the same.
 const PLAN: &str = r#"plan "A short run on a real rig" {
@@ -90,7 +90,7 @@ pub struct Stage {
 impl Stage {
     /// A stage whose simulator is up.
     pub fn new() -> Self {
-        Self::of(|plan| plan.to_owned(), "")
+        Self::of(str::to_owned, "")
     }
 
     /// A stage with a plan of its own, and a script of faults.
@@ -225,7 +225,7 @@ fn without_times(path: &Path) -> String {
     assert!(header.contains(&"wall_time_s"));
     let kept = |line: &str| -> String {
         let fields = line.split(',').zip(&header).filter(|(_, name)| **name != "wall_time_s");
-        fields.map(|(field, _)| format!("{field},")).collect::<String>() + "\n"
+        fields.map(|(field, _)| field).collect::<Vec<_>>().join(",") + "\n"
     };
     text.lines().map(kept).collect()
 }
@@ -246,6 +246,11 @@ pub fn finish(mut child: Child) -> Ended {
 /// Runs a program to its end.
 pub fn wait(command: &mut Command) -> Ended {
     finish(start(command))
+}
+
+/// Waits for the end of a program whose words go elsewhere.
+pub fn code(child: &mut Child) -> Option<i32> {
+    ended(child).code()
 }
 
 fn ended(child: &mut Child) -> ExitStatus {

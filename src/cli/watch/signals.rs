@@ -1,5 +1,5 @@
 //! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the
-//! second holds the rig now.
+//! second holds the rig now. The signal of a file that is too large is caught too, and does nothing.
 
 use std::sync::Arc;
 

@@ -126,21 +126,23 @@ impl Journal {
     }
 
     /// The last words before a run is given up: frees the reserve, then writes what is left and this record and makes it
-    /// safe, as well as it goes, also when the storage has failed before. The earlier fault stands for all other calls.
+    /// safe, as well as it goes, also when the storage has failed before; after a failed sync it is only written. The
+    /// earlier fault stands for all other calls.
     ///
     /// # Errors
     /// The record is none or stands after END, or the storage failed now. Nothing more can be done.
     pub fn last_words(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), JournalFault> {
         self.storage.release_reserve();
         let earlier = self.fault.take();
-        let said = self.say_last(kind, body);
+        let unsynced = matches!(earlier, Some(JournalFault::Storage { doing: Doing::Sync, .. }));
+        let said = self.say_last(kind, body, unsynced && on(Guarding::FailedSync));
         if earlier.is_some() {
             self.fault = earlier;
         }
         said
     }
 
-    fn say_last(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), JournalFault> {
+    fn say_last(&mut self, kind: EntryKind, body: &impl Serialize, unsynced: bool) -> Result<(), JournalFault> {
         if self.half_line {
             // Behind half a line, any words would make the file one that no one can tell from a forged one: rather none.
             let cut = self.storage.cut(self.taken);
@@ -148,8 +150,13 @@ impl Journal {
             self.half_line = false;
         }
         let kept = if kind == EntryKind::End { Err(Refusal::OutOfPlace(kind)) } else { self.keep_back(kind, body) };
-        // Also without the record: what was kept back belongs into the file.
-        self.sync()?;
+        // Also without the record: what was kept back belongs into the file. After a failed sync none is tried again: it
+        // would succeed, and promise what is lost.
+        if unsynced {
+            self.give()?;
+        } else {
+            self.sync()?;
+        }
         Ok(kept?)
     }
 

@@ -170,7 +170,9 @@ pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
                 }
             }
             EntryKind::Operator => match body(last)? {
-                OperatorBody::AskedToStop | OperatorBody::Answered { answer: Inspection::Stop { .. }, .. } => {}
+                OperatorBody::AskedToStop
+                | OperatorBody::AskedToStopInspecting
+                | OperatorBody::Answered { answer: Inspection::Stop { .. }, .. } => {}
                 OperatorBody::Answered { .. } | OperatorBody::Noted { .. } => break,
             },
             _ => break,

@@ -157,9 +157,16 @@ pub struct StepBody {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "what")]
 pub enum OperatorBody {
-    Answered { note: String, answer: Inspection },
-    Noted { text: String },
+    Answered {
+        note: String,
+        answer: Inspection,
+    },
+    Noted {
+        text: String,
+    },
     AskedToStop,
+    /// Ctrl-C or its like, instead of an answer at an inspection: the record alone tells the two apart.
+    AskedToStopInspecting,
 }
 
 /// FAULT: a call on the rig that failed.

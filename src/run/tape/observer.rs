@@ -14,11 +14,13 @@ use crate::run::{Inspection, Next, Observer, StepReport};
 pub struct TapedObserver<'run> {
     inner: &'run mut dyn Observer,
     state: Rc<RefCell<State>>,
+    /// Whether a person was asked last, and has not answered.
+    inspecting: bool,
 }
 
 impl<'run> TapedObserver<'run> {
     pub(super) fn new(inner: &'run mut dyn Observer, state: Rc<RefCell<State>>) -> Self {
-        Self { inner, state }
+        Self { inner, state, inspecting: false }
     }
 
     /// Appends, where the run is alive. A record that fails stops the run at the next call on the rig.
@@ -36,6 +38,7 @@ impl Observer for TapedObserver<'_> {
     }
 
     fn step_done(&mut self, report: &StepReport) {
+        self.inspecting = false;
         let step = StepBody::of(report);
         let playing = self.state.borrow().playing();
         if playing {
@@ -80,7 +83,11 @@ impl Observer for TapedObserver<'_> {
         if playing {
             let mut state = self.state.borrow_mut();
             let asked = state.next_kind() == Some(EntryKind::Operator)
-                && matches!(state.peek(EntryKind::Operator, "a request to stop"), Ok(OperatorBody::AskedToStop));
+                && match state.peek(EntryKind::Operator, "a request to stop") {
+                    Ok(OperatorBody::AskedToStop) => !self.inspecting,
+                    Ok(OperatorBody::AskedToStopInspecting) => self.inspecting,
+                    _ => false,
+                };
             if asked {
                 state.consume();
             }
@@ -88,7 +95,8 @@ impl Observer for TapedObserver<'_> {
         }
         let asked = self.inner.stop_requested();
         if asked {
-            self.append(EntryKind::Operator, &OperatorBody::AskedToStop);
+            let asked = if self.inspecting { OperatorBody::AskedToStopInspecting } else { OperatorBody::AskedToStop };
+            self.append(EntryKind::Operator, &asked);
         }
         asked
     }
@@ -128,20 +136,24 @@ impl Observer for TapedObserver<'_> {
             if state.front_is_pause_fault() {
                 return Inspection::Wait;
             }
-            return match state.peek(EntryKind::Operator, "an answer") {
+            let answer = match state.peek(EntryKind::Operator, "an answer") {
                 Ok(OperatorBody::Answered { note: asked, answer }) if asked == note => {
                     state.consume();
                     answer
                 }
-                Ok(OperatorBody::AskedToStop) => Inspection::Wait,
+                Ok(OperatorBody::AskedToStopInspecting) => Inspection::Wait,
                 Ok(_) => stopped(state.disagrees(format!("an answer to `{note}`")).to_string()),
                 Err(fault) => stopped(fault.to_string()),
             };
+            drop(state);
+            self.inspecting = answer == Inspection::Wait;
+            return answer;
         }
         if !self.state.borrow().goes_on() {
             return stopped(super::state::ended().to_string());
         }
         let answer = self.inner.inspect(note);
+        self.inspecting = answer == Inspection::Wait;
         if answer != Inspection::Wait {
             self.append(EntryKind::Operator, &OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });
         }

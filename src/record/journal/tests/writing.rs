@@ -119,7 +119,9 @@ fn a_failed_sync_is_final() {
     assert_eq!((disk.appends(), disk.syncs()), asked, "the disk is not asked again");
     assert_eq!(without(Guarding::FailedSync, || journal.promise()), Ok(()), "without the guard the disk lies: all is well");
 
+    let syncs = disk.syncs();
     journal.last_words(EntryKind::Fault, &json!({"text": "sync"})).unwrap();
+    assert_eq!(disk.syncs(), syncs, "no sync is tried again");
     assert_eq!(recover(&disk.written()).unwrap().lines.last().unwrap().kind, EntryKind::Fault);
     assert_eq!(journal.promise(), Err(fault), "last words heal nothing");
 }

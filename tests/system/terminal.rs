@@ -1,0 +1,52 @@
+//! A person at a terminal, as a program sees one: a pseudo-terminal too small for the screen. In: what is typed. Out: a
+//! program whose questions are answered, or not.
+
+use std::fs::File;
+use std::io::{Read as _, Write as _};
+use std::os::unix::ffi::OsStrExt as _;
+use std::process::{Child, Command};
+use std::sync::{Arc, Mutex};
+
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+use crate::stage::until;
+
+pub struct Terminal {
+    pub child: Child,
+    keys: File,
+    shown: Arc<Mutex<Vec<u8>>>,
+}
+
+impl Terminal {
+    /// Starts a program that a person sits in front of.
+    pub fn start(command: &mut Command) -> Self {
+        let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&keys).unwrap();
+        unlockpt(&keys).unwrap();
+        let name = ptsname(&keys, Vec::new()).unwrap();
+        let path = std::ffi::OsStr::from_bytes(name.as_bytes());
+        let end = File::options().read(true).write(true).open(path).unwrap();
+        let (output, error) = (end.try_clone().unwrap(), end.try_clone().unwrap());
+        let child = command.stdin(end).stdout(output).stderr(error).spawn().unwrap();
+        let shown = Arc::new(Mutex::new(Vec::new()));
+        let (mut screen, sink) = (File::from(keys.try_clone().unwrap()), Arc::clone(&shown));
+        std::thread::spawn(move || {
+            let mut buffer = [0; 4096];
+            // A terminal that nobody writes to any more ends with an error.
+            while let Ok(count) = screen.read(&mut buffer) {
+                sink.lock().unwrap().extend_from_slice(&buffer[..count]);
+            }
+        });
+        Self { child, keys: File::from(keys), shown }
+    }
+
+    pub fn shown(&self) -> String {
+        String::from_utf8_lossy(&self.shown.lock().unwrap()).into_owned()
+    }
+
+    /// Waits for a question, then types.
+    pub fn answer(&mut self, question: &str, keys: &str) {
+        until(question, || self.shown().contains(question));
+        self.keys.write_all(keys.as_bytes()).unwrap();
+    }
+}
