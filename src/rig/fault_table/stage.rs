@@ -139,7 +139,7 @@ pub(super) fn header() -> Header {
         operator: None,
         host: None,
         began: None,
-        rehearsal: None,
+        rehearsal: false,
     }
 }
 
