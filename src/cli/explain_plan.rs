@@ -359,7 +359,7 @@ mod tests {
     fn a_limit_that_would_stop_the_run_is_said() {
         let plan = example(0.1);
         let dry = DryRun::of(&plan);
-        assert!(dry.text(PLAIN).contains("The run would be stopped: "), "{}", dry.text(PLAIN));
+        assert!(dry.text(PLAIN).contains("The run would be stopped in hit"), "{}", dry.text(PLAIN));
         assert_eq!(dry.exit(), Exit::Stopped);
     }
 }

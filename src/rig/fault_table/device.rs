@@ -11,9 +11,11 @@ use crate::rig::failpoint::Guarding;
 fn what_is_no_number_is_never_integrated() {
     let words = ["NaN", "inf", "-inf", "1e400", "9.91E37", "OVL", "\"\"", "1,5", "--1", "5.", ".5", "0x10", "+", "1.5.2"];
     for word in words {
-        let once = run(&plan(), &format!("after 20 readings: number {word}"));
+        // One in three: some of them fall on readings that count, and none is bad four times in a row.
+        let script: Vec<String> = (0..7).map(|at| format!("after {} readings: number {word}", 20 + 3 * at)).collect();
+        let once = run(&plan(), &script.join("\n"));
         once.sound();
-        assert_eq!(once.tally.reread, 1, "{word}");
+        assert_eq!(once.tally.reread, 7, "{word}");
         let kept = once
             .lines
             .iter()
@@ -46,7 +48,8 @@ fn a_clipped_force_holds_the_rig() {
     );
     assert!(clipped.forces().iter().all(|(_, force)| *force < 59.9));
     let missed = run_without(Guarding::Saturation, &plan, "at 0 s: clip force at 60 N");
-    assert!(missed.completed() && (missed.forces().last().unwrap().1 - 60.0).abs() < 1e-9);
+    let last = missed.forces().last().unwrap().1;
+    assert!(missed.completed() && (last - 60.0).abs() < 1e-9, "{last} N, {}", missed.reason());
 }
 
 #[test]

