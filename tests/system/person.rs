@@ -33,8 +33,10 @@ fn each_signal_stops_at_the_end_of_the_step() {
 #[test]
 fn the_second_holds_at_once() {
     // The second step takes ten seconds at this speed: nobody waits for its end.
-    let slow =
-        |plan: &str| plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s").replace("probe(0.1 mm", "probe(0.02 mm");
+    let slow = |plan: &str| {
+        plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um")
+            .replace("probe(0.1 mm", "probe(0.02 mm")
+    };
     let stage = Stage::of(slow, "");
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);

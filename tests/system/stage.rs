@@ -156,6 +156,11 @@ impl Stage {
         log.lines().filter_map(|line| line.split_once(" actuator > ")).map(|(_, what)| what.to_owned()).collect()
     }
 
+    /// How often a program has said the first word of a conversation.
+    pub fn greetings(&self) -> usize {
+        self.requests().iter().filter(|request| request.contains(">HELLO")).count()
+    }
+
     /// Waits until so many moves are done.
     pub fn after_moves(&self, count: usize) {
         until("the run moves", || self.moves().len() >= count);

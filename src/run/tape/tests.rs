@@ -204,27 +204,25 @@ fn played(bytes: &[u8]) -> (Recovered, Played) {
 fn measured(record: &Record) -> String {
     let mut told = String::new();
     for procedure in &record.procedures {
-        let _ = writeln!(told, "{} {:?}", procedure.name, procedure.results);
+        writeln!(told, "{} {:?}", procedure.name, procedure.results).unwrap();
         match &procedure.history {
             History::Ramp(history) => {
                 for step in &history.steps {
-                    let _ = writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force);
+                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
                 }
             }
             History::Impact(history) => {
                 for step in &history.steps {
-                    let _ =
-                        writeln!(told, "{:?} {:?} {:?} {:?}", step.command, step.velocity, step.restoring_force, step.energies);
+                    writeln!(told, "{:?} {:?} {:?} {:?}", step.command, step.velocity, step.restoring_force, step.energies)
+                        .unwrap();
                 }
             }
             History::Sweep(history) => {
                 for step in &history.steps {
-                    let _ = writeln!(told, "{:?} {:?}", step.displacement, step.restoring_force);
+                    writeln!(told, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();
                 }
             }
-            History::Move(steps) => {
-                let _ = writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>());
-            }
+            History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
             History::Inspect => {}
         }
     }
