@@ -63,7 +63,8 @@ fn a_reply_cut_anywhere_is_never_a_shorter_number() {
     for at in 1..60 {
         let ended = run(&short, &format!("after 12 replies: cut reply at {at} bytes"));
         ended.sound();
-        assert!(ended.tally.resent <= 1);
+        // What came of the cut reply spoils the next one, too, where no line's end stands between them.
+        assert!(ended.tally.resent <= 2);
     }
 }
 
@@ -117,7 +118,7 @@ fn every_flipped_bit_of_a_reply_is_seen() {
 #[test]
 fn a_doubled_a_late_and_an_old_reply_are_ignored() {
     for (fault, resent) in
-        [("repeat replies 5", 0), ("replay reply", 1), ("delay reply 0.15 s", 1), ("delay replies 3 0.25 s", 4)]
+        [("repeat replies 5", 0), ("replay reply", 1), ("delay reply 0.15 s", 1), ("delay replies 3 0.25 s", 2)]
     {
         let ended = run(&plan(), &format!("after 5 moves: {fault}"));
         ended.sound();
