@@ -31,10 +31,13 @@ fn what_is_no_number_is_never_integrated() {
     link(&mut unbounded).readings.force_range = Interval::ALL;
     link(&mut unbounded).readings.samples = 1;
     unbounded.limits.force = Interval::ALL;
-    let bad = "after 60 readings: number 9.91E37";
-    run(&unbounded, bad).sound();
-    let missed = run_without(Guarding::Invalid, &unbounded, bad);
-    assert!(missed.completed() && missed.lines.iter().any(|line| line.body["r"][0].as_f64() == Some(9.91e37)));
+    let integrated = |reading: u32| {
+        let bad = format!("after {reading} readings: number 9.91E37");
+        run(&unbounded, &bad).sound();
+        let missed = run_without(Guarding::Invalid, &unbounded, &bad);
+        missed.lines.iter().any(|line| line.kind == EntryKind::Sample && line.body["r"][0].as_f64() == Some(9.91e37))
+    };
+    assert!((20..32).any(integrated));
 }
 
 #[test]

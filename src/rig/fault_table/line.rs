@@ -126,7 +126,8 @@ fn a_doubled_a_late_and_an_old_reply_are_ignored() {
     }
     // A reply of one reading ago, taken for the present one.
     let old = "after 40 readings: replay replies 9";
-    run(&plan(), old).sound();
+    let seen = run(&plan(), old);
+    seen.sound();
     let missed = run_without(Guarding::Sequence, &plan(), old);
-    assert!(missed.tally.ignored == 0, "{:?}", missed.tally);
+    assert!(missed.tally.ignored < seen.tally.ignored, "{:?}, {:?}", missed.tally, seen.tally);
 }
