@@ -173,7 +173,9 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
     let sequence = number::count(next()?.as_bytes()).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
     let boot = next()?;
     number::hexadecimal(boot.as_bytes(), 4).ok_or(Broken::Shape)?;
-    let words = words.collect::<Option<_>>().ok_or(Broken::Shape)?;
+    // Whole and in order, but with an empty or strange field: the rig says the same however often it is asked for this
+    // reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
+    let words = words.map(Option::unwrap_or_default).collect();
     Ok(Reply { kind, sequence, boot, words })
 }
 
@@ -186,6 +188,9 @@ fn word(bytes: &[u8]) -> Option<String> {
 #[must_use]
 pub fn hello(words: &[String]) -> Option<Hello> {
     let [model, serial, firmware, numbers @ ..] = words else { return None };
+    if words.iter().any(String::is_empty) {
+        return None;
+    }
     let [low, high, least, most, top_speed, id, target] = numbers else { return None };
     let (id, target) = (number::count(id.as_bytes())?, millimetres(target)?);
     let bounds = Bounds {

@@ -112,15 +112,14 @@ fn a_whole_line_with_a_false_field_is_no_reading() {
         let body = String::from_utf8(DATA[1..DATA.len() - 5].to_vec()).unwrap().replacen(right, false_field, 1);
         assert_eq!(data(&reply(&framed(&body)).unwrap().words), None, "{body}");
     }
-    for body in [
-        "DATA 42 7F3A 1\x002",
-        "DATA 42 7F3A 1  2",
-        "DATA -1 7F3A",
-        "DATA 4294967296 7F3A",
-        "DATA 4 7f3a",
-        "DATA 4",
-        "NACK 1 7F3A",
-    ] {
+    // Whole replies with a field that is none.
+    for field in ["", "1\x002"] {
+        let words = reply(&framed(&format!("DATA 42 7F3A 1 {field} 2"))).unwrap().words;
+        assert_eq!((words.as_slice(), data(&words)), (&["1".to_owned(), String::new(), "2".to_owned()][..], None));
+        let named = format!("ACK 1 7F3A {field} 0042 1.3 -25.0 25.0 -5.0 5.0 10.0 0 0.0");
+        assert_eq!(hello(&reply(&framed(&named)).unwrap().words), None);
+    }
+    for body in ["DATA -1 7F3A", "DATA 4294967296 7F3A", "DATA 4 7f3a", "DATA 4", "NACK 1 7F3A"] {
         assert_eq!(reply(&framed(body)), Err(Broken::Shape), "{body}");
     }
 }

@@ -63,8 +63,8 @@ fn a_reply_cut_anywhere_is_never_a_shorter_number() {
     for at in 1..60 {
         let ended = run(&short, &format!("after 12 replies: cut reply at {at} bytes"));
         ended.sound();
-        // Asked again once; who fell silent in the middle of a word is greeted anew before it is asked anything else.
-        assert!(ended.tally.resent <= 3, "{:?}", ended.tally);
+        // What came of the cut reply spoils the next one, too, where no line's end stands between them.
+        assert!(ended.tally.resent <= 2);
     }
 }
 
@@ -126,7 +126,8 @@ fn a_doubled_a_late_and_an_old_reply_are_ignored() {
     }
     // A reply of one reading ago, taken for the present one.
     let old = "after 40 readings: replay replies 9";
-    run(&plan(), old).sound();
+    let seen = run(&plan(), old);
+    seen.sound();
     let missed = run_without(Guarding::Sequence, &plan(), old);
-    assert!(missed.tally.ignored == 0, "{:?}", missed.tally);
+    assert!(missed.tally.ignored < seen.tally.ignored, "{:?}, {:?}", missed.tally, seen.tally);
 }
