@@ -75,7 +75,7 @@ fn a_generic_client_gets_its_force_and_the_session_is_summed_up() {
     assert_eq!(answer[..], words(&[-600.0, 0.0]));
     client.write_all(&words(&[99.0, 0.0])).unwrap();
     let (printed, code) = server.end();
-    assert_eq!(printed, "session: closed by the client\ntargets: 1\nlargest |x|: 2.000 mm\nlargest |F|: 0.6000 kN\n");
+    assert_eq!(printed, "session: closed by the client\ntargets: 1\nlargest |x|: 2.000 mm\nlargest |F|: 600.0 N\n");
     assert_eq!(code, 0);
 }
 

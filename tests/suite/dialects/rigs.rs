@@ -160,6 +160,6 @@ damping sweep c {
   velocities = [2, 4] mm/s
   stroke     = 8 mm
   stiffness  = k0.stiffness
-  rate       = 1 Hz
+  rate       = 20 Hz
 }
 ";
