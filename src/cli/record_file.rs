@@ -9,8 +9,8 @@ use super::loader::plain;
 use crate::check::{LoadFault, Loader, Options, check};
 use crate::output::Provenance;
 use crate::plan::Plan;
-use crate::record::journal::{Recovered, recover};
-use crate::run::tape::{Header, HeaderFile, Played};
+use crate::record::journal::{Durability, FileStorage, Journal, Recovered, recover};
+use crate::run::tape::{self, Header, HeaderFile, Played};
 
 /// Name of the journal in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
@@ -25,6 +25,8 @@ pub struct Circumstances {
     pub host: Option<String>,
     /// UTC.
     pub began: Option<String>,
+    /// Protocol of the clients that drive the rig, real or not.
+    pub served: Option<String>,
 }
 
 /// What a run starts from.
@@ -33,7 +35,7 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
         name: file.name.clone(),
         sha256: super::provenance::sha256(file.text.as_bytes()),
     };
-    let Circumstances { operator, host, began } = circumstances;
+    let Circumstances { operator, host, began, served } = circumstances;
     Header {
         run_id: provenance.run_id.clone(),
         psd: provenance.psd_version.clone(),
@@ -41,6 +43,7 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
+        served,
         date: settings.date.clone(),
         operator,
         host,
@@ -51,6 +54,15 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
 /// Texts of the plan's files, in the header's order.
 pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
+}
+
+/// Opens the record of a run that is about to begin.
+pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
+    let storage = FileStorage::create(&journal_of(folder))?;
+    let durability = if plan.rig.link.as_real().is_some() { Durability::EveryPromise } else { Durability::Buffered };
+    let mut journal = Journal::create(Box::new(storage), durability);
+    tape::begin(&mut journal, header, &texts(plan))?;
+    Ok(journal)
 }
 
 /// A record as it was read.

@@ -1,6 +1,7 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
 mod damping_sweep;
+pub mod driven;
 mod gate;
 mod impact;
 #[cfg(test)]
@@ -8,6 +9,7 @@ mod impact_tests;
 mod inputs;
 mod inspect;
 mod move_to;
+mod request;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
@@ -22,6 +24,7 @@ mod tests;
 mod triggers;
 
 pub use damping_sweep::MOST_SAMPLES;
+pub use request::{Parting, Request};
 
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +52,8 @@ pub trait Observer {
     }
     /// Something worth a line happened; the record has it.
     fn event(&mut self, _: &Event) {}
+    /// A client that drives the rig asks for something; it is about to be done.
+    fn asked(&mut self, _: &Request) {}
 }
 
 /// What comes after a step.
@@ -147,7 +152,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
     };
     if let Some(link) = plan.rig.link.as_real()
-        && let Err(stop) = gate::pass(plan, link, &mut session)
+        && let Err(stop) = gate::pass(plan, link, "as the plan says", &mut session)
     {
         session.end(&stop);
         return Record { events: session.into_events(), outcome: stop.outcome(), ..record };

@@ -86,8 +86,13 @@ impl RealRig {
     /// Stays until the moment `until` (s, by the clock), and asks often enough that the devices hear that the program
     /// lives.
     pub(super) fn stay_until(&mut self, until: f64) -> Result<(), RigFault> {
-        while until - self.clock.now() > self.link.watchdog / 4.0 {
-            self.wait_until(self.clock.now() + self.link.watchdog / 4.0)?;
+        loop {
+            // Counted from when they were last heard: many short stays one after the other are a long one.
+            let due = self.heard + self.link.watchdog / 4.0;
+            if until < due {
+                break;
+            }
+            self.wait_until(due)?;
             let point = self.poll()?;
             self.watch(&point)?;
         }

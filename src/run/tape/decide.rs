@@ -144,7 +144,7 @@ fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
             }
             EntryKind::Operator => match body(last)? {
                 OperatorBody::AskedToStop | OperatorBody::Answered { answer: Inspection::Stop { .. }, .. } => {}
-                OperatorBody::Answered { .. } | OperatorBody::Noted { .. } => break,
+                OperatorBody::Answered { .. } | OperatorBody::Noted { .. } | OperatorBody::Asked { .. } => break,
             },
             _ => break,
         }

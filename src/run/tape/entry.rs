@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
-use crate::run::Inspection;
+use crate::run::{Inspection, Request};
 
 /// HEADER: all a run starts from. Enough to check the plan again, on any machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,9 @@ pub struct Header {
     pub settings: Vec<(String, String)>,
     /// Name of the rig, as `--rig` would say it; None: the default of the plan.
     pub rig: Option<String>,
+    /// Protocol of the clients that drive the rig; None: the plan's procedures do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub served: Option<String>,
     /// As `--date` gave it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
@@ -145,9 +148,18 @@ pub struct StepBody {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "what")]
 pub enum OperatorBody {
-    Answered { note: String, answer: Inspection },
-    Noted { text: String },
+    Answered {
+        note: String,
+        answer: Inspection,
+    },
+    Noted {
+        text: String,
+    },
     AskedToStop,
+    /// Not a person, but the client that drives the rig.
+    Asked {
+        request: Request,
+    },
 }
 
 /// FAULT: a call on the rig that failed.

@@ -1,17 +1,20 @@
 //! What the taped rig and the taped observer share: the records still to be played, the journal that is written, the
 //! time of the last record. In: bodies to append, kinds to expect. Out: bodies played.
 
+use std::cell::RefCell;
 use std::collections::VecDeque;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
-use super::entry::{Doubt, FaultBody, RigBody};
+use super::entry::{Doubt, FaultBody, OperatorBody, RigBody};
 use super::played::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
 use crate::rig::RigFault;
+use crate::run::Request;
+use crate::run::driven::Specimen;
 
 pub(super) struct State {
     lines: VecDeque<Line>,
@@ -127,6 +130,18 @@ impl State {
         }
     }
 
+    /// The client's next request, left where it is.
+    fn next_request(&mut self) -> Option<Request> {
+        match self.peek(EntryKind::Operator, "a request of the client") {
+            Ok(OperatorBody::Asked { request }) => Some(request),
+            Ok(_) => {
+                self.disagrees("a request of the client".to_owned());
+                None
+            }
+            Err(_) => None,
+        }
+    }
+
     /// Whether the next record says that a pause failed.
     pub(super) fn front_is_pause_fault(&self) -> bool {
         let front = self.lines.front().filter(|line| line.kind == EntryKind::Fault);
@@ -220,6 +235,25 @@ impl State {
 
     pub(super) fn take_interruptions(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.interruptions)
+    }
+}
+
+/// Lets the requests of the record drive the specimen once more.
+pub(super) fn ask_again(state: &RefCell<State>, specimen: &mut Specimen<'_, '_>) {
+    loop {
+        let (over, stayed) = {
+            let state = state.borrow();
+            (state.lines.is_empty() || state.mismatch.is_some(), state.front_is_pause_fault())
+        };
+        if over {
+            return;
+        }
+        if stayed {
+            specimen.stay_again();
+            continue;
+        }
+        let Some(request) = state.borrow_mut().next_request() else { return };
+        specimen.carry_out(request);
     }
 }
 
