@@ -32,7 +32,8 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
         let limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
         let mut guard = Guard::new(&mut rig, limits).expect("it stands inside its limits");
         let protocol = Protocol::GenericClient { stiffness: STIFFNESS };
-        let mut specimen = Specimen::new(&mut guard, &mut Unwatched, None);
+        let mut nobody = Unwatched;
+        let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
         serve(&listener, protocol, &mut specimen, true, &|| false, &mut |_| ()).expect("it listens");
     });
     let mut client = TcpStream::connect(address).expect("it listens");

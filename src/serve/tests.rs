@@ -33,7 +33,8 @@ fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(Socke
                 sessions.push(session.clone());
             }
         };
-        let mut specimen = Specimen::new(&mut guard, &mut Unwatched, None);
+        let mut nobody = Unwatched;
+        let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
         serve(&listener, protocol, &mut specimen, true, &|| false, &mut told).unwrap();
         let [session] = sessions.try_into().expect("one session");
         (client.join().unwrap(), session)

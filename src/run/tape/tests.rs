@@ -163,6 +163,7 @@ fn header() -> Header {
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
+        served: None,
         date: None,
         operator: None,
         host: None,
