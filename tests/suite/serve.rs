@@ -125,8 +125,8 @@ fn a_session_is_on_record_and_its_targets_come_out_again() {
     let mut client = server.connect();
     client
         .write_all(
-            b"open-session\tc\npropose\tt1\tMDL\tx\tdisplacement\t0.001\nexecute\tt1\nget-control-point\tt1\tMDL\n\
-            propose\tt2\tMDL\tx\tdisplacement\t0.05\npropose\tt3\tMDL\tx\tdisplacement\t-0.001\ncancel\tt3\nclose-session\tc\n",
+            b"open-session\tc\npropose\tt1\tMDL-1\tx\tdisplacement\t0.001\nexecute\tt1\nget-control-point\tt1\tMDL-1\n\
+            propose\tt2\tMDL-1\tx\tdisplacement\t0.05\npropose\tt3\tMDL-1\tx\tdisplacement\t-0.001\ncancel\tt3\nclose-session\tc\n",
         )
         .unwrap();
     client.read_to_string(&mut String::new()).unwrap();

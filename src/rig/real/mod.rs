@@ -132,7 +132,8 @@ impl Rig for RealRig {
         };
         let speed = speed.unwrap_or(self.link.own_speed);
         // Asked before the bytes are made, for between them and their sending nothing is asked.
-        let from = self.poll()?.displacement;
+        let polled = self.poll();
+        let from = self.or_hold(polled)?.displacement;
         let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
         let said = self.sign * going.target;
         // What the devices resolve is as near as they can say it.
