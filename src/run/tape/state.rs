@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
-use super::entry::{Doubt, FaultBody, OperatorBody, RigBody};
+use super::entry::{Doubt, FaultBody, IntentBody, OperatorBody, RigBody};
 use super::played::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
@@ -18,6 +18,8 @@ use crate::run::driven::Specimen;
 
 pub(super) struct State {
     lines: VecDeque<Line>,
+    /// A client drove the rig: between a proposal and its target stand the client's requests.
+    pub(super) driven: bool,
     pub(super) rig: Option<RigBody>,
     journal: Option<Journal>,
     /// What the resumption found of the target at the end of what is played.
@@ -38,7 +40,13 @@ impl State {
     }
 
     pub(super) fn replaying(played: Played) -> Self {
-        Self { lines: played.lines, rig: played.rig, interruptions: played.interruptions, ..Self::empty() }
+        Self {
+            driven: played.header.served.is_some(),
+            lines: played.lines,
+            rig: played.rig,
+            interruptions: played.interruptions,
+            ..Self::empty()
+        }
     }
 
     pub(super) fn resuming(played: Played, journal: Journal, wall: Wall) -> Self {
@@ -48,6 +56,7 @@ impl State {
     fn empty() -> Self {
         Self {
             lines: VecDeque::new(),
+            driven: false,
             rig: None,
             journal: None,
             doubt: None,
@@ -128,6 +137,17 @@ impl State {
             Ok(_) => None,
             Err(fault) => Some(fault),
         }
+    }
+
+    /// The target that came of what the client has just proposed: the first before its next proposal. None: nothing did.
+    pub(super) fn intent_ahead(&self) -> Option<IntentBody> {
+        let proposes = |line: &&Line| {
+            let asked = body::<OperatorBody>(line);
+            line.kind == EntryKind::Operator
+                && matches!(asked, Ok(OperatorBody::Asked { request: Request::Propose { .. } | Request::ProposeNoNumber { .. } }))
+        };
+        let until_next = self.lines.iter().take_while(|line| !proposes(line));
+        until_next.filter(|line| line.kind == EntryKind::Intent).find_map(|line| body(line).ok())
     }
 
     /// The client's next request, left where it is.
