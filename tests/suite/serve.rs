@@ -39,7 +39,7 @@ impl Server {
         let mut ready = String::new();
         stdout.read_line(&mut ready).unwrap();
         let address = ready.trim_end().strip_prefix(&format!("ready: {protocol} on ")).expect("it is ready").to_owned();
-        Self { folder: folder, program, stdout, address }
+        Self { folder, program, stdout, address }
     }
 
     fn connect(&self) -> TcpStream {
