@@ -7,8 +7,10 @@ use std::thread::JoinHandle;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::plan::{Behaviour, Interval, Limits, Settle, Specimen, VirtualLink};
+use psd::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
 use psd::rig::{Guard, VirtualRig};
+use psd::run::Unwatched;
+use psd::run::driven::Specimen;
 use psd::serve::{Protocol, serve};
 
 const STIFFNESS: f64 = 3e5;
@@ -24,13 +26,15 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
     let address = listener.local_addr().expect("it is bound");
     let server = std::thread::spawn(move || {
         let behaviour = Some(Behaviour::Elastic { stiffness: STIFFNESS });
-        let specimen = Specimen { name: "spring".to_owned(), mass: 20.0, behaviour, damping: 0.0, coulomb: 0.0 };
+        let specimen = PlanSpecimen { name: "spring".to_owned(), mass: 20.0, behaviour, damping: 0.0, coulomb: 0.0 };
         let settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
         let mut rig = VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0);
         let limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
         let mut guard = Guard::new(&mut rig, limits).expect("it stands inside its limits");
         let protocol = Protocol::GenericClient { stiffness: STIFFNESS };
-        serve(&listener, protocol, &mut guard, true, &|| false, &mut |_| ()).expect("it listens");
+        let mut nobody = Unwatched;
+        let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
+        serve(&listener, protocol, &mut specimen, true, &|| false, &mut |_| ()).expect("it listens");
     });
     let mut client = TcpStream::connect(address).expect("it listens");
     let header = [1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256_i32].map(i32::to_le_bytes);

@@ -145,6 +145,15 @@ pub struct ServeArguments {
     /// Ends after the first session
     #[arg(long)]
     pub once: bool,
+    /// Run folder, new or empty [default: runs/PLAN-N]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Releases a real rig without asking: who starts this answers for it
+    #[arg(long)]
+    pub yes: bool,
+    /// Who stands by at a real rig
+    #[arg(long, value_name = "NAME")]
+    pub operator: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -73,7 +73,7 @@ fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance) -> Provenance {
 }
 
 /// SHA-256 of a file, in hex, read in pieces: a record may be long.
-fn digest(path: &Path) -> Result<String, Failure> {
+pub fn digest(path: &Path) -> Result<String, Failure> {
     let read = || -> std::io::Result<String> {
         let mut file = File::open(path)?;
         let mut digest = Sha256::new();

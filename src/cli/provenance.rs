@@ -27,7 +27,7 @@ pub fn of(plan: &Plan) -> Provenance {
 /// The provenance of a run on a real rig: no two are the same, so that who, where and when are part of its id.
 pub fn of_real_run(plan: &Plan, circumstances: &Circumstances) -> Provenance {
     let provenance = of(plan);
-    let Circumstances { operator, host, began } = circumstances;
+    let Circumstances { operator, host, began, .. } = circumstances;
     let told = [Some(provenance.run_id.clone()), operator.clone(), host.clone(), began.clone()];
     let text: Vec<String> =
         told.into_iter().map(|part| part.map_or("-".to_owned(), |part| format!("{}:{part}", part.len()))).collect();

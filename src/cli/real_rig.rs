@@ -28,11 +28,19 @@ pub fn open(plan: &Plan, attendance: &Attendance, settings: Settings) -> Result<
     Ok(Opened { connected, watcher })
 }
 
+/// [`open`] for a client that drives: watched in lines, and `wish` is what signals become.
+pub fn open_for_client(plan: &Plan, attendance: &Attendance, settings: Settings, wish: &Wish) -> Result<Opened, Failure> {
+    let connected = connect(&plan.rig, &plan.limits, wish)?;
+    let simulated = connected.rig.identity().simulated;
+    let watcher = Watcher::in_lines(settings, attendance, plan, simulated, wish.clone()).map_err(Failure::Signals)?;
+    Ok(Opened { connected, watcher })
+}
+
 /// Who stands by, on which machine, and when it began.
 pub fn circumstances(plan: &Plan, attendance: &Attendance) -> Circumstances {
     let named = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
     let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
-    Circumstances { operator: attendance.operator.clone().or(named), host: Some(host), began: wall_clock()() }
+    Circumstances { operator: attendance.operator.clone().or(named), host: Some(host), began: wall_clock()(), served: None }
 }
 
 /// UTC, to the millisecond.

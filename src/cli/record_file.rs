@@ -9,9 +9,9 @@ use super::loader::plain;
 use crate::check::{LoadFault, Loader, Options, check};
 use crate::output::{Provenance, RealRun};
 use crate::plan::Plan;
-use crate::record::journal::{Line, Recovered, recover};
+use crate::record::journal::{Durability, FileStorage, Journal, Line, Recovered, recover};
 use crate::run::rehearsal;
-use crate::run::tape::{Header, HeaderFile, Played};
+use crate::run::tape::{self, Header, HeaderFile, Played};
 
 /// Name of the journal in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
@@ -26,6 +26,8 @@ pub struct Circumstances {
     pub host: Option<String>,
     /// UTC.
     pub began: Option<String>,
+    /// Protocol of the clients that drive the rig, real or not.
+    pub served: Option<String>,
 }
 
 /// What a run starts from.
@@ -34,7 +36,7 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
         name: file.name.clone(),
         sha256: super::provenance::sha256(file.text.as_bytes()),
     };
-    let Circumstances { operator, host, began } = circumstances;
+    let Circumstances { operator, host, began, served } = circumstances;
     Header {
         run_id: provenance.run_id.clone(),
         psd: provenance.psd_version.clone(),
@@ -43,6 +45,7 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
         rehearsal: rehearsal::told(plan).is_some(),
+        served,
         date: settings.date.clone(),
         operator,
         host,
@@ -53,6 +56,15 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
 /// Texts of the plan's files, in the header's order.
 pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
+}
+
+/// Opens the record of a run that is about to begin.
+pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
+    let storage = FileStorage::create(&journal_of(folder))?;
+    let durability = if plan.rig.link.as_real().is_some() { Durability::EveryPromise } else { Durability::Buffered };
+    let mut journal = Journal::create(Box::new(storage), durability);
+    tape::begin(&mut journal, header, &texts(plan))?;
+    Ok(journal)
 }
 
 /// A record as it was read.

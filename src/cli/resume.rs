@@ -32,6 +32,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     if read.played.ended {
         return Err(tape::Refusal::Ended.into());
     }
+    if read.played.header.served.is_some() {
+        return Err(Failure::command_line("a client drove this run: psd cannot go on in its place")
+            .help("start it anew with `psd rig serve`"));
+    }
     let Some(link) = read.plan.rig.link.as_real().cloned() else {
         return Err(Failure::command_line("a run on a virtual rig moved nothing: there is nothing to go on with")
             .help("start it anew with `psd run`"));

@@ -6,7 +6,7 @@ use super::bless::BlessedFolder;
 use super::conclude::conclude;
 use super::exit::{Exit, Failure};
 use super::output::{give, tell};
-use super::record_file::{self, Circumstances, journal_of};
+use super::record_file::{self, Circumstances};
 use super::rehearse::rehearse;
 use super::run_folder::RunFolder;
 use super::settings::Settings;
@@ -15,7 +15,6 @@ use super::{plan_file, provenance, real_rig};
 use crate::diagnostic::json;
 use crate::output::{OutputFile, Provenance};
 use crate::plan::{Link, Plan};
-use crate::record::journal::{Durability, FileStorage, Journal};
 use crate::rig::{VirtualRig, Wish};
 use crate::run::tape::{self, Recorded};
 
@@ -72,7 +71,7 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let provenance = provenance::of(plan);
     let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
-    let journal = begin(&folder, plan, &header)?;
+    let journal = record_file::begin(folder.path(), plan, &header)?;
     let recorded = tape::record(plan, &mut VirtualRig::of_plan(plan), &mut watcher, journal, Box::new(|| None));
     watcher.finish();
     Ok(Ran { folder, provenance, recorded })
@@ -85,20 +84,11 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let circumstances = real_rig::circumstances(plan, attendance);
     let provenance = provenance::of_real_run(plan, &circumstances);
     let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
-    let journal = begin(&folder, plan, &header)?;
+    let journal = record_file::begin(folder.path(), plan, &header)?;
     let wall = real_rig::wall_clock();
     let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
     opened.watcher.finish();
     Ok(Ran { folder, provenance, recorded })
-}
-
-/// Opens the record of a run that is about to begin.
-fn begin(folder: &RunFolder, plan: &Plan, header: &tape::Header) -> Result<Journal, Failure> {
-    let storage = FileStorage::create(&journal_of(folder.path()))?;
-    let durability = if plan.rig.link.as_real().is_some() { Durability::EveryPromise } else { Durability::Buffered };
-    let mut journal = Journal::create(Box::new(storage), durability);
-    tape::begin(&mut journal, header, &record_file::texts(plan))?;
-    Ok(journal)
 }
 
 pub(super) fn summary(files: &[OutputFile]) -> &[u8] {

@@ -13,6 +13,7 @@ mod tables;
 
 use crate::plan::{Format, Plan};
 use crate::record::Record;
+use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
 
 /// Everything an output is made from.
@@ -98,6 +99,14 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     );
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// The table of a client that drove the rig.
+///
+/// # Errors
+/// It cannot be encoded.
+pub fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
+    tables::driven(steps)
 }
 
 /// The manifest of files that are made and of others whose digests are known: path and SHA-256 in hex.

@@ -6,6 +6,7 @@ use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetW
 use super::{OutputError, OutputFile, Run, wants};
 use crate::plan::Format;
 use crate::record::{History, ImpactStep, ProcedureRecord, RampStep, SweepStep};
+use crate::run::driven::DrivenStep;
 
 /// The tables of every procedure that recorded steps, in the formats the plan asks for.
 pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
@@ -22,6 +23,21 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         }
     }
     Ok(files)
+}
+
+/// The targets of a client that drove the rig, and what was read there.
+pub(super) fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
+    let failed = |error: PolarsError| OutputError::Table { procedure: "served".to_owned(), reason: error.to_string() };
+    let of = |name, read: fn(&DrivenStep) -> f64| numbers(name, steps, read);
+    let columns = vec![
+        integers("step", steps, |step| step.step),
+        of("wall_time_s", |step| step.time),
+        of("command_m", |step| step.command),
+        of("displacement_m", |step| step.displacement),
+        of("restoring_force_n", |step| step.force),
+    ];
+    let mut frame = DataFrame::new(steps.len(), columns).map_err(failed)?;
+    Ok(OutputFile { path: "tables/served.csv".to_owned(), bytes: csv(&mut frame).map_err(failed)? })
 }
 
 fn csv(frame: &mut DataFrame) -> Result<Vec<u8>, PolarsError> {

@@ -13,11 +13,11 @@ use crate::rig::failpoint::{self, Guarding};
 /// Time between the two readings at rest, s.
 const REST: f64 = 1.0;
 
-/// Asks for the release, then tries the rig. Nothing else of the plan has moved by then.
-pub(super) fn pass(plan: &Plan, link: &RealLink, session: &mut Session<'_>) -> Result<(), Stop> {
+/// Asks for the release, then tries the rig. Nothing else has moved by then; `afterwards` says how it will.
+pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut Session<'_>) -> Result<(), Stop> {
     let gate = &link.gate;
     let probe = stated(gate.probe, Dimension::LENGTH);
-    session.inspect(&format!("release rig {}: it will move by {probe} to prove itself, then as the plan says", plan.rig.name))?;
+    session.inspect(&format!("release rig {}: it will move by {probe} to prove itself, then {afterwards}", plan.rig.name))?;
 
     let (_, first) = session.read()?;
     session.guard.pause(REST)?;

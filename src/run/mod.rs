@@ -1,6 +1,7 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
 mod damping_sweep;
+pub mod driven;
 mod gate;
 mod impact;
 #[cfg(test)]
@@ -9,6 +10,7 @@ mod inputs;
 mod inspect;
 mod move_to;
 pub mod rehearsal;
+mod request;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
@@ -23,6 +25,7 @@ mod tests;
 mod triggers;
 
 pub use damping_sweep::MOST_SAMPLES;
+pub use request::{Parting, Request};
 
 use serde::{Deserialize, Serialize};
 
@@ -50,6 +53,8 @@ pub trait Observer {
     }
     /// Something worth a line happened; the record has it.
     fn event(&mut self, _: &Event) {}
+    /// A client that drives the rig asks for something; it is about to be done.
+    fn asked(&mut self, _: &Request) {}
 }
 
 /// What comes after a step.
@@ -148,7 +153,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
     };
     if let Some(link) = plan.rig.link.as_real()
-        && let Err(stop) = gate::pass(plan, link, &mut session)
+        && let Err(stop) = gate::pass(plan, link, "as the plan says", &mut session)
     {
         session.end(&stop);
         return Record { events: session.finish(), outcome: stop.outcome(), ..record };

@@ -66,6 +66,11 @@ impl<'run> Session<'run> {
         self.events
     }
 
+    /// The guard, who watches, and where events go.
+    pub(super) fn parts(&mut self) -> (&mut Guard<'run>, &mut (dyn Observer + 'run), &mut Vec<Event>) {
+        (&mut self.guard, &mut *self.observer, &mut self.events)
+    }
+
     pub(super) fn enter(&mut self, procedure: &Procedure) {
         self.procedure = Some(procedure.name.clone());
         self.step = None;

@@ -1,15 +1,23 @@
 //! The socket of OpenSees' `genericClient` element and of `expControl GenericTCP`: a header of sizes, then messages of
 //! one length both ways, 64-bit floats in the machine's order. In: a client's connection. Out: motion through the guard,
-//! forces to the client. The protocol has no word for an error: whatever stands in the way holds the rig and closes.
+//! forces to the client.
+//!
+//! The protocol has no word for an error. OpenSees (3.7.1 was tried) does not notice that its server is gone: after a
+//! `close`, a `shutdown` and a reset alike it waits in its read for ever, at full load. What it does notice is a force that is no
+//! number: an iteration does not converge, and `analyze` fails at that very step; an explicit or linear one runs to the end of
+//! its steps with NaN, which nobody takes for a result, and says its 99. So whatever stands in the way holds the rig, and
+//! from then on every question is answered with NaN, until the client leaves, is silent or has been heard out.
 //!
 //! A trial comes more than once: only a target that is not the last one moves the rig. Between moves the specimen is at
 //! rest: velocity and acceleration are zero, so are damping and mass, which are the client's own; both stiffnesses are the one constant
-//! that was given. A `GenericTCP` with an init file is not served.
+//! that was given. The messages of a `GenericTCP` with an init file are taken, noted and otherwise ignored.
+
+use std::time::{Duration, Instant};
 
 use super::Ended;
-use super::connection::Connection;
+use super::connection::{Broken, Connection};
 use super::generic_header::{self, HEADER, Layout};
-use super::specimen::Specimen;
+use crate::run::driven::Specimen;
 
 /// What a message asks for: its first word.
 mod action {
@@ -29,21 +37,68 @@ mod action {
     pub const DIE: f64 = 99.0;
 }
 
+/// First byte of a message of GenericTCP's `-initFile`, and bytes of the whole.
+const SETTING: u8 = 2;
+const SETTING_MESSAGE: usize = 16_385;
+
+/// Longest that a client which was refused is still answered, and longest that it may be silent meanwhile.
+const FAREWELL: Duration = Duration::from_secs(30);
+const SILENCE: Duration = Duration::from_secs(1);
+
 /// Serves a client until one of the two has enough.
 pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, stiffness: f64) -> Ended {
-    let ended = talk(connection, specimen, stiffness).unwrap_or_else(|ended| ended);
-    specimen.hold();
+    let mut words = 0;
+    let ended = talk(connection, specimen, stiffness, &mut words).unwrap_or_else(|ended| ended);
+    if words > 0 && matches!(ended, Ended::Limit(_) | Ended::Rig(_) | Ended::Stopped) {
+        specimen.hold();
+        // Whatever stops this too has nothing to add to why the session ended.
+        let _ = bid_farewell(connection, specimen, words);
+    }
     ended
 }
 
-fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, stiffness: f64) -> Result<Ended, Ended> {
+/// Answers every question with NaN until the client has seen enough. Nothing moves.
+fn bid_farewell(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, words: usize) -> Result<(), Broken> {
+    let answer: Vec<u8> = std::iter::repeat_n(f64::NAN, words).flat_map(f64::to_le_bytes).collect();
+    let mut message = vec![0; 8 * words];
+    let over = Instant::now() + FAREWELL;
+    while Instant::now() < over {
+        connection.read_soon(&mut message, specimen, SILENCE)?;
+        match word(&message, 0) {
+            action::SET_TRIAL | action::COMMIT => {}
+            action::SHUT_DOWN | action::DIE => return Ok(()),
+            _ => connection.write(&answer, specimen)?,
+        }
+    }
+    Ok(())
+}
+
+fn talk(
+    connection: &mut Connection<'_>,
+    specimen: &mut Specimen<'_, '_>,
+    stiffness: f64,
+    words: &mut usize,
+) -> Result<Ended, Ended> {
     let mut header = [0; HEADER];
-    connection.read_all(&mut header)?;
+    connection.read_all(&mut header, specimen)?;
     let layout = generic_header::parse(&header).map_err(Ended::Misspoken)?;
+    *words = layout.words;
     let mut message = vec![0; 8 * layout.words];
     let mut answer = message.clone();
+    let mut settings = 0_u64;
     loop {
-        connection.read_all(&mut message)?;
+        let first = connection.read(&mut message[..1], specimen)?;
+        if message[0] == SETTING {
+            // The rest of it goes past; the action of any other message begins with a zero.
+            let mut rest = [0; SETTING_MESSAGE - 1];
+            connection.read_all(&mut rest, specimen)?;
+            if settings == 0 {
+                specimen.remark(format!("settings of the client's init file are not for this rig: {}", line_of(&rest)));
+            }
+            settings += 1;
+            continue;
+        }
+        connection.read_all(&mut message[first..], specimen)?;
         let asked = word(&message, 0);
         let single = |value: f64| [Some(value), None, None, None, None];
         let values = match asked {
@@ -55,7 +110,10 @@ fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, stiffn
                 }
                 continue;
             }
-            action::COMMIT => continue,
+            action::COMMIT => {
+                specimen.commit();
+                continue;
+            }
             action::GET_MEASURED => measured(layout, specimen),
             action::GET_DISPLACEMENT => single(specimen.felt().displacement),
             action::GET_VELOCITY | action::GET_ACCELERATION | action::GET_DAMPING | action::GET_MASS => single(0.0),
@@ -70,7 +128,7 @@ fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, stiffn
         for (place, value) in answer.chunks_exact_mut(8).zip(values.into_iter().flatten()) {
             place.copy_from_slice(&value.to_le_bytes());
         }
-        connection.write(&answer)?;
+        connection.write(&answer, specimen)?;
     }
 }
 
@@ -79,6 +137,12 @@ fn measured(layout: Layout, specimen: &Specimen<'_, '_>) -> [Option<f64>; 5] {
     let felt = specimen.felt();
     let all = [felt.displacement, 0.0, 0.0, felt.force, specimen.time()];
     std::array::from_fn(|at| layout.measured[at].then_some(all[at]))
+}
+
+/// The text of a setting, up to its end.
+fn line_of(message: &[u8]) -> String {
+    let end = message.iter().position(|byte| matches!(byte, 0 | b'\n' | b'\r')).unwrap_or(message.len());
+    String::from_utf8_lossy(&message[..end.min(200)]).into_owned()
 }
 
 fn word(message: &[u8], at: usize) -> f64 {

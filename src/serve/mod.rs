@@ -1,12 +1,12 @@
 //! psd as a rig for others: a coordinator or a finite-element program drives the specimen behind the guard. In: a
-//! listener, a guard, a protocol. Out: how each session ended, and what it asked of the specimen. It reads no plan and opens no port.
+//! listener, a specimen, a protocol. Out: how each session ended, and what it asked of the specimen. It reads no plan,
+//! opens no port and keeps no record: every request goes through the specimen, which does.
 
 mod connection;
 mod generic_client;
 mod generic_header;
 mod nees;
 pub mod nees_message;
-mod specimen;
 #[cfg(test)]
 mod tests;
 
@@ -18,10 +18,11 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-use crate::rig::{Guard, RigFault};
+use crate::rig::RigFault;
+use crate::run::Parting;
+pub use crate::run::driven::Driven;
+use crate::run::driven::Specimen;
 use connection::{Broken, Connection};
-pub use specimen::Driven;
-use specimen::Specimen;
 
 /// How often a wait looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(100);
@@ -53,6 +54,15 @@ pub enum Ended {
 }
 
 impl Ended {
+    /// For the record.
+    const fn parting(&self) -> Parting {
+        match self {
+            Self::Closed => Parting::Closed,
+            Self::Stopped | Self::Limit(_) => Parting::Stopped,
+            Self::HungUp | Self::Misspoken(_) | Self::Lost(_) | Self::Rig(_) => Parting::Failed,
+        }
+    }
+
     /// Whether another client may come: not once the rig was stopped by a limit or by its own fault.
     const fn allows_another(&self) -> bool {
         matches!(self, Self::Closed | Self::HungUp | Self::Misspoken(_) | Self::Lost(_))
@@ -88,6 +98,7 @@ impl From<Broken> for Ended {
             Broken::HungUp => Self::HungUp,
             Broken::Stopped => Self::Stopped,
             Broken::Lost(error) => Self::Lost(error.to_string()),
+            Broken::Rig(fault) => fault.into(),
         }
     }
 }
@@ -114,7 +125,7 @@ pub enum Event<'a> {
 pub fn serve(
     listener: &TcpListener,
     protocol: Protocol,
-    guard: &mut Guard<'_>,
+    specimen: &mut Specimen<'_, '_>,
     once: bool,
     stop: &(dyn Fn() -> bool + Sync),
     told: &mut dyn FnMut(Event<'_>),
@@ -125,33 +136,49 @@ pub fn serve(
         let (sender, clients) = channel();
         let door = scope.spawn(|| keep_door(listener, &busy, &closing, sender));
         loop {
-            let Some((stream, address)) = next_client(&clients, stop) else { break };
+            let (stream, address) = match next_client(&clients, stop, specimen) {
+                Ok(Some(client)) => client,
+                Ok(None) => break,
+                Err(fault) => {
+                    let ended = Ended::from(fault);
+                    specimen.leave(ended.parting(), ended.to_string());
+                    told(Event::Ended(&Session { ended, driven: Driven::default() }));
+                    break;
+                }
+            };
             told(Event::Connected(address));
-            let session = session(stream, protocol, guard, &|| stop());
+            let session = session(stream, address, protocol, specimen, &|| stop());
             told(Event::Ended(&session));
             if once || !session.ended.allows_another() {
                 break;
             }
             busy.store(false, Ordering::Release);
         }
+        specimen.close();
         closing.store(true, Ordering::Release);
         door.join().unwrap_or_else(|_| Err(io::Error::other("who keeps the door fell over")))
     })
 }
 
 /// Serves one client.
-pub fn session(stream: TcpStream, protocol: Protocol, guard: &mut Guard<'_>, stop: &dyn Fn() -> bool) -> Session {
-    let mut specimen = match Specimen::new(guard) {
-        Ok(specimen) => specimen,
-        Err(fault) => return Session { ended: fault.into(), driven: Driven::default() },
-    };
-    let ended = match Connection::new(stream, stop) {
-        Err(error) => Ended::Lost(error.to_string()),
-        Ok(mut connection) => match protocol {
-            Protocol::Nees => nees::session(&mut connection, &mut specimen),
-            Protocol::GenericClient { stiffness } => generic_client::session(&mut connection, &mut specimen, stiffness),
+pub fn session(
+    stream: TcpStream,
+    address: SocketAddr,
+    protocol: Protocol,
+    specimen: &mut Specimen<'_, '_>,
+    stop: &dyn Fn() -> bool,
+) -> Session {
+    let ended = match specimen.come(address.to_string()) {
+        Err(fault) => fault.into(),
+        Ok(()) => match Connection::new(stream, specimen.wait(LOOK), stop) {
+            Err(error) => Ended::Lost(error.to_string()),
+            Ok(mut connection) => match protocol {
+                Protocol::Nees => nees::session(&mut connection, specimen),
+                Protocol::GenericClient { stiffness } => generic_client::session(&mut connection, specimen, stiffness),
+            },
         },
     };
+    specimen.leave(ended.parting(), ended.to_string());
     Session { ended, driven: specimen.driven() }
 }
 
@@ -185,13 +212,19 @@ fn keep_door(
     Ok(())
 }
 
-fn next_client(clients: &Receiver<(TcpStream, SocketAddr)>, stop: &dyn Fn() -> bool) -> Option<(TcpStream, SocketAddr)> {
+/// Waits for a client, and hears the rig meanwhile.
+fn next_client(
+    clients: &Receiver<(TcpStream, SocketAddr)>,
+    stop: &dyn Fn() -> bool,
+    specimen: &mut Specimen<'_, '_>,
+) -> Result<Option<(TcpStream, SocketAddr)>, RigFault> {
     while !stop() {
-        match clients.recv_timeout(LOOK) {
-            Ok(client) => return Some(client),
+        specimen.listen()?;
+        match clients.recv_timeout(specimen.wait(LOOK)) {
+            Ok(client) => return Ok(Some(client)),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return None,
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
         }
     }
-    None
+    Ok(None)
 }

@@ -7,17 +7,15 @@
 use super::Ended;
 use super::connection::Connection;
 use super::nees_message::{self, Point, Refusal, Request, Why};
-use super::specimen::Specimen;
 use crate::rig::RigFault;
+use crate::run::driven::Specimen;
 
 /// Longest line taken, bytes.
 const LONGEST: usize = 4096;
 
 /// Serves a coordinator until one of the two has enough.
 pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>) -> Ended {
-    let ended = talk(connection, specimen).unwrap_or_else(|ended| ended);
-    specimen.hold();
-    ended
+    talk(connection, specimen).unwrap_or_else(|ended| ended)
 }
 
 /// What the coordinator and the rig have agreed on.
@@ -50,14 +48,14 @@ fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>) -> Res
     let mut begun: Vec<u8> = Vec::new();
     let mut buffer = [0; 1024];
     loop {
-        let count = connection.read(&mut buffer)?;
+        let count = connection.read(&mut buffer, specimen)?;
         begun.extend_from_slice(&buffer[..count]);
         while let Some(end) = begun.iter().position(|byte| *byte == b'\n') {
             let line: Vec<u8> = begun.drain(..=end).collect();
             let text = String::from_utf8_lossy(&line);
             let answer = state.answer(text.trim_end_matches(['\r', '\n']), specimen);
             let end = if line.ends_with(b"\r\n") { "\r\n" } else { "\n" };
-            connection.write(format!("{}{end}", answer.line).as_bytes())?;
+            connection.write(format!("{}{end}", answer.line).as_bytes(), specimen)?;
             if let Some(ended) = answer.ended {
                 return Ok(ended);
             }
@@ -116,10 +114,11 @@ impl State {
                 let Some(proposed) = proposed else {
                     return Err(Refusal::new(Why::Order, transaction, "not the transaction that was proposed last"));
                 };
-                if proposed.moves
-                    && let Err(fault) = specimen.execute()
-                {
-                    return Ok(failed(transaction, fault));
+                if proposed.moves {
+                    if let Err(fault) = specimen.execute() {
+                        return Ok(failed(transaction, fault));
+                    }
+                    specimen.commit();
                 }
                 Ok(nees_message::done(transaction).into())
             }

@@ -5,7 +5,8 @@ use std::net::{TcpListener, TcpStream};
 
 use super::*;
 use crate::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
-use crate::rig::VirtualRig;
+use crate::rig::{Guard, VirtualRig};
+use crate::run::Unwatched;
 
 const STIFFNESS: f64 = 3e5;
 const GENERIC: Protocol = Protocol::GenericClient { stiffness: STIFFNESS };
@@ -32,7 +33,9 @@ fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(Socke
                 sessions.push(session.clone());
             }
         };
-        serve(&listener, protocol, &mut guard, true, &|| false, &mut told).unwrap();
+        let mut nobody = Unwatched;
+        let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
+        serve(&listener, protocol, &mut specimen, true, &|| false, &mut told).unwrap();
         let [session] = sessions.try_into().expect("one session");
         (client.join().unwrap(), session)
     })
@@ -139,9 +142,13 @@ fn a_target_beyond_a_limit_closes_and_nothing_moves() {
         let (closed, session) = served(GENERIC, LIMITS, |address| {
             let mut element = Element::connect(address, SMALLEST);
             element.send(&[3.0, target]);
-            element.is_closed()
+            let force = element.ask(10.0)[0];
+            element.send(&[3.0, 0.001]);
+            let still = element.ask(10.0)[0];
+            element.send(&[99.0]);
+            force.is_nan() && still.is_nan() && element.is_closed()
         });
-        assert!(closed);
+        assert!(closed, "nothing is measured any more, and the session closes");
         assert!(matches!(session.ended, Ended::Limit(RigFault::LimitBreached { .. })), "{session:?}");
         assert_eq!(session.driven, Driven { refused: 1, ..Driven::default() });
     }

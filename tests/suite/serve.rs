@@ -17,7 +17,7 @@ limits {
 
 /// The program, waiting for one client.
 struct Server {
-    _folder: tempfile::TempDir,
+    folder: tempfile::TempDir,
     program: Child,
     stdout: BufReader<std::process::ChildStdout>,
     address: String,
@@ -39,15 +39,22 @@ impl Server {
         let mut ready = String::new();
         stdout.read_line(&mut ready).unwrap();
         let address = ready.trim_end().strip_prefix(&format!("ready: {protocol} on ")).expect("it is ready").to_owned();
-        Self { _folder: folder, program, stdout, address }
+        Self { folder, program, stdout, address }
     }
 
     fn connect(&self) -> TcpStream {
         TcpStream::connect(&self.address).unwrap()
     }
 
+    /// What `psd verify` says of its run folder, and the code.
+    fn verified(&self) -> (String, i32) {
+        let run = self.folder.path().join("runs/spring-1");
+        let ended = Command::new(env!("CARGO_BIN_EXE_psd")).arg("verify").arg(run).output().unwrap();
+        (String::from_utf8(ended.stdout).unwrap(), ended.status.code().unwrap())
+    }
+
     /// What it printed, and its exit code.
-    fn end(mut self) -> (String, i32) {
+    fn end(&mut self) -> (String, i32) {
         let mut printed = String::new();
         self.stdout.read_to_string(&mut printed).unwrap();
         (printed, self.program.wait().unwrap().code().unwrap())
@@ -67,7 +74,7 @@ fn generic_client(server: &Server) -> TcpStream {
 
 #[test]
 fn a_generic_client_gets_its_force_and_the_session_is_summed_up() {
-    let server = Server::start("generic-client");
+    let mut server = Server::start("generic-client");
     let mut client = generic_client(&server);
     client.write_all(&words(&[3.0, -0.002, 10.0, 0.0])).unwrap();
     let mut answer = [0; 16];
@@ -81,7 +88,7 @@ fn a_generic_client_gets_its_force_and_the_session_is_summed_up() {
 
 #[test]
 fn a_limit_ends_the_session_with_its_own_code() {
-    let server = Server::start("generic-client");
+    let mut server = Server::start("generic-client");
     let mut client = generic_client(&server);
     client.write_all(&words(&[3.0, 0.0201])).unwrap();
     let (printed, code) = server.end();
@@ -91,7 +98,7 @@ fn a_limit_ends_the_session_with_its_own_code() {
 
 #[test]
 fn a_refused_proposal_leaves_the_session_to_the_coordinator_but_not_the_code() {
-    let server = Server::start("nees");
+    let mut server = Server::start("nees");
     let mut client = server.connect();
     client.write_all(b"open-session\tc\npropose\tt1\tMDL-00-01\tx\tdisplacement\t0.0201\nclose-session\tc\n").unwrap();
     let mut answers = String::new();
@@ -105,9 +112,49 @@ fn a_refused_proposal_leaves_the_session_to_the_coordinator_but_not_the_code() {
 
 #[test]
 fn a_client_that_goes_away_is_a_fault() {
-    let server = Server::start("nees");
+    let mut server = Server::start("nees");
     drop(server.connect());
     let (printed, code) = server.end();
     assert!(printed.starts_with("session: the client went away without closing\n"), "{printed}");
     assert_eq!(code, 3);
+}
+
+#[test]
+fn a_session_is_on_record_and_its_targets_come_out_again() {
+    let mut server = Server::start("nees");
+    let mut client = server.connect();
+    client
+        .write_all(
+            b"open-session\tc\npropose\tt1\tMDL-1\tx\tdisplacement\t0.001\nexecute\tt1\nget-control-point\tt1\tMDL-1\n\
+            propose\tt2\tMDL-1\tx\tdisplacement\t0.05\npropose\tt3\tMDL-1\tx\tdisplacement\t-0.001\ncancel\tt3\nclose-session\tc\n",
+        )
+        .unwrap();
+    client.read_to_string(&mut String::new()).unwrap();
+    server.end();
+    let (told, code) = server.verified();
+    assert_eq!(code, 0, "{told}");
+    // The cancelled one is on record and was never sent.
+    assert!(told.contains("all 2 came out again bit for bit, and 1 steps"), "{told}");
+    let run = server.folder.path().join("runs/spring-1");
+    let table = std::fs::read_to_string(run.join("tables/served.csv")).unwrap();
+    assert!(table.starts_with("step,wall_time_s,command_m,displacement_m,restoring_force_n\n1,1.0,0.001,0.001,300.0"), "{table}");
+    let record = std::fs::read_to_string(run.join("journal.psdj")).unwrap();
+    assert!(record.contains("target displacement 50 mm is outside its limit"), "{record}");
+}
+
+#[test]
+fn settings_of_an_init_file_are_taken_and_noted() {
+    let mut server = Server::start("generic-client");
+    let mut client = generic_client(&server);
+    let mut setting = vec![0; 16_385];
+    setting[..8].copy_from_slice(b"\x02rate 1\n");
+    client.write_all(&setting).unwrap();
+    client.write_all(&words(&[3.0, -0.002, 10.0, 0.0])).unwrap();
+    let mut answer = [0; 16];
+    client.read_exact(&mut answer).unwrap();
+    assert_eq!(answer[..], words(&[-600.0, 0.0]));
+    client.write_all(&words(&[99.0, 0.0])).unwrap();
+    assert_eq!(server.end().1, 0);
+    let record = std::fs::read_to_string(server.folder.path().join("runs/spring-1/journal.psdj")).unwrap();
+    assert!(record.contains("not for this rig: rate 1"), "{record}");
 }

@@ -1,21 +1,27 @@
-//! `psd rig serve`: a coordinator or a finite-element program drives the plan's rig, inside the plan's limits. The one
-//! file that opens the port.
+//! `psd rig serve`: a coordinator or a finite-element program drives the plan's rig, inside the plan's limits. In: a plan,
+//! a port. Out: a run folder with the record, which `psd verify` plays back, and a table of targets and readings. The one
+//! file that opens the port; it speaks no protocol.
 
 use std::net::{SocketAddr, TcpListener};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::cli::args::{ServeArguments, ServedProtocol};
+use crate::cli::conclude::digest;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
-use crate::cli::plan_file;
+use crate::cli::record_file::{self, Circumstances, JOURNAL, journal_of};
+use crate::cli::run_folder::{RunFolder, write_new};
 use crate::cli::settings::Settings;
+use crate::cli::watch::{Attendance, Watcher};
+use crate::cli::{plan_file, provenance, real_rig};
 use crate::diagnostic::excerpt::escape;
-use crate::plan::Plan;
+use crate::output::{self, Provenance};
+use crate::plan::{Link, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::quantity::unit;
-use crate::rig::{Guard, RigFault, VirtualRig};
+use crate::record::Outcome;
+use crate::rig::{Rig, VirtualRig, Wish};
+use crate::run::tape::{self, Wall};
 use crate::serve::{self, Ended, Event, Protocol, Session};
 
 /// Serves until a client or a person ends it.
@@ -24,33 +30,119 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else { return Ok(Exit::Wrong) };
     let protocol = protocol(arguments, plan)?;
-    let mut rig = virtual_rig(plan)?;
-    let mut guard = Guard::new(&mut rig, plan.limits).map_err(|fault| failed(plan, &fault))?;
-    let stop = stop_signals().map_err(Failure::Signals)?;
-
-    let listening = |error: std::io::Error| Failure::file(arguments.listen.to_string(), error.to_string());
-    let listener = TcpListener::bind(arguments.listen).map_err(listening)?;
-    let address = listener.local_addr().map_err(listening)?;
-    if !address.ip().is_loopback() {
-        tell(&open_door(address, settings));
+    named(arguments, plan)?;
+    let door = Door::open(arguments)?;
+    let wish = Wish::default();
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    match plan.rig.link {
+        Link::Virtual(_) => {
+            let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, wish.clone()).map_err(Failure::Signals)?;
+            let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..Circumstances::default() };
+            let provenance = provenance::of(plan);
+            let mut rig = VirtualRig::of_plan(plan);
+            let stage = Stage { plan, provenance, circumstances, wall: Box::new(|| None) };
+            on_record(arguments, stage, &mut rig, &mut watcher, &door, protocol, &wish, settings)
+        }
+        Link::Real(_) => {
+            let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)?;
+            let circumstances = real_rig::circumstances(plan, &attendance);
+            let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..circumstances };
+            let provenance = provenance::of_real_run(plan, &circumstances);
+            let stage = Stage { plan, provenance, circumstances, wall: real_rig::wall_clock() };
+            on_record(arguments, stage, &mut opened.connected.rig, &mut opened.watcher, &door, protocol, &wish, settings)
+        }
     }
-    // Who started this program waits for the line.
-    give(&format!("ready: {} on {address}\n", arguments.protocol.name()))?;
+}
 
+/// A real rig moves for strangers only where the command line names it.
+fn named(arguments: &ServeArguments, plan: &Plan) -> Result<(), Failure> {
+    if plan.rig.link.as_real().is_some() && arguments.plan_settings.rig.is_none() {
+        let name = &plan.rig.name;
+        let message = format!("the rig `{name}` is a real one, and is served only where it is named");
+        return Err(Failure::command_line(message).help(format!("name it: --rig {name}")));
+    }
+    Ok(())
+}
+
+/// Where clients come in. It is open before the rig is, so that nothing moves where the port is taken.
+struct Door {
+    listener: TcpListener,
+    address: SocketAddr,
+}
+
+impl Door {
+    fn open(arguments: &ServeArguments) -> Result<Self, Failure> {
+        let listener = TcpListener::bind(arguments.listen).map_err(|error| listening(arguments, &error))?;
+        let address = listener.local_addr().map_err(|error| listening(arguments, &error))?;
+        Ok(Self { listener, address })
+    }
+}
+
+fn listening(arguments: &ServeArguments, error: &std::io::Error) -> Failure {
+    Failure::file(arguments.listen.to_string(), error.to_string()).help("another port: --listen 127.0.0.1:0 takes a free one")
+}
+
+/// What a record says of where it comes from.
+struct Stage<'a> {
+    plan: &'a Plan,
+    provenance: Provenance,
+    circumstances: Circumstances,
+    wall: Wall,
+}
+
+/// Serves, with every request and every answer of the rig in a run folder.
+#[expect(clippy::too_many_arguments, reason = "what is served, where, to whom, and who watches")]
+fn on_record(
+    arguments: &ServeArguments,
+    stage: Stage<'_>,
+    rig: &mut dyn Rig,
+    watcher: &mut Watcher,
+    door: &Door,
+    protocol: Protocol,
+    wish: &Wish,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let Stage { plan, provenance, circumstances, wall } = stage;
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
+    let journal = record_file::begin(folder.path(), plan, &header)?;
     let mut exit = Exit::Met;
     let mut told = Ok(());
-    let mut tell_event = |event: Event<'_>| match event {
-        Event::Connected(client) => tell(&format!("  {client} is connected\n")),
-        Event::Ended(session) => {
-            exit = exit.max(exit_of(session));
-            let given = give(&summary(session));
-            told = std::mem::replace(&mut told, Ok(())).and(given);
+    let mut served = Ok(());
+    let (recorded, steps) = tape::record_driven(plan, rig, watcher, journal, wall, &mut |specimen| {
+        if !door.address.ip().is_loopback() {
+            tell(&open_door(door.address, settings));
         }
-    };
-    let wanted = || stop.load(Ordering::Acquire);
-    serve::serve(&listener, protocol, &mut guard, arguments.once, &wanted, &mut tell_event).map_err(listening)?;
+        // Who started this program waits for the line.
+        told = give(&format!("ready: {} on {}\n", arguments.protocol.name(), door.address));
+        let mut tell_event = |event: Event<'_>| match event {
+            Event::Connected(client) => tell(&format!("  {client} is connected\n")),
+            Event::Ended(session) => {
+                exit = exit.max(exit_of(session));
+                let given = give(&summary(session));
+                told = std::mem::replace(&mut told, Ok(())).and(given);
+            }
+        };
+        let wanted = || wish.wants_end();
+        served = serve::serve(&door.listener, protocol, specimen, arguments.once, &wanted, &mut tell_event);
+    });
+    watcher.finish();
+    let table = output::driven(&steps)?;
+    let journal = (JOURNAL.to_owned(), digest(&journal_of(folder.path()))?);
+    let manifest = output::manifest_with(std::slice::from_ref(&table), &[journal]);
+    [&table, &manifest].into_iter().try_for_each(|file| write_new(folder.path(), file))?;
+    tell(&format!("  {}\n", folder.path().display()));
+    served.map_err(|error| listening(arguments, &error))?;
     told?;
-    Ok(exit)
+    if let Some(fault) = &recorded.fault {
+        tell(&format!("  the record could not be kept to its end: {fault}\n"));
+        exit = exit.max(Exit::Fault);
+    }
+    Ok(exit.max(match recorded.record.outcome {
+        Outcome::Completed => Exit::Met,
+        Outcome::Aborted { .. } => Exit::Stopped,
+        Outcome::Faulted { .. } => Exit::Fault,
+    }))
 }
 
 /// What the client speaks, with the stiffness that it may ask for.
@@ -88,28 +180,6 @@ fn stiffness(text: &str) -> Result<f64, Failure> {
     if stiffness >= 0.0 && stiffness.is_finite() { Ok(stiffness) } else { Err(wrong("a stiffness is 0 or more")) }
 }
 
-/// The plan's rig. A real one is not opened here: nobody would notice that an ideal one stands in for it.
-fn virtual_rig(plan: &Plan) -> Result<VirtualRig, Failure> {
-    if plan.rig.link.as_real().is_some() {
-        let message = format!("the rig `{}` is a real one, and only virtual rigs are served", plan.rig.name);
-        return Err(Failure::command_line(message).help("name a virtual rig of the plan: --rig NAME"));
-    }
-    Ok(VirtualRig::of_plan(plan))
-}
-
-fn failed(plan: &Plan, fault: &RigFault) -> Failure {
-    Failure::file(plan.rig.name.clone(), fault.to_string())
-}
-
-/// Ctrl-C and its like end the serving.
-fn stop_signals() -> std::io::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM, signal_hook::consts::SIGHUP] {
-        signal_hook::flag::register(signal, Arc::clone(&stop))?;
-    }
-    Ok(stop)
-}
-
 fn open_door(address: SocketAddr, settings: Settings) -> String {
     let note = settings.paint_note("  note:");
     format!(
@@ -143,6 +213,7 @@ const fn exit_of(session: &Session) -> Exit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig::RigFault;
     use crate::serve::Driven;
 
     #[test]

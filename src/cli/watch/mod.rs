@@ -59,12 +59,34 @@ impl Watcher {
     /// Watches a run on a simulated or a real rig. Keys and signals become `wish`, which a rig that can hold in the
     /// middle of a step is given too.
     pub fn new(settings: Settings, attendance: &Attendance, plan: &Plan, simulated: bool, wish: Wish) -> std::io::Result<Self> {
+        Self::watching(settings, attendance, plan, simulated, wish, true)
+    }
+
+    /// Watches in lines, also on a terminal: a client drives, and there is no procedure to draw.
+    pub fn in_lines(
+        settings: Settings,
+        attendance: &Attendance,
+        plan: &Plan,
+        simulated: bool,
+        wish: Wish,
+    ) -> std::io::Result<Self> {
+        Self::watching(settings, attendance, plan, simulated, wish, false)
+    }
+
+    fn watching(
+        settings: Settings,
+        attendance: &Attendance,
+        plan: &Plan,
+        simulated: bool,
+        wish: Wish,
+        drawn: bool,
+    ) -> std::io::Result<Self> {
         let signals = Signals::caught(&wish)?;
         let named = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
         let operator = attendance.operator.clone().or(named).filter(|name| !name.trim().is_empty());
-        let face = if settings.can_ask && settings.unicode && screen::is_large_enough() {
+        let face = if drawn && settings.can_ask && settings.unicode && screen::is_large_enough() {
             Face::Screen(Screen::new(plan, simulated, operator.clone(), wish.clone(), settings.color))
-        } else if settings.stderr_terminal {
+        } else if drawn && settings.stderr_terminal {
             Face::Bar(Bar::new(settings.unicode))
         } else {
             Face::Lines(Lines::default())

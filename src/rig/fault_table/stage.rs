@@ -140,6 +140,7 @@ pub(super) fn header() -> Header {
         host: None,
         began: None,
         rehearsal: false,
+        served: None,
     }
 }
 

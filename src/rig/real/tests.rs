@@ -464,3 +464,13 @@ fn a_load_cell_of_its_own_gives_the_force_and_an_open_loop_says_so() {
     assert!(rig.open_loop());
     assert_eq!(rig.identity().model, "fake + fake (open loop: displacement as commanded)");
 }
+
+#[test]
+fn many_short_stays_are_heard_as_one_long_one() {
+    let mut stand = stand();
+    for _ in 0..1000 {
+        stand.rig.pause(0.01).unwrap();
+    }
+    // Three times the watchdog.
+    stand.rig.read().unwrap();
+}

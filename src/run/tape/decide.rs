@@ -173,7 +173,7 @@ pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
                 OperatorBody::AskedToStop
                 | OperatorBody::AskedToStopInspecting
                 | OperatorBody::Answered { answer: Inspection::Stop { .. }, .. } => {}
-                OperatorBody::Answered { .. } | OperatorBody::Noted { .. } => break,
+                OperatorBody::Answered { .. } | OperatorBody::Noted { .. } | OperatorBody::Asked { .. } => break,
             },
             _ => break,
         }

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
-use crate::run::Inspection;
+use crate::run::{Inspection, Request};
 
 /// HEADER: all a run starts from. Enough to check the plan again, on any machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +22,9 @@ pub struct Header {
     /// Whether only the part that a rehearsal measures was to run.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rehearsal: bool,
+    /// Protocol of the clients that drive the rig; None: the plan's procedures do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub served: Option<String>,
     /// As `--date` gave it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
@@ -167,6 +170,10 @@ pub enum OperatorBody {
     AskedToStop,
     /// Ctrl-C or its like, instead of an answer at an inspection: the record alone tells the two apart.
     AskedToStopInspecting,
+    /// Not a person, but the client that drives the rig.
+    Asked {
+        request: Request,
+    },
 }
 
 /// FAULT: a call on the rig that failed.

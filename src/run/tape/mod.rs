@@ -3,6 +3,9 @@
 //! the record. The same code records, verifies, reports and resumes: a resumed run is the recorded one, played back to its
 //! end, and then alive.
 //!
+//! A rig that a client drives is recorded the same way: the client's requests are records before they are done, and they
+//! are what is played back.
+//!
 //! Order of a step on a real rig: INTENT durable → target sent → SAMPLE durable → integrated → STEP.
 
 mod decide;
@@ -31,6 +34,7 @@ use crate::rig::Rig;
 use entry::PlanBody;
 use state::State;
 
+use super::driven::{self, DrivenRecord, DrivenStep, Specimen};
 use super::{Observer, Unwatched, run};
 
 /// Gives the wall clock, as text; a virtual run has none.
@@ -42,14 +46,39 @@ pub type Wall = Box<dyn Fn() -> Option<String>>;
 /// The journal cannot be ended; the record is complete all the same.
 pub fn record(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer, journal: Journal, wall: Wall) -> Recorded {
     let state = State::recording(journal, wall);
-    perform(plan, Some(rig), observer, state)
+    perform(Some(rig), observer, state, |rig, observer, _| run(plan, rig, observer))
+}
+
+/// Lets a client drive the plan's rig and records what it asks for and every answer. The header stands in the journal already.
+pub fn record_driven(
+    plan: &Plan,
+    rig: &mut dyn Rig,
+    observer: &mut dyn Observer,
+    journal: Journal,
+    wall: Wall,
+    client: &mut dyn FnMut(&mut Specimen<'_, '_>),
+) -> (Recorded, Vec<DrivenStep>) {
+    let mut done = Vec::new();
+    let recorded = perform(Some(rig), observer, State::recording(journal, wall), |rig, observer, _| {
+        let DrivenRecord { record, steps } = driven::drive(plan, rig, observer, client);
+        done = steps;
+        record
+    });
+    (recorded, done)
 }
 
 /// Plays a record back: no rig, nobody asked. What the journal holds is all that is known.
 #[must_use]
 pub fn replay(plan: &Plan, played: Played) -> Replayed {
+    let served = played.header.served.is_some();
     let state = State::replaying(played);
-    let Recorded { record, mismatch, .. } = perform(plan, None, &mut Unwatched, state);
+    let Recorded { record, mismatch, .. } = if served {
+        perform(None, &mut Unwatched, state, |rig, observer, state| {
+            driven::drive(plan, rig, observer, &mut |specimen| state::ask_again(state, specimen)).record
+        })
+    } else {
+        perform(None, &mut Unwatched, state, |rig, observer, _| run(plan, rig, observer))
+    };
     Replayed { record, mismatch }
 }
 
@@ -82,7 +111,7 @@ pub fn resume(
     wall: Wall,
 ) -> Recorded {
     let state = State::resuming(played, journal, wall);
-    perform(plan, Some(rig), observer, state)
+    perform(Some(rig), observer, state, |rig, observer, _| run(plan, rig, observer))
 }
 
 /// A run, and what became of its journal.
@@ -102,11 +131,16 @@ pub struct Replayed {
     pub mismatch: Option<Mismatch>,
 }
 
-fn perform(plan: &Plan, rig: Option<&mut dyn Rig>, observer: &mut dyn Observer, state: State) -> Recorded {
+fn perform(
+    rig: Option<&mut dyn Rig>,
+    observer: &mut dyn Observer,
+    state: State,
+    runs: impl FnOnce(&mut dyn Rig, &mut dyn Observer, &RefCell<State>) -> Record,
+) -> Recorded {
     let state = Rc::new(RefCell::new(state));
     let mut rig = TapedRig::new(rig, Rc::clone(&state));
     let mut observer = TapedObserver::new(observer, Rc::clone(&state));
-    let mut record = run(plan, &mut rig, &mut observer);
+    let mut record = runs(&mut rig, &mut observer, &state);
     let mut state = state.borrow_mut();
     if record.outcome == Outcome::Completed && state.mismatch().is_none() && state.next_kind().is_some() {
         // What is on record beyond the plan's end belongs to another plan.

@@ -8,7 +8,7 @@ use super::entry::{OperatorBody, StepBody};
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
-use crate::run::{Inspection, Next, Observer, StepReport};
+use crate::run::{Inspection, Next, Observer, Request, StepReport};
 
 /// Who watches a run, with every word on record.
 pub struct TapedObserver<'run> {
@@ -76,6 +76,23 @@ impl Observer for TapedObserver<'_> {
             self.append(EntryKind::Event, event);
         }
         self.inner.event(event);
+    }
+
+    fn asked(&mut self, request: &Request) {
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            match state.peek(EntryKind::Operator, "a request of the client") {
+                Ok(OperatorBody::Asked { request: recorded }) if recorded == *request => state.consume(),
+                Ok(_) => {
+                    state.disagrees(format!("{request:?}"));
+                }
+                Err(_) => {}
+            }
+        } else {
+            self.append(EntryKind::Operator, &OperatorBody::Asked { request: request.clone() });
+        }
+        self.inner.asked(request);
     }
 
     fn stop_requested(&self) -> bool {

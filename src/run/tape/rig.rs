@@ -153,13 +153,19 @@ impl Rig for TapedRig<'_> {
             if let Some(fault) = self.state.borrow_mut().played_fault(Call::Propose) {
                 return Err(fault);
             }
-            let intent = self.played_intent(targets, speed, None)?;
-            let offer = Offer {
+            let intent = if self.state.borrow().driven {
+                self.state.borrow().intent_ahead()
+            } else {
+                Some(self.played_intent(targets, speed, None)?)
+            };
+            // Of what was proposed and never sent, no bytes are on record.
+            let unsent = || Offer { targets: targets.to_vec(), speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None };
+            let offer = intent.map_or_else(unsent, |intent| Offer {
                 targets: intent.said.clone().unwrap_or_else(|| intent.to.clone()),
                 speed: intent.rate,
                 wire: Vec::new(),
                 move_id: intent.id,
-            };
+            });
             self.pending = Some((targets.to_vec(), speed, offer.clone()));
             return Ok(offer);
         }
@@ -177,6 +183,8 @@ impl Rig for TapedRig<'_> {
             self.pending.take().ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
         let playing = self.state.borrow().playing();
         if playing {
+            // What is sent is held against the record here, where a client's requests came first.
+            self.played_intent(&targets, speed, None)?;
             let mut state = self.state.borrow_mut();
             state.consume();
             if let Some(fault) = state.played_fault(Call::Execute) {
@@ -279,7 +287,9 @@ impl Rig for TapedRig<'_> {
         if let Some((targets, speed, offer)) = self.pending.take() {
             let playing = self.state.borrow().playing();
             if playing {
-                self.state.borrow_mut().consume();
+                if self.played_intent(&targets, speed, None).is_ok() {
+                    self.state.borrow_mut().consume();
+                }
             } else {
                 let _ = self.record_intent(&mut intent(&targets, speed, &offer, None));
             }

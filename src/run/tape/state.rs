@@ -1,20 +1,25 @@
 //! What the taped rig and the taped observer share: the records still to be played, the journal that is written, the
 //! time of the last record. In: bodies to append, kinds to expect. Out: bodies played.
 
+use std::cell::RefCell;
 use std::collections::VecDeque;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
-use super::entry::{Doubt, FaultBody, RigBody};
+use super::entry::{Doubt, FaultBody, IntentBody, OperatorBody, RigBody};
 use super::played::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
 use crate::rig::RigFault;
+use crate::run::Request;
+use crate::run::driven::Specimen;
 
 pub(super) struct State {
     lines: VecDeque<Line>,
+    /// A client drove the rig: between a proposal and its target stand the client's requests.
+    pub(super) driven: bool,
     pub(super) rig: Option<RigBody>,
     journal: Option<Journal>,
     /// What the resumption found of the target at the end of what is played.
@@ -39,6 +44,7 @@ impl State {
     pub(super) fn replaying(played: Played) -> Self {
         let time = played.rig.as_ref().map_or(0.0, |rig| rig.t);
         Self {
+            driven: played.header.served.is_some(),
             lines: played.lines,
             time,
             rig: played.rig,
@@ -55,6 +61,7 @@ impl State {
     fn empty() -> Self {
         Self {
             lines: VecDeque::new(),
+            driven: false,
             rig: None,
             journal: None,
             doubt: None,
@@ -140,6 +147,29 @@ impl State {
             }
             Ok(_) => None,
             Err(fault) => Some(fault),
+        }
+    }
+
+    /// The target that came of what the client has just proposed: the first before its next proposal. None: nothing did.
+    pub(super) fn intent_ahead(&self) -> Option<IntentBody> {
+        let proposes = |line: &&Line| {
+            let asked = body::<OperatorBody>(line);
+            line.kind == EntryKind::Operator
+                && matches!(asked, Ok(OperatorBody::Asked { request: Request::Propose { .. } | Request::ProposeNoNumber { .. } }))
+        };
+        let until_next = self.lines.iter().take_while(|line| !proposes(line));
+        until_next.filter(|line| line.kind == EntryKind::Intent).find_map(|line| body(line).ok())
+    }
+
+    /// The client's next request, left where it is.
+    fn next_request(&mut self) -> Option<Request> {
+        match self.peek(EntryKind::Operator, "a request of the client") {
+            Ok(OperatorBody::Asked { request }) => Some(request),
+            Ok(_) => {
+                self.disagrees("a request of the client".to_owned());
+                None
+            }
+            Err(_) => None,
         }
     }
 
@@ -242,6 +272,26 @@ impl State {
 /// Said where a record without an end has been played.
 pub const CUT_OFF: &str = "the record ends here: the run was cut off";
 
+/// Lets the requests of the record drive the specimen once more.
+pub(super) fn ask_again(state: &RefCell<State>, specimen: &mut Specimen<'_, '_>) {
+    loop {
+        let (over, stayed) = {
+            let state = state.borrow();
+            (state.lines.is_empty() || state.mismatch.is_some(), state.front_is_pause_fault())
+        };
+        if over {
+            return;
+        }
+        if stayed {
+            specimen.stay_again();
+            continue;
+        }
+        let Some(request) = state.borrow_mut().next_request() else { return };
+        specimen.carry_out(request);
+    }
+}
+
+/// Of a record without an end, when it has been played.
 pub(super) fn ended() -> RigFault {
     RigFault::Device(CUT_OFF.to_owned())
 }

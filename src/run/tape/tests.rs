@@ -170,6 +170,7 @@ fn header() -> Header {
         settings: Vec::new(),
         rig: None,
         rehearsal: false,
+        served: None,
         date: None,
         operator: None,
         host: None,

@@ -1,0 +1,350 @@
+//! A rig that a client drives, behind the guard. In: the client's requests, one after the other. Out: the reading after
+//! each, events, and what was asked of the specimen in all. It knows no protocol.
+//!
+//! Everything that a protocol does to the rig goes through [`Specimen`], which tells the observer first. So the record of
+//! the requests, played back through [`Specimen::carry_out`], asks the guard and the rig for the same again.
+
+use std::time::{Duration, Instant};
+
+use super::gate;
+use super::request::{Parting, Request};
+use super::session::Session;
+use super::stop::Stop;
+use super::{Observer, StepReport};
+use crate::plan::Plan;
+use crate::record::{Event, EventKind, Outcome, Record};
+use crate::rig::{Guard, Rig, RigFault};
+
+/// What a session asked of the specimen, SI.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Driven {
+    /// Moves carried out.
+    pub targets: u64,
+    /// Targets that a limit stood in the way of.
+    pub refused: u64,
+    /// Largest |displacement| read, m.
+    pub displacement: f64,
+    /// Largest |force| read, N.
+    pub force: f64,
+}
+
+/// Displacement (m) and force (N), settled and inside the limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Felt {
+    pub displacement: f64,
+    pub force: f64,
+}
+
+/// A target carried out and what was read there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenStep {
+    /// From 1, over all clients.
+    pub step: u64,
+    /// Rig time, s.
+    pub time: f64,
+    /// m
+    pub command: f64,
+    /// m
+    pub displacement: f64,
+    /// N
+    pub force: f64,
+}
+
+/// One degree of freedom behind its guard.
+pub struct Specimen<'session, 'rig> {
+    guard: &'session mut Guard<'rig>,
+    observer: &'session mut dyn Observer,
+    /// A real rig must be heard from at least this often.
+    beat: Option<Duration>,
+    heard: Instant,
+    felt: Felt,
+    driven: Driven,
+    steps: Vec<DrivenStep>,
+    commits: u64,
+    events: Vec<Event>,
+    /// How the worst session ended, and why.
+    worst: Option<(Parting, String)>,
+    /// A client is there.
+    inside: bool,
+    closed: bool,
+}
+
+/// What a driven rig leaves.
+pub struct DrivenRecord {
+    pub record: Record,
+    pub steps: Vec<DrivenStep>,
+}
+
+/// Lets `client` drive the plan's rig, a real one once it has passed the gate. Never fails: what went wrong is the record's
+/// outcome.
+#[must_use]
+pub fn drive(
+    plan: &Plan,
+    rig: &mut dyn Rig,
+    observer: &mut dyn Observer,
+    client: &mut dyn FnMut(&mut Specimen<'_, '_>),
+) -> DrivenRecord {
+    let identity = rig.identity();
+    let ended = |events, outcome| DrivenRecord {
+        record: Record { rig: identity.clone(), procedures: Vec::new(), events, outcome },
+        steps: Vec::new(),
+    };
+    let mut session = match Session::begin(plan, rig, observer) {
+        Ok(session) => session,
+        Err(early) => return ended(vec![early.0], early.1.outcome()),
+    };
+    let link = plan.rig.link.as_real();
+    if let Some(link) = link
+        && let Err(stop) = gate::pass(plan, link, "as its client says, within the plan's limits", &mut session)
+    {
+        session.end(&stop);
+        return ended(session.finish(), stop.outcome());
+    }
+    let (guard, observer, events) = session.parts();
+    let beat = link.map(|link| Duration::from_secs_f64((link.watchdog / 8.0).max(0.0)));
+    let mut specimen = Specimen::new(guard, observer, beat);
+    client(&mut specimen);
+    let (outcome, steps) = (specimen.outcome(), std::mem::take(&mut specimen.steps));
+    events.append(&mut specimen.events);
+    drop(specimen);
+    session.guard.hold();
+    DrivenRecord { steps, ..ended(session.finish(), outcome) }
+}
+
+impl<'session, 'rig> Specimen<'session, 'rig> {
+    /// With `beat`, a rig that must be heard from at least so often.
+    pub fn new(guard: &'session mut Guard<'rig>, observer: &'session mut dyn Observer, beat: Option<Duration>) -> Self {
+        Self {
+            guard,
+            observer,
+            beat,
+            heard: Instant::now(),
+            felt: Felt { displacement: 0.0, force: 0.0 },
+            driven: Driven::default(),
+            steps: Vec::new(),
+            commits: 0,
+            events: Vec::new(),
+            worst: None,
+            inside: false,
+            closed: false,
+        }
+    }
+
+    /// What was read last.
+    pub const fn felt(&self) -> Felt {
+        self.felt
+    }
+
+    /// Of the client that is there, or was last.
+    pub const fn driven(&self) -> Driven {
+        self.driven
+    }
+
+    /// The last target carried out, m.
+    pub fn commanded(&self) -> f64 {
+        self.guard.commanded()[0]
+    }
+
+    /// Rig time, s.
+    pub fn time(&self) -> f64 {
+        self.guard.time()
+    }
+
+    /// How long one wait for a client may be, if `longest` is long enough by itself.
+    pub fn wait(&self, longest: Duration) -> Duration {
+        self.beat.map_or(longest, |beat| beat.clamp(Duration::from_millis(1), longest))
+    }
+
+    /// Takes a client, and reads where the rig stands.
+    ///
+    /// # Errors
+    /// It cannot be read, stands outside a limit, or has more than one degree of freedom.
+    pub fn come(&mut self, client: String) -> Result<(), RigFault> {
+        self.asked(&Request::Come { client });
+        self.driven = Driven::default();
+        self.inside = true;
+        let degrees = self.guard.commanded().len();
+        if degrees != 1 {
+            let reason = format!("a client can drive one degree of freedom, and this rig has {degrees}");
+            return self.told(Err(RigFault::Device(reason)));
+        }
+        self.feel()
+    }
+
+    /// Checks a target (m) and makes it ready; nothing moves.
+    ///
+    /// # Errors
+    /// A limit stands in the way, or the rig refuses.
+    pub fn propose(&mut self, target: f64) -> Result<(), RigFault> {
+        self.asked(&Request::target(target));
+        let proposed = self.guard.propose(&[target], None);
+        if matches!(proposed, Err(RigFault::LimitBreached { .. })) {
+            self.driven.refused += 1;
+        }
+        self.told(proposed)
+    }
+
+    /// Carries out what was proposed, settles and reads.
+    ///
+    /// # Errors
+    /// The rig fails, or the reading lies outside a limit.
+    pub fn execute(&mut self) -> Result<(), RigFault> {
+        self.asked(&Request::Execute);
+        let executed = self.guard.execute();
+        self.told(executed)?;
+        self.driven.targets += 1;
+        self.feel()?;
+        let step = self.steps.len() as u64 + 1;
+        let Felt { displacement, force } = self.felt;
+        self.steps.push(DrivenStep { step, time: self.time(), command: self.commanded(), displacement, force });
+        Ok(())
+    }
+
+    /// The client counts its step as done.
+    pub fn commit(&mut self) {
+        self.asked(&Request::Commit);
+        self.commits += 1;
+        let nothing = None;
+        self.observer.step_done(&StepReport {
+            step: self.commits,
+            time: self.guard.time(),
+            command: self.guard.commanded()[0],
+            displacement: self.felt.displacement,
+            velocity: nothing,
+            acceleration: nothing,
+            force: self.felt.force,
+            energy_error: nothing,
+        });
+    }
+
+    /// Reads anew.
+    ///
+    /// # Errors
+    /// The rig fails, or the reading lies outside a limit.
+    pub fn read(&mut self) -> Result<(), RigFault> {
+        self.asked(&Request::Read);
+        self.feel()
+    }
+
+    /// Forgets what was proposed, stops all motion and keeps the load.
+    pub fn hold(&mut self) {
+        self.asked(&Request::Hold);
+        self.guard.hold();
+    }
+
+    /// A remark for the record.
+    pub fn remark(&mut self, text: String) {
+        self.asked(&Request::Remark { text: text.clone() });
+        self.event(EventKind::Note, text);
+    }
+
+    /// The client is gone; the rig holds.
+    pub fn leave(&mut self, parting: Parting, reason: String) {
+        self.asked(&Request::Leave { parting, reason: reason.clone() });
+        self.guard.hold();
+        self.inside = false;
+        self.event(EventKind::Note, format!("session ended: {reason}"));
+        if self.worst.as_ref().is_none_or(|(worst, _)| *worst < parting) {
+            self.worst = Some((parting, reason));
+        }
+    }
+
+    /// Nobody is served any more.
+    pub fn close(&mut self) {
+        self.asked(&Request::Close);
+        self.closed = true;
+    }
+
+    /// Hears the rig, where that is due: while a client is silent, and while one talks of other things than the rig.
+    ///
+    /// # Errors
+    /// The rig fails, or stands outside a limit.
+    pub fn listen(&mut self) -> Result<(), RigFault> {
+        let Some(beat) = self.beat.filter(|beat| self.heard.elapsed() >= *beat) else { return Ok(()) };
+        self.stay(beat)
+    }
+
+    /// One request again, as the record has it. What comes of it is on record too.
+    pub(super) fn carry_out(&mut self, request: Request) {
+        // A refusal has told its event, and what the client made of it are the requests that follow.
+        let _ = match request {
+            Request::Come { client } => self.come(client),
+            Request::Propose { target } => self.propose(target),
+            Request::ProposeNoNumber { said } => self.propose(said.parse().unwrap_or(f64::NAN)),
+            Request::Execute => self.execute(),
+            Request::Read => self.read(),
+            Request::Commit => {
+                self.commit();
+                Ok(())
+            }
+            Request::Hold => {
+                self.hold();
+                Ok(())
+            }
+            Request::Remark { text } => {
+                self.remark(text);
+                Ok(())
+            }
+            Request::Leave { parting, reason } => {
+                self.leave(parting, reason);
+                Ok(())
+            }
+            Request::Close => {
+                self.close();
+                Ok(())
+            }
+        };
+    }
+
+    /// A stay that failed in the record fails again.
+    pub(super) fn stay_again(&mut self) {
+        let _ = self.stay(Duration::from_millis(1));
+    }
+
+    fn stay(&mut self, seconds: Duration) -> Result<(), RigFault> {
+        let stayed = self.guard.pause(seconds.as_secs_f64());
+        self.heard = Instant::now();
+        self.told(stayed)
+    }
+
+    fn feel(&mut self) -> Result<(), RigFault> {
+        let read = self.guard.read();
+        self.heard = Instant::now();
+        let reading = self.told(read)?;
+        self.felt = Felt { displacement: reading.displacement[0], force: reading.force[0] };
+        self.driven.displacement = self.driven.displacement.max(self.felt.displacement.abs());
+        self.driven.force = self.driven.force.max(self.felt.force.abs());
+        Ok(())
+    }
+
+    fn asked(&mut self, request: &Request) {
+        self.observer.asked(request);
+    }
+
+    /// A fault is an event of the record.
+    fn told<T>(&mut self, result: Result<T, RigFault>) -> Result<T, RigFault> {
+        if let Err(fault) = &result {
+            let stop = Stop::Rig(fault.clone());
+            self.event(stop.event_kind(), stop.to_string());
+        }
+        result
+    }
+
+    fn event(&mut self, kind: EventKind, text: String) {
+        let event = Event { time: self.guard.time(), procedure: None, step: None, kind, text };
+        self.observer.event(&event);
+        self.events.push(event);
+    }
+
+    /// A record that was cut off is no complete one.
+    fn outcome(&self) -> Outcome {
+        let cut_off = |place: &str| Outcome::Faulted { reason: format!("the record ends {place}") };
+        match &self.worst {
+            _ if self.inside => cut_off("in the middle of a session"),
+            _ if !self.closed => cut_off("while a client was waited for"),
+            None | Some((Parting::Closed, _)) => Outcome::Completed,
+            Some((Parting::Stopped, reason)) => Outcome::Aborted { reason: reason.clone() },
+            Some((Parting::Failed, reason)) => Outcome::Faulted { reason: reason.clone() },
+        }
+    }
+}
