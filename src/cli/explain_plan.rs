@@ -278,8 +278,8 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
-            Striker, Until,
+            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle,
+            Specimen, Striker, Until,
         };
         let specimen = Specimen {
             name: "beam".to_owned(),

@@ -90,8 +90,7 @@ impl Split {
         let load = alpha * (from.restoring_force + damping * from.velocity) - now * (read + damping * predicted);
         let unpushed = load / inertia;
         // What the structure's own resistance takes back of the contact's acceleration, by part.
-        let resisted =
-            now * time_step * (0.5 * damping + self.contact_beta * time_step * self.operator_stiffness) / inertia;
+        let resisted = now * time_step * (0.5 * damping + self.contact_beta * time_step * self.operator_stiffness) / inertia;
         let velocity_by_force = (0.5 - gamma * resisted) * time_step / mass;
 
         let mut state = StepState::Free;

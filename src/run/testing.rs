@@ -2,8 +2,8 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, Impact, Integrator, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
-    StiffnessRamp, Striker, Until, VirtualLink,
+    Behaviour, Calibration, Contact, Impact, Integrator, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle,
+    Specimen, StiffnessRamp, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;

@@ -1,7 +1,7 @@
 //! What is run: `stiffness ramp`, `damping sweep`, `impact`, `move`, `inspect`.
 
-use super::{methods, results};
 use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
+use super::{methods, results};
 use crate::quantity::Dimension;
 
 const SPECIMEN: Field = Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");

@@ -7,8 +7,8 @@ use psd::mechanics::energy::Energies;
 use psd::mechanics::identification::LineFit;
 use psd::output::{Provenance, Run};
 use psd::plan::{
-    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, Integrator, InspectTrigger, Interval,
-    Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
+    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Integrator,
+    Interval, Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
     StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
