@@ -102,12 +102,13 @@ fn figure(checker: &mut Checker, written: &Expr, procedures: &[Option<Procedure>
     Some(Figure { kind, procedure })
 }
 
-const ALL: [FigureKind; 7] = [
+const ALL: [FigureKind; 8] = [
     FigureKind::Displacement,
     FigureKind::StrikerVelocity,
     FigureKind::Velocity,
     FigureKind::ContactForce,
     FigureKind::ForceDisplacement,
     FigureKind::Energy,
+    FigureKind::Tracking,
     FigureKind::DampingFit,
 ];

@@ -150,6 +150,10 @@ pub struct Limits {
     pub tracking_error: Interval,
     /// |energy error| over the input energy.
     pub energy_error: Interval,
+    /// |energy error of tracking| over the input energy; where it bounds nothing, the default holds.
+    pub tracking_energy_error: Interval,
+    /// Root mean square of the tracking error over that of the command.
+    pub nrms_error: Interval,
 }
 
 impl Limits {
@@ -160,6 +164,8 @@ impl Limits {
         increment: Interval::ALL,
         tracking_error: Interval::ALL,
         energy_error: Interval::ALL,
+        tracking_energy_error: Interval::ALL,
+        nrms_error: Interval::ALL,
     };
 }
 
@@ -248,6 +254,8 @@ pub struct Impact {
     pub integrator: Integrator,
     /// Whether it runs beyond the stability limit of its integrator.
     pub allow_unstable: bool,
+    /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
+    pub i_modification: bool,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// Upper bound of virtual time, s.
@@ -370,6 +378,8 @@ pub enum FigureKind {
     ContactForce,
     ForceDisplacement,
     Energy,
+    /// Command against measurement.
+    Tracking,
     DampingFit,
 }
 
@@ -384,6 +394,7 @@ impl FigureKind {
             Self::ContactForce => "contact_force",
             Self::ForceDisplacement => "force_displacement",
             Self::Energy => "energy",
+            Self::Tracking => "tracking",
             Self::DampingFit => "damping_fit",
         }
     }
@@ -401,6 +412,7 @@ impl FigureKind {
                 Self::ContactForce,
                 Self::ForceDisplacement,
                 Self::Energy,
+                Self::Tracking,
             ],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }

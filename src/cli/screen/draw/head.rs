@@ -84,6 +84,9 @@ fn numbers_line(view: &View<'_>, wide: bool) -> String {
     if let Some(error) = last.energy_error {
         words.push(format!("energy{error_word} {}", percent(error)));
     }
+    if let Some(share) = last.tracking_energy_error.filter(|_| wide) {
+        words.push(format!("tracking energy {}", percent(share)));
+    }
     format!(" {}", words.join("   "))
 }
 
