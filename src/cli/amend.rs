@@ -34,15 +34,14 @@ pub fn amend(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Fa
     let folder = Folder::read(run)?;
     let rebuilt = Rebuilt::of(&folder);
     refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
-    let (Some(report), Some(manifest), Some(journal)) =
-        (&rebuilt.report, folder.files.get(MANIFEST), folder.bytes(JOURNAL))
+    let (Some(report), Some(manifest), Some(journal)) = (&rebuilt.report, folder.files.get(MANIFEST), folder.bytes(JOURNAL))
     else {
         return Err(Failure::file(run, "has no results yet").help("make them with `psd report`"));
     };
     let before = folder.bytes(AMENDMENT).map(AmendmentFile::read).transpose();
     let before = before.map_err(|fault| Failure::file(run.join(AMENDMENT), fault))?;
     let one = One {
-        replaces: report.report_id.clone(),
+        replaces: report.id.clone(),
         manifest_sha256: manifest.digest.clone(),
         by: by.clone(),
         reason: reason.clone(),
@@ -59,7 +58,7 @@ pub fn amend(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Fa
     let made = Folder::read(place.path())?;
     let beside: Vec<(String, String)> = made.listed().map(|(name, held)| (name.clone(), held.digest.clone())).collect();
     conclude_played(place.path(), &played, &beside, settings)?;
-    tell(&format!("  report {} takes the place of report {}\n", played.provenance.report_id(), report.report_id));
+    tell(&format!("  report {} takes the place of report {}\n", played.provenance.report_id(), report.id));
     give(&format!("{}\n", place.path().display()))?;
     // Whatever the verdict of the run: the amendment has been made.
     Ok(Exit::Met)

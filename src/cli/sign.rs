@@ -33,7 +33,7 @@ pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failu
     warn(&arguments.key, protection);
     let statement = Statement {
         run: report.run_id.clone(),
-        report: report.report_id.clone(),
+        report: report.id.clone(),
         role: role.map(str::to_owned),
         name: arguments.name.clone(),
         key: None,

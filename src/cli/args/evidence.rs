@@ -26,9 +26,11 @@ pub struct VerifyArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Writes manifest.sha256.minisig into the run folder, or manifest.sha256.ROLE.minisig. Anybody checks it\n\
+#[command(
+    after_help = "Writes manifest.sha256.minisig into the run folder, or manifest.sha256.ROLE.minisig. Anybody checks it\n\
     with `psd verify RUN --key KEY.pub`, or with `minisign -Vm manifest.sha256 -p KEY.pub`.\n\n\
-    Exit codes: 0 signed, 2 the command line is wrong, 3 the folder does not verify, or a file failed.")]
+    Exit codes: 0 signed, 2 the command line is wrong, 3 the folder does not verify, or a file failed."
+)]
 pub struct SignArguments {
     /// The run folder; it must verify
     #[arg(value_name = "RUN")]

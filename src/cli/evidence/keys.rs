@@ -27,7 +27,7 @@ pub struct KnownKey {
 
 /// A key's number as minisign shows it.
 pub fn number(keynum: &[u8]) -> String {
-    keynum.iter().rev().map(|byte| format!("{byte:02X}")).collect()
+    keynum.iter().rev().fold(String::new(), |text, byte| text + &format!("{byte:02X}"))
 }
 
 /// Reads a public key: a file with a comment and the key, as minisign writes them.
@@ -90,7 +90,9 @@ pub fn refuse_inside(key: &Path, run: &Path) -> Result<(), Failure> {
 pub fn password(file: Option<&Path>, prompt: &str, settings: Settings) -> Result<String, Failure> {
     let password = match file {
         Some(path) => text_of(path)?.lines().next().unwrap_or_default().to_owned(),
-        None if settings.can_ask => rpassword::prompt_password(prompt).map_err(|error| Failure::file("/dev/tty", plain(&error)))?,
+        None if settings.can_ask => {
+            rpassword::prompt_password(prompt).map_err(|error| Failure::file("/dev/tty", plain(&error)))?
+        }
         None => {
             return Err(Failure::command_line("the key has a password, and nobody can be asked for it")
                 .help("put it into a file and name that with `--password-file`"));

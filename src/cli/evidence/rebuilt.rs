@@ -62,7 +62,7 @@ pub struct Rebuilt {
 #[derive(Clone, Debug)]
 pub struct Report {
     pub run_id: String,
-    pub report_id: String,
+    pub id: String,
     /// Who signs it, as the plan says.
     pub roles: Vec<String>,
     /// Path and SHA-256 of every file of the results, in hex; not the manifest.
@@ -109,7 +109,9 @@ impl Rebuilt {
         findings.push(match (&played.mismatch, &played.record.outcome) {
             (Some(mismatch), _) => Finding::wrong("targets", mismatch.to_string()),
             (None, Outcome::Completed) if ended => Finding::sound("targets", format!("{}, and {steps} steps{built}", again())),
-            (None, Outcome::Completed) => Finding::wrong("targets", "the run came to its end, and the record has none".to_owned()),
+            (None, Outcome::Completed) => {
+                Finding::wrong("targets", "the run came to its end, and the record has none".to_owned())
+            }
             (None, _) if ended => Finding::wrong("targets", "the record has an end that the run does not come to".to_owned()),
             (None, Outcome::Aborted { reason } | Outcome::Faulted { reason }) => {
                 let told = if reason.contains("INCOMPLETE") { reason.clone() } else { format!("INCOMPLETE: {reason}") };
@@ -136,7 +138,7 @@ impl Rebuilt {
         };
         let report = Report {
             run_id: played.provenance.run_id.clone(),
-            report_id: played.provenance.report_id().to_owned(),
+            id: played.provenance.report_id().to_owned(),
             roles: played.plan.report.sign.clone(),
             files,
             other_build,

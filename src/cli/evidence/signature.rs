@@ -130,6 +130,10 @@ fn one(
     let signature = strict(bytes)?;
     let comment = signature.trusted_comment().map_err(|error| error.to_string())?;
     let statement = Statement::read(&comment);
+    let is_ours = signature.untrusted_comment().is_ok_and(|untrusted| untrusted == UNTRUSTED[0]);
+    if is_ours && statement.as_ref().is_none_or(|statement| statement.key.is_none()) {
+        return Err("its comment is none that psd writes".to_owned());
+    }
     let number = keys::number(signature.keynum());
     let known = keys.iter().find(|known| known.key.keynum() == signature.keynum());
     if known.is_none() && !keys.is_empty() {
@@ -146,7 +150,8 @@ fn one(
     if let Some(statement) = &statement {
         says_so(statement, name, report)?;
     }
-    let who = statement.map_or_else(|| one_line(&comment), |said| [said.name, said.role].map(Option::unwrap_or_default).join(", "));
+    let who =
+        statement.map_or_else(|| one_line(&comment), |said| [said.name, said.role].map(Option::unwrap_or_default).join(", "));
     let who = who.trim_matches([',', ' ']);
     let who = if who.is_empty() { String::new() } else { format!(" by {who}") };
     let told = match (known, key) {
@@ -160,7 +165,7 @@ fn one(
 /// What it says must be true of this folder, and of the name of its own file.
 fn says_so(statement: &Statement, name: &str, report: Option<&Report>) -> Result<(), String> {
     let Some(report) = report else { return Ok(()) };
-    if (&statement.run, &statement.report) != (&report.run_id, &report.report_id) {
+    if (&statement.run, &statement.report) != (&report.run_id, &report.id) {
         return Err(format!("it is of report {}", one_line(&statement.report)));
     }
     if file_name(statement.role.as_deref(), &report.roles) != name {

@@ -2,8 +2,8 @@
 
 use super::super::{Amends, Change, Run, deviations, standing};
 use super::{
-    AmendmentSummary, AmendsSummary, ChangeSummary, ConditionSummary, EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity,
-    RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary, Value,
+    AmendmentSummary, AmendsSummary, ChangeSummary, ConditionSummary, EventSummary, Ordered, OutcomeSummary, ParameterSummary,
+    PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary, Value,
 };
 use crate::formula::{Estimate, ResultValue};
 use crate::quantity::Dimension;
