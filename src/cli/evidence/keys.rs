@@ -6,6 +6,8 @@ use std::io::{Read as _, Write as _};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use minisign::{KeyPair, PublicKey, SecretKey, SecretKeyBox};
 
 use crate::cli::exit::Failure;
@@ -41,12 +43,24 @@ pub fn public(path: &Path) -> Result<KnownKey, Failure> {
 /// Reads a secret key, with its password if it has one. The word is told where it has none.
 pub fn secret(path: &Path, password_file: Option<&Path>, settings: Settings) -> Result<(SecretKey, Protection), Failure> {
     let failed = |error: minisign::PError| Failure::file(path, format!("is no secret key that can be used: {error}"));
-    let kept = SecretKeyBox::from_string(&text_of(path)?).map_err(failed)?;
-    if let Ok(key) = SecretKey::from_unencrypted_box(kept.clone()) {
+    let text = text_of(path)?;
+    let kept = SecretKeyBox::from_string(&text).map_err(failed)?;
+    let open = SecretKey::from_unencrypted_box(kept.clone()).ok().or_else(|| without_checksum(&text));
+    if let Some(key) = open {
         return Ok((key, Protection::None));
     }
     let password = password(password_file, "password of the key: ", settings)?;
     SecretKey::from_box(kept, Some(password)).map(|key| (key, Protection::Password)).map_err(failed)
+}
+
+/// A key without password as minisign's own program writes it: with zeros for a checksum. Whether its halves belong
+/// together is seen when it signs.
+fn without_checksum(text: &str) -> Option<SecretKey> {
+    let bytes = STANDARD.decode(text.lines().nth(1)?).ok()?;
+    // Algorithms of the signature, of the password and of the checksum, two bytes each; 32 bytes of checksum at the end.
+    let (head, checksum) = (bytes.get(..6)?, bytes.last_chunk::<32>()?);
+    let is_open = head == b"Ed\0\0B2" && *checksum == [0; 32];
+    if is_open { SecretKey::from_bytes(&bytes).ok() } else { None }
 }
 
 /// How a secret key is kept.
