@@ -92,7 +92,7 @@ fn numbers_line(view: &View<'_>, wide: bool) -> String {
 
 /// A fraction for people; rounding noise is nothing.
 pub fn percent(fraction: f64) -> String {
-    if fraction.abs() < 1e-8 { "0 %".to_owned() } else { format!("{} %", significant(fraction * 100.0, 3)) }
+    if fraction.abs() < 1e-8 { "0 %".to_owned() } else { format!("{} %", significant(fraction * 100.0, 3).replace('-', "−")) }
 }
 
 fn clock(seconds: u64) -> String {
