@@ -1,8 +1,7 @@
 //! The integrators on linear frames: order of convergence, the stability limit, the energy balance, and what a storey's own
 //! tangent changes (nothing).
 
-use psd::mechanics::frame::{Damping, FrameInput};
-use psd::mechanics::frame::{FrameMatrices, FrameSolver, Tangents, damping_matrix, modes};
+use psd::mechanics::frame::{Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, Tangents, damping_matrix, modes};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};
@@ -47,7 +46,7 @@ fn every_integrator_is_of_second_order() {
     }
 }
 
-/// Two storeys excited in their highest mode, the largest displacement over the last steps against that at the start.
+/// Two storeys excited in their highest mode: the largest displacement of the second thousand steps over that of the first.
 fn growth(integrator: Integrator, time_step: f64, operator: f64) -> f64 {
     let frame = uniform(2, 1500.0, 2e6);
     let mut operator_stiffness = frame.stiffness.clone();
@@ -55,21 +54,20 @@ fn growth(integrator: Integrator, time_step: f64, operator: f64) -> f64 {
     let shape: Vec<f64> = uniform_shape(2, 2).iter().map(|entry| 1e-6 * entry).collect();
     let zero = [0.0; 2];
     let input = FrameInput { operator_stiffness: &operator_stiffness, ..at(&frame, integrator, time_step, &zero) };
-    let mut last = 0.0_f64;
-    let tell = |state: &psd::mechanics::frame::FrameState| {
-        if state.step > 900 {
-            last = last.max(state.displacement[0].abs());
-        }
+    let mut largest = [0.0_f64; 2];
+    let tell = |state: &FrameState| {
+        let half = &mut largest[usize::from(state.step > 1000)];
+        *half = half.max(state.displacement[0].abs());
     };
-    run_linear(&input, &shape, 1000, |_, load| load.fill(0.0), tell);
-    last / shape[0].abs()
+    run_linear(&input, &shape, 2000, |_, load| load.fill(0.0), tell);
+    largest[1] / largest[0]
 }
 
 #[test]
 fn explicit_newmark_is_stable_up_to_the_shortest_period_over_pi() {
     let limit = 2.0 / uniform_frequency(2, 2, 1500.0, 2e6);
     let (below, above) = (growth(Integrator::Explicit, 0.999 * limit, 1.0), growth(Integrator::Explicit, 1.001 * limit, 1.0));
-    assert!(below < 1.1, "{below}");
+    assert!(below < 1.0 + 1e-3, "{below}");
     assert!(above > 1e10, "{above}");
 }
 
@@ -81,11 +79,11 @@ fn splitting_is_stable_at_any_step_while_its_operator_is_stiff_enough() {
     for time_step in [limit, 10.0 * limit, 1000.0 * limit] {
         for operator in [1.0, 1.5] {
             let found = growth(splitting, time_step, operator);
-            assert!(found < 1.0 + 1e-6, "Δt {time_step}, K_I {operator} K: {found}");
+            assert!(found < 1.0 + 1e-3, "Δt {time_step}, K_I {operator} K: {found}");
         }
     }
     let (below, above) = (growth(splitting, 0.999 * limit, 0.75), growth(splitting, 1.001 * limit, 0.75));
-    assert!(below < 1.1, "{below}");
+    assert!(below < 1.0 + 1e-3, "{below}");
     assert!(above > 1e10, "{above}");
 }
 
@@ -93,7 +91,7 @@ fn splitting_is_stable_at_any_step_while_its_operator_is_stiff_enough() {
 fn the_tangent_form_is_stable_at_any_step_on_a_linear_frame() {
     for time_step in [0.01, 1.0, 100.0] {
         let found = growth(Integrator::Tangent, time_step, 1.0);
-        assert!(found < 1.0 + 1e-6, "Δt {time_step}: {found}");
+        assert!(found < 1.0 + 1e-3, "Δt {time_step}: {found}");
     }
 }
 
@@ -105,7 +103,7 @@ fn the_energy_balance_of_a_linear_frame_closes_to_rounding() {
     let shaken = |time: f64, load: &mut [f64]| frame.ground_load(3.0 * (17.0 * time).sin(), load);
     for integrator in [Integrator::Tangent, Integrator::AlphaOs { alpha: 0.0 }] {
         let mut worst = 0.0_f64;
-        let tell = |state: &psd::mechanics::frame::FrameState| worst = worst.max(state.energies.error.abs());
+        let tell = |state: &FrameState| worst = worst.max(state.energies.error.abs());
         let last = run_linear(&at(&frame, integrator, 0.02, &[0.0; 5]), &[0.0; 5], 1000, shaken, tell);
         assert!(last.energies.input > 100.0, "{:?}", last.energies);
         assert!(worst < 1e-12 * last.energies.input, "{integrator:?}: {worst} of {:?}", last.energies);
@@ -118,7 +116,7 @@ fn the_error_of_the_explicit_balance_shrinks_with_the_square_of_the_step() {
     let frame = uniform(5, 1500.0, 2e6);
     let worst = |steps: u32| {
         let mut worst = 0.0_f64;
-        let tell = |state: &psd::mechanics::frame::FrameState| worst = worst.max(state.energies.error.abs());
+        let tell = |state: &FrameState| worst = worst.max(state.energies.error.abs());
         let input = at(&frame, Integrator::Explicit, 2.0 / f64::from(steps), &[0.0; 5]);
         run_linear(&input, &[0.01; 5], steps, |_, load| load.fill(0.0), tell);
         worst
