@@ -81,7 +81,8 @@ fn value(result: &NamedResult) -> Markup {
         }
         ResultValue::Number { value: None, .. } => html! { span.missing { "none in this run" } },
         ResultValue::List(values) => {
-            let texts: Vec<String> = values.iter().map(|value| number::text(*value, result.dimension)).collect();
+            let text = |value: &f64| if value.is_finite() { number::text(*value, result.dimension) } else { "none".to_owned() };
+            let texts: Vec<String> = values.iter().map(text).collect();
             html! { (texts.join(", ")) }
         }
     }
