@@ -1,12 +1,14 @@
 //! The record of a run: everything that happened, typed, SI. `run` writes it; verdict, tables, figures and
 //! certificates are functions of it.
 
+mod cycle;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results};
 pub use crate::mechanics::contact::StepState;
+pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 use crate::mechanics::energy::Energies;
 pub use crate::mechanics::identification::LineFit;
 use crate::quantity::Dimension;
@@ -91,6 +93,7 @@ pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),
     Impact(ImpactHistory),
+    Cycle(CycleHistory),
     Move(Vec<RampStep>),
     Inspect,
 }
