@@ -93,6 +93,8 @@ codes! {
     E614 FieldWithoutUse Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
+    E646 RateWithoutSpeed Error;
+    E647 NoUseWithRate Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

@@ -2,8 +2,10 @@
 
 pub mod beam;
 pub mod contact;
+pub mod cyclic;
 pub mod damping;
 pub mod energy;
+pub mod frame;
 pub mod identification;
 pub mod impact;
 pub mod integrator;

@@ -1,6 +1,7 @@
 //! The record of a run: everything that happened, typed, SI. `run` writes it; verdict, tables, figures and
 //! certificates are functions of it.
 
+mod cycle;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,7 @@ pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
+pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -92,6 +94,7 @@ pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),
     Impact(ImpactHistory),
+    Cycle(CycleHistory),
     Move(Vec<RampStep>),
     Inspect,
 }
