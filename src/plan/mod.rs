@@ -407,13 +407,14 @@ pub enum FigureKind {
 
 impl FigureKind {
     /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Displacement,
         Self::StrikerVelocity,
         Self::Velocity,
         Self::ContactForce,
         Self::ForceDisplacement,
         Self::Energy,
+        Self::Tracking,
         Self::DampingFit,
         Self::Backbone,
         Self::CycleEnergy,
