@@ -7,7 +7,7 @@ use super::scope::Scope;
 use crate::diagnostic::Diagnostic;
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
-use crate::source::{Sources, Span};
+use crate::source::{FileId, Sources, Span};
 use crate::syntax::ast::Expr;
 
 /// A place that has a value: a `let` or `param`, or an entry of a block.
@@ -69,13 +69,15 @@ pub struct Checker<'a> {
     pub used: BTreeSet<usize>,
     /// The rig of the run, where it is one that moves a specimen.
     pub real_rig: Option<usize>,
+    /// Files of data, by the place that names them; one that could not be read is not there and said already.
+    pub data: BTreeMap<Span, FileId>,
     stack: Vec<Node>,
 }
 
 impl<'a> Checker<'a> {
     pub fn new(sources: &'a Sources, scope: &'a Scope<'a>, faults: Vec<Diagnostic>, unread: Vec<Span>, names_lost: bool) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
-        Self { sources, scope, faults, names_lost, unread, known, used, real_rig: None, stack }
+        Self { sources, scope, faults, names_lost, unread, known, used, real_rig: None, data: BTreeMap::new(), stack }
     }
 
     /// Notes a fault; returns None, so that a caller can leave with it.

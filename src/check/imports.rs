@@ -1,10 +1,13 @@
 //! `use "lib/frame.psd"`: every file of a plan, each loaded once. In: the plan's text and a [`Loader`]. Out: the syntax
 //! trees, the plan's first.
 
+use std::collections::BTreeMap;
+
+use super::data_files;
 use super::faults::files as fault;
 use super::{LoadFault, Loader};
 use crate::diagnostic::Diagnostic;
-use crate::source::{FileId, Sources, Spanned};
+use crate::source::{FileId, Sources, Span, Spanned};
 use crate::syntax;
 use crate::syntax::ast::{Ast, ItemKind};
 
@@ -18,6 +21,8 @@ pub struct Imports {
     pub asts: Vec<Ast>,
     /// Whether some file could not be read, so that names may be missing through no fault of the plan's.
     pub incomplete: bool,
+    /// Files of data, by the place that names them.
+    pub data: BTreeMap<Span, FileId>,
 }
 
 struct Loading<'l> {
@@ -34,7 +39,8 @@ pub fn load(name: &str, text: &str, loader: &dyn Loader, sources: &mut Sources, 
     // Paths of used files are relative to the plan's folder, and so is the plan's own.
     let own = name.rsplit(['/', '\\']).next().unwrap_or(name);
     loading.read(own, name, text, sources, faults);
-    Imports { asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(), incomplete: loading.incomplete }
+    let data = loading.data(sources, faults);
+    Imports { asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(), incomplete: loading.incomplete, data }
 }
 
 impl Loading<'_> {
@@ -71,9 +77,7 @@ impl Loading<'_> {
         if let Some(reason) = refused(written) {
             return Err(fault::bad_path(written, used.span, reason));
         }
-        let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
-        let steps = written.split('/').filter(|step| *step != ".");
-        let path = folder.split('/').filter(|step| !step.is_empty()).chain(steps).collect::<Vec<_>>().join("/");
+        let path = beside(from, written);
         if let Some(start) = self.chain.iter().position(|open| *open == path) {
             return Err(fault::use_cycle(&self.chain[start..], &path, used.span));
         }
@@ -95,6 +99,51 @@ impl Loading<'_> {
             Err(LoadFault::Refused(reason)) => Err(fault::refused(&path, &reason, used.span)),
         }
     }
+}
+
+impl Loading<'_> {
+    /// Loads every file of data that the plan's files name, each once, after all of those.
+    fn data(&self, sources: &mut Sources, faults: &mut Vec<Diagnostic>) -> BTreeMap<Span, FileId> {
+        let (mut known, mut data): (BTreeMap<String, Option<FileId>>, _) = (BTreeMap::new(), BTreeMap::new());
+        for (from, ast) in &self.loaded {
+            for named in data_files::named(ast) {
+                let written = named.node.as_str();
+                if let Some(reason) = refused(written) {
+                    faults.push(fault::bad_data_path(written, named.span, reason));
+                    continue;
+                }
+                let path = beside(from, written);
+                let full = self.loaded.len() + known.len() >= MOST_FILES;
+                let file = match known.get(&path) {
+                    Some(file) => *file,
+                    None if full => {
+                        faults.push(fault::too_many_files(MOST_FILES, named.span));
+                        continue;
+                    }
+                    None => match self.loader.load(&path) {
+                        Ok(text) => Some(sources.add(path.as_str(), text)),
+                        Err(why) => {
+                            faults.push(match why {
+                                LoadFault::NotFound => fault::not_found(&path, named.span),
+                                LoadFault::Refused(reason) => fault::data_refused(&path, &reason, named.span),
+                            });
+                            None
+                        }
+                    },
+                };
+                known.insert(path, file);
+                data.extend(file.map(|file| (named.span, file)));
+            }
+        }
+        data
+    }
+}
+
+/// The path, from the plan's folder, of a file that another names.
+fn beside(from: &str, written: &str) -> String {
+    let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let steps = written.split('/').filter(|step| *step != ".");
+    folder.split('/').filter(|step| !step.is_empty()).chain(steps).collect::<Vec<_>>().join("/")
 }
 
 /// Why a path may not be used, if so.

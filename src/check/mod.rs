@@ -1,11 +1,13 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod behaviour;
 mod calendar;
 mod call;
 mod checker;
 mod choice;
 mod damping_sweep;
+mod data_files;
 mod device;
 mod dialect;
 mod expression;
@@ -29,6 +31,7 @@ mod scope;
 mod specimen;
 mod stiffness_ramp;
 mod striker;
+mod table_file;
 #[cfg(test)]
 mod tests;
 mod warnings;
@@ -90,6 +93,7 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     let settings = parameters::read_settings(&mut sources, &imports.asts, &options.settings, &mut faults);
     let scope = Scope::collect(&imports.asts, &settings, &mut faults);
     let mut checker = Checker::new(&sources, &scope, faults, unread, imports.incomplete);
+    checker.data = imports.data;
     let plan = plan(&mut checker, name, files, options);
     let mut diagnostics = checker.faults;
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));

@@ -91,6 +91,11 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E630 CornersDoNotFit Error;
+    E631 BadTableFile Error;
+    E632 BehaviourIncomplete Error;
+    E633 UnfitInside Error;
+    E634 NoSuchProperty Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -100,6 +105,7 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W715 TableTooShort Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -39,3 +39,15 @@ pub fn too_many_files(most: usize, span: Span) -> Diagnostic {
         .at(span, "one too many")
         .help("put declarations that belong together into one file")
 }
+
+pub fn bad_data_path(path: &str, span: Span, reason: &str) -> Diagnostic {
+    Diagnostic::new(Code::BadPath, format!("`{path}` cannot be read: {reason}"))
+        .at(span, "not a path inside the plan's folder")
+        .help("put the file into the plan's folder, or a folder in it: `\"data/loop.csv\"`")
+}
+
+pub fn data_refused(path: &str, reason: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::FileNotFound, format!("`{path}` cannot be read: {reason}"))
+        .at(span, "cannot be read")
+        .help("name a file of UTF-8 text in the plan's folder")
+}

@@ -5,6 +5,7 @@ use crate::quantity::{Dimension, display};
 pub mod files;
 pub mod names;
 pub mod rigs;
+pub mod specimens;
 pub mod types;
 pub mod values;
 pub mod whole;
