@@ -148,6 +148,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(rig) = &rig {
             real_rig::warn(checker, rig);
         }
+        if let Some(limits) = &limits {
+            specimen::warn_of_short_tables(checker, &specimens, limits);
+        }
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
     }
     let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();

@@ -1,6 +1,7 @@
 //! Pure functions of (plan, record, assessment): tables, figures, summary, certificate, console text. They return
 //! bytes; only `cli` writes files. Knows no clock, no file, no environment: the same run gives the same bytes.
 
+pub mod behaviour;
 mod certificate;
 pub mod console;
 mod deviations;

@@ -1,5 +1,6 @@
 //! When the virtual rig counts as settled. In: the plan's criterion and how far the piston lags. Out: seconds to wait.
 
+use crate::mechanics::damping::StrengthRate;
 use crate::plan::Settle;
 
 /// What moves after the reference has arrived.
@@ -16,6 +17,18 @@ pub(super) struct Unsettled {
     pub(super) damping: f64,
     /// N/s
     pub(super) drift: f64,
+    /// Restoring force (N) that grows with the speed, and how.
+    pub(super) rate: Option<(f64, StrengthRate)>,
+}
+
+impl Unsettled {
+    /// |dF/dt| less the drift at a lag of `lagging` (m), N/s: with v = e/lag, K v + c v/lag and, of a force R that gains
+    /// (v/v₀)ⁿ, R n (v/v₀)ⁿ/lag.
+    fn force_rate(&self, lagging: f64) -> f64 {
+        let velocity = lagging / self.lag;
+        let steady = self.stiffness * velocity + self.damping * velocity / self.lag;
+        steady + self.rate.map_or(0.0, |(force, rate)| force.abs() * rate.exponent * rate.gain(velocity) / self.lag)
+    }
 }
 
 /// Seconds until displacement and force rate have both stayed inside their bounds for the dwell; None if that does not
@@ -37,6 +50,9 @@ pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
         if unsettled.lag > 0.0 {
             let rate_per_lagging = (unsettled.stiffness + unsettled.damping / unsettled.lag) / unsettled.lag;
             bound = bound.min(left / rate_per_lagging);
+            if unsettled.rate.is_some() {
+                bound = largest_below(bound.min(unsettled.lagging), |lagging| unsettled.force_rate(lagging) <= left);
+            }
         }
     }
     if bound < 0.0 {
@@ -45,6 +61,24 @@ pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
     let wait = if unsettled.lagging <= bound { 0.0 } else { unsettled.lag * (unsettled.lagging / bound).ln() };
     let total = wait + settle.dwell;
     (total <= settle.timeout).then_some(total)
+}
+
+/// The largest lag up to `most` at which `met` holds, which does so at all smaller ones: by halving, over a range of powers
+/// of two, for an exponent below 1 may need a lag far below the band.
+fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
+    if most <= 0.0 || met(most) {
+        return most;
+    }
+    let (mut low, mut high) = (-1000.0_f64, 0.0_f64);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if met(most * middle.exp2()) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    most * low.exp2()
 }
 
 #[cfg(test)]
