@@ -98,9 +98,8 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, ou
         "table" => table(checker, &chosen),
         "fracture" => fracture(checker, written, &chosen, expr.span),
         "series" => series(checker, written, &chosen, expr.span),
-        "parallel" => parts(checker, written, &chosen, expr.span).map(|parts| {
-            Behaviour::Parallel(parts.into_iter().map(|(part, _)| part).collect())
-        }),
+        "parallel" => parts(checker, written, &chosen, expr.span)
+            .map(|parts| Behaviour::Parallel(parts.into_iter().map(|(part, _)| part).collect())),
         "portal" => portal(checker, &chosen, place, expr.span),
         _ => beam(checker, &chosen, place, written.own_mass),
     }
@@ -148,7 +147,8 @@ fn multilinear<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place)
         let counts = (displacements.len(), forces.len());
         return checker.fail(fault::corners_of_two_lengths(displacements_at, forces_at, counts));
     }
-    let corners: Vec<[f64; 2]> = displacements.into_iter().zip(forces).map(|(displacement, force)| [displacement, force]).collect();
+    let corners: Vec<[f64; 2]> =
+        displacements.into_iter().zip(forces).map(|(displacement, force)| [displacement, force]).collect();
     let (mut before, mut softest) = ([0.0, 0.0], f64::INFINITY);
     for (index, corner) in corners.iter().enumerate() {
         let [moved, gained] = [corner[0] - before[0], corner[1] - before[1]];
@@ -201,7 +201,8 @@ fn fracture<'a>(checker: &mut Checker<'a>, written: &Written<'a>, chosen: &Chose
         (None, Some(force)) => Breaks::Force(force),
         (displacement, _) => {
             let given = if displacement.is_some() { 2 } else { 0 };
-            return checker.fail(fault::one_way_only("where it breaks", &["displacement", "force"], span, given));
+            let takes = "a `fracture` comes at a `displacement` or at a `force`";
+            return checker.fail(fault::one_way_only(takes, "force: 5 kN", span, given));
         }
     };
     Some(Behaviour::Fracture { of: Box::new(of?), at })
@@ -230,7 +231,9 @@ fn beam<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, own_ma
         (Some(_), None) => {
             return checker.fail(fault::missing_partner("shear_modulus", "shear_area", chosen.span("shear_modulus")?));
         }
-        (None, Some(_)) => return checker.fail(fault::missing_partner("shear_area", "shear_modulus", chosen.span("shear_area")?)),
+        (None, Some(_)) => {
+            return checker.fail(fault::missing_partner("shear_area", "shear_modulus", chosen.span("shear_area")?));
+        }
     };
     let ends = match (ends.variant.name, rotational_stiffness, fixity) {
         (_, Some(rotational_stiffness), _) => Ends::PartlyBuiltIn { rotational_stiffness },
@@ -275,8 +278,8 @@ fn portal<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, span
         }
         (modulus, second_moment, _) => {
             let given = usize::from(modulus.is_some() || second_moment.is_some()) * 2;
-            let ways = ["youngs_modulus", "stiffness"];
-            return checker.fail(fault::one_way_only("how stiff a portal is", &ways, span, given));
+            let takes = "a `portal` takes `youngs_modulus` with `second_moment`, or its `stiffness`";
+            return checker.fail(fault::one_way_only(takes, "stiffness: 2 kN/mm", span, given));
         }
     };
     Some(Behaviour::Portal(portal))

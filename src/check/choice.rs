@@ -154,8 +154,7 @@ impl<'a> Checker<'a> {
     pub fn list_argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Vec<f64>> {
         let (field, written) = chosen.find(name)?;
         let written = written?;
-        let values: Option<Vec<f64>> =
-            self.typed_field(field, written, place)?.parts().iter().map(Formula::constant).collect();
+        let values: Option<Vec<f64>> = self.typed_field(field, written, place)?.parts().iter().map(Formula::constant).collect();
         if values.is_none() {
             self.faults.push(values::needs_the_run(written.span, self.text(written.span)));
         }

@@ -53,7 +53,8 @@ pub fn first_mode_mass_factor(beam: &Beam) -> f64 {
                 return 13.0 / 35.0;
             }
             let (built_in, turned, all) = (ratio + 2.0, 6.0, ratio + 8.0);
-            (13.0 / 35.0 * built_in * built_in + 2.0 * 13.0 / 30.0 * built_in * turned + 8.0 / 15.0 * turned * turned) / (all * all)
+            (13.0 / 35.0 * built_in * built_in + 2.0 * 13.0 / 30.0 * built_in * turned + 8.0 / 15.0 * turned * turned)
+                / (all * all)
         }
     }
 }

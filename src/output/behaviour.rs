@@ -43,10 +43,8 @@ fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
             ],
         ),
         Behaviour::Multilinear { corners } => {
-            let corners: Vec<String> = corners
-                .iter()
-                .map(|[x, force]| format!("{} at {}", shown(*force, Of::FORCE), shown(*x, Of::LENGTH)))
-                .collect();
+            let corners: Vec<String> =
+                corners.iter().map(|[x, force]| format!("{} at {}", shown(*force, Of::FORCE), shown(*x, Of::LENGTH))).collect();
             format!("multilinear, kinematic hardening, corners {}", corners.join(", "))
         }
         Behaviour::BoucWen { stiffness, yield_force, hardening, sharpness, beta } => list(

@@ -71,9 +71,7 @@ impl Loads {
         match self {
             Self::Sway => (0.0, 1.0),
             Self::Beam => (1.0, 0.0),
-            Self::Combined { beam_load, sway_load } => {
-                (beam_load / (beam_load + sway_load), sway_load / (beam_load + sway_load))
-            }
+            Self::Combined { beam_load, sway_load } => (beam_load / (beam_load + sway_load), sway_load / (beam_load + sway_load)),
         }
     }
 }

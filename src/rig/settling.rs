@@ -86,7 +86,8 @@ mod tests {
     use super::*;
 
     const SETTLE: Settle = Settle { band: 1e-5, force_rate: 0.0, dwell: 0.3, timeout: 10.0 };
-    const LAGGING: Unsettled = Unsettled { lagging: 1e-3, lag: 0.1, miss: 0.0, stiffness: 1e5, damping: 0.0, drift: 0.0 };
+    const LAGGING: Unsettled =
+        Unsettled { lagging: 1e-3, lag: 0.1, miss: 0.0, stiffness: 1e5, damping: 0.0, drift: 0.0, rate: None };
 
     #[test]
     fn waits_for_the_band_then_for_the_force_rate_and_dwells() {
@@ -103,5 +104,16 @@ mod tests {
         assert_eq!(settling_time(&Settle { timeout: 0.5, ..SETTLE }, &LAGGING), None);
         assert_eq!(settling_time(&Settle { force_rate: 5.0, ..SETTLE }, &Unsettled { drift: 6.0, ..LAGGING }), None);
         assert_eq!(settling_time(&Settle { band: 0.0, ..SETTLE }, &LAGGING), Some(0.0));
+    }
+
+    /// R = 1000 N gains (v/v₀)^½, v₀ = 1 m/s, with no stiffness: dF/dt = R ½ √(e/0.1)/0.1 ≤ 50 N/s at e = 1e-5 m.
+    #[test]
+    fn a_strength_that_grows_with_speed_keeps_the_force_moving_longer() {
+        let rate = Some((1000.0, StrengthRate { reference_velocity: 1.0, exponent: 0.5 }));
+        let unsettled = Unsettled { stiffness: 0.0, rate, ..LAGGING };
+        let settle = Settle { band: 1e-3, force_rate: 50.0, dwell: 0.0, timeout: 60.0 };
+        let wait = settling_time(&settle, &unsettled).expect("it settles");
+        let by_hand = 0.1 * (1e-3_f64 / 1e-5).ln();
+        assert!((wait - by_hand).abs() < 1e-9, "{wait} s is not {by_hand} s");
     }
 }

@@ -76,7 +76,9 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             YIELD_FORCE,
             HARDENING,
             Field::quantity("n", Dimension::NUMBER, "sharpness of the knee").or(1.0, "").within(1.0, 100.0),
-            Field::quantity("beta", Dimension::NUMBER, "shape of unloading: straight at 0.5; γ is 1 − β").or(0.5, "").within(0.5, 1.0),
+            Field::quantity("beta", Dimension::NUMBER, "shape of unloading: straight at 0.5; γ is 1 − β")
+                .or(0.5, "")
+                .within(0.5, 1.0),
         ],
         "smooth hysteresis after Bouc and Wen",
     ),
@@ -89,9 +91,13 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("force_factor", Dimension::NUMBER, "κ_F: force at the break point over that of no pinching")
                 .or(0.25, "")
                 .within(0.0, 1.0),
-            Field::quantity("displacement_factor", Dimension::NUMBER, "κ_D: 1 − break point over the largest permanent displacement")
-                .or(0.5, "")
-                .within(0.0, 1.0),
+            Field::quantity(
+                "displacement_factor",
+                Dimension::NUMBER,
+                "κ_D: 1 − break point over the largest permanent displacement",
+            )
+            .or(0.5, "")
+            .within(0.0, 1.0),
             Field::quantity("unloading_exponent", Dimension::NUMBER, "a of the unloading stiffness K (x_y/x_max)^a")
                 .or(0.0, "")
                 .within(0.0, 1.0),
@@ -142,12 +148,12 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
     ),
     Variant::with(
         "series",
-        &[Field::inners("of", "what stands one behind the other").required("of: [elastic(stiffness: 300 kN/m), …]")],
+        &[Field::inners("of", "what stands one behind the other").required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
         "one force, displacements add",
     ),
     Variant::with(
         "parallel",
-        &[Field::inners("of", "what stands side by side").required("of: [elastic(stiffness: 300 kN/m), …]")],
+        &[Field::inners("of", "what stands side by side").required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
         "one displacement, forces add",
     ),
     Variant::with(
@@ -168,7 +174,8 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             YOUNGS_MODULUS.required("youngs_modulus: 26 GPa"),
             SECOND_MOMENT.required("second_moment: 12e4 mm^4"),
             Field::choice("ends", ENDS, "how the ends are held").required("ends: simply_supported"),
-            Field::quantity("shear_modulus", Dimension::PRESSURE, "G, with `shear_area`: adds the deflection by shear").above_zero(),
+            Field::quantity("shear_modulus", Dimension::PRESSURE, "G, with `shear_area`: adds the deflection by shear")
+                .above_zero(),
             Field::quantity("shear_area", Dimension::AREA, "κA, the area that carries shear").above_zero(),
         ],
         "an elastic beam by its geometry; shear adds L/(4κGA) to the flexibility, L/(κGA) to a cantilever's",

@@ -1,6 +1,6 @@
 //! Faults of specimens: E630 to E634, and W715.
 
-use super::{one_of, shown};
+use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Interval;
 use crate::quantity::Dimension;
@@ -39,12 +39,14 @@ pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
         .help(format!("add `{missing}`, or remove `{given}`"))
 }
 
-/// Exactly one of several arguments must stand.
-pub fn one_way_only(what: &str, ways: &[&str], span: Span, given: usize) -> Diagnostic {
-    let label = if given == 0 { "none is given" } else { "more than one is given" };
-    Diagnostic::new(Code::BehaviourIncomplete, format!("{what} is said by {}, one of them", one_of(ways.iter().copied())))
-        .at(span, label)
-        .help(if given == 0 { "give one" } else { "remove all but one" })
+/// One of two ways to say a thing must stand, and not both; `takes` says of what which two, `example` shows one.
+pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Diagnostic {
+    let (label, help) = if given == 0 {
+        ("neither is given", format!("add `{example}`, for instance"))
+    } else {
+        ("both are given", "remove one of them".to_owned())
+    };
+    Diagnostic::new(Code::BehaviourIncomplete, format!("{takes}, one of the two")).at(span, label).help(help)
 }
 
 pub fn too_few_parts(variant: &str, span: Span) -> Diagnostic {
@@ -78,15 +80,14 @@ pub fn falls_in_series(span: Span, series: Span) -> Diagnostic {
 pub fn no_such_property(name: Option<&Ident>, property: &str, reason: &str, span: Span) -> Diagnostic {
     let name = name.map_or("", |name| name.node.as_str());
     Diagnostic::new(Code::NoSuchProperty, format!("specimen `{name}` has no `{property}`: {reason}"))
-        .at(span, "nothing bounds it")
+        .at(span, "not known of it")
         .help("read it of a behaviour that has one, such as `portal` or `bilinear` without hardening")
 }
 
 /// Limits let the specimen go where its table does not reach.
 pub fn table_too_short(file: &str, table: Interval, limit: Interval, named_at: Span, limit_at: Span) -> Diagnostic {
-    let range = |interval: Interval| {
-        format!("{} .. {}", shown(interval.low, Dimension::LENGTH), shown(interval.high, Dimension::LENGTH))
-    };
+    let range =
+        |interval: Interval| format!("{} .. {}", shown(interval.low, Dimension::LENGTH), shown(interval.high, Dimension::LENGTH));
     Diagnostic::new(Code::TableTooShort, format!("the limits reach beyond the points of `{file}`: there its last force holds"))
         .at(named_at, format!("points over {}", range(table)))
         .at(limit_at, format!("allows {}", range(limit)))

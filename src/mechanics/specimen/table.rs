@@ -130,7 +130,8 @@ mod tests {
         let taken = energy_along(&mut model, 0.0, &[0.003, 0.001], 1e-7);
         assert!((taken - (0.5 + 3.0 - 2.0)).abs() < 1e-6, "{taken} J");
         let mut elastic = AlongTheCurve { table: table(&POINTS, Unloading::AlongTheCurve) };
-        assert!(energy_along(&mut elastic, 0.0, &[0.005, -0.004, 0.0], 1e-6).abs() < 1e-9);
+        let back = energy_along(&mut elastic, 0.0, &[0.005, -0.004, 0.0], 1e-7);
+        assert!(back.abs() < 1e-6, "{back} J of the 6 J it took");
     }
 
     #[test]
