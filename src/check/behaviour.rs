@@ -176,19 +176,14 @@ fn table<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Behaviour
         Some(_) => checker.chosen_argument(chosen, "unloading").map(|chosen| chosen.variant.name),
         None => Some("initial_stiffness"),
     };
-    let (_, named_at) = named?;
-    let file = *checker.data.get(&named_at)?;
-    let source = checker.sources.file(file);
-    match table_file::points(&source.text) {
+    let (name, named_at) = named?;
+    let file = checker.data_file(&name, named_at)?;
+    match table_file::points(&file.text) {
         Ok(points) => {
             let unloading = if unloading? == "along_curve" { Unloading::AlongTheCurve } else { Unloading::InitialStiffness };
-            Some(Behaviour::Table(Table { file: source.name.clone(), points, unloading, scale: 1.0 }))
+            Some(Behaviour::Table(Table { file: file.name, points, unloading, scale: 1.0 }))
         }
-        Err(bad) => {
-            let row = bad.row.map(|(line, bytes)| (line, Span::new(file, bytes.start, bytes.end)));
-            let fault = fault::table_file(&source.name, row, &bad.reason, named_at, bad.help);
-            checker.fail(fault)
-        }
+        Err(bad) => checker.fail(fault::table_file(&file.name, bad.row.as_ref(), &bad.reason, named_at, bad.help)),
     }
 }
 

@@ -2,12 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Loader;
+use super::data::DataFile;
 use super::faults::names as fault;
 use super::scope::Scope;
 use crate::diagnostic::Diagnostic;
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
-use crate::source::{FileId, Sources, Span};
+use crate::source::{Sources, Span};
 use crate::syntax::ast::Expr;
 
 /// A place that has a value: a `let` or `param`, or an entry of a block.
@@ -60,6 +62,9 @@ pub struct Place {
 pub struct Checker<'a> {
     pub sources: &'a Sources,
     pub scope: &'a Scope<'a>,
+    pub loader: &'a dyn Loader,
+    /// Data files that the plan names, each once.
+    pub data: Vec<DataFile>,
     pub faults: Vec<Diagnostic>,
     /// Whether names may be missing because a used file could not be read.
     pub names_lost: bool,
@@ -69,15 +74,20 @@ pub struct Checker<'a> {
     pub used: BTreeSet<usize>,
     /// The rig of the run, where it is one that moves a specimen.
     pub real_rig: Option<usize>,
-    /// Files of data, by the place that names them; one that could not be read is not there and said already.
-    pub data: BTreeMap<Span, FileId>,
     stack: Vec<Node>,
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(sources: &'a Sources, scope: &'a Scope<'a>, faults: Vec<Diagnostic>, unread: Vec<Span>, names_lost: bool) -> Self {
+    pub fn new(
+        sources: &'a Sources,
+        scope: &'a Scope<'a>,
+        loader: &'a dyn Loader,
+        faults: Vec<Diagnostic>,
+        unread: Vec<Span>,
+        names_lost: bool,
+    ) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
-        Self { sources, scope, faults, names_lost, unread, known, used, real_rig: None, data: BTreeMap::new(), stack }
+        Self { sources, scope, loader, data: Vec::new(), faults, names_lost, unread, known, used, real_rig: None, stack }
     }
 
     /// Notes a fault; returns None, so that a caller can leave with it.

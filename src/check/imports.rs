@@ -1,13 +1,10 @@
 //! `use "lib/frame.psd"`: every file of a plan, each loaded once. In: the plan's text and a [`Loader`]. Out: the syntax
 //! trees, the plan's first.
 
-use std::collections::BTreeMap;
-
-use super::data_files;
 use super::faults::files as fault;
 use super::{LoadFault, Loader};
 use crate::diagnostic::Diagnostic;
-use crate::source::{FileId, Sources, Span, Spanned};
+use crate::source::{FileId, Sources, Spanned};
 use crate::syntax;
 use crate::syntax::ast::{Ast, ItemKind};
 
@@ -21,8 +18,6 @@ pub struct Imports {
     pub asts: Vec<Ast>,
     /// Whether some file could not be read, so that names may be missing through no fault of the plan's.
     pub incomplete: bool,
-    /// Files of data, by the place that names them.
-    pub data: BTreeMap<Span, FileId>,
 }
 
 struct Loading<'l> {
@@ -39,8 +34,7 @@ pub fn load(name: &str, text: &str, loader: &dyn Loader, sources: &mut Sources, 
     // Paths of used files are relative to the plan's folder, and so is the plan's own.
     let own = name.rsplit(['/', '\\']).next().unwrap_or(name);
     loading.read(own, name, text, sources, faults);
-    let data = loading.data(sources, faults);
-    Imports { asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(), incomplete: loading.incomplete, data }
+    Imports { asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(), incomplete: loading.incomplete }
 }
 
 impl Loading<'_> {
@@ -77,7 +71,7 @@ impl Loading<'_> {
         if let Some(reason) = refused(written) {
             return Err(fault::bad_path(written, used.span, reason));
         }
-        let path = beside(from, written);
+        let path = resolved(from, written);
         if let Some(start) = self.chain.iter().position(|open| *open == path) {
             return Err(fault::use_cycle(&self.chain[start..], &path, used.span));
         }
@@ -101,53 +95,21 @@ impl Loading<'_> {
     }
 }
 
-impl Loading<'_> {
-    /// Loads every file of data that the plan's files name, each once, after all of those.
-    fn data(&self, sources: &mut Sources, faults: &mut Vec<Diagnostic>) -> BTreeMap<Span, FileId> {
-        let (mut known, mut data): (BTreeMap<String, Option<FileId>>, _) = (BTreeMap::new(), BTreeMap::new());
-        for (from, ast) in &self.loaded {
-            for named in data_files::named(ast) {
-                let written = named.node.as_str();
-                if let Some(reason) = refused(written) {
-                    faults.push(fault::bad_data_path(written, named.span, reason));
-                    continue;
-                }
-                let path = beside(from, written);
-                let full = self.loaded.len() + known.len() >= MOST_FILES;
-                let file = match known.get(&path) {
-                    Some(file) => *file,
-                    None if full => {
-                        faults.push(fault::too_many_files(MOST_FILES, named.span));
-                        continue;
-                    }
-                    None => match self.loader.load(&path) {
-                        Ok(text) => Some(sources.add(path.as_str(), text)),
-                        Err(why) => {
-                            faults.push(match why {
-                                LoadFault::NotFound => fault::not_found(&path, named.span),
-                                LoadFault::Refused(reason) => fault::data_refused(&path, &reason, named.span),
-                            });
-                            None
-                        }
-                    },
-                };
-                known.insert(path, file);
-                data.extend(file.map(|file| (named.span, file)));
-            }
-        }
-        data
-    }
-}
-
-/// The path, from the plan's folder, of a file that another names.
-fn beside(from: &str, written: &str) -> String {
+/// The path, relative to the plan's folder, of what the file `from` calls `written`.
+pub fn resolved(from: &str, written: &str) -> String {
     let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
     let steps = written.split('/').filter(|step| *step != ".");
     folder.split('/').filter(|step| !step.is_empty()).chain(steps).collect::<Vec<_>>().join("/")
 }
 
+/// The path of a file of the plan, relative to the plan's folder.
+pub fn own_path(sources: &Sources, file: FileId) -> String {
+    let name = sources.file(file).name.as_str();
+    if file == FileId(0) { name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned() } else { name.to_owned() }
+}
+
 /// Why a path may not be used, if so.
-fn refused(path: &str) -> Option<&'static str> {
+pub fn refused(path: &str) -> Option<&'static str> {
     let drive = path.as_bytes().get(1) == Some(&b':');
     if path.is_empty() {
         Some("it is empty")

@@ -1,10 +1,10 @@
 //! A file of measured points: `displacement_m,force_n`, a row each. In: its text. Out: points in SI through the origin, both
 //! ways; or the row that is wrong, and why.
 
-/// Why a file is no table: line from 1 and the bytes of it, where one row is to blame, and the reason with its help.
+/// Why a file is no table: line from 1 and its text, where one row is to blame, and the reason with its help.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadTable {
-    pub row: Option<(usize, std::ops::Range<usize>)>,
+    pub row: Option<(usize, String)>,
     pub reason: String,
     pub help: &'static str,
 }
@@ -17,14 +17,8 @@ const FORCES: &[(&str, f64)] = &[("force_n", 1.0), ("force_kn", 1e3)];
 
 /// The points of a table, displacements rising. One-sided points are mirrored; the origin is a point.
 pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
-    let mut start = 0;
-    let mut lines = text.split_inclusive('\n').enumerate().filter_map(|(index, line)| {
-        let at = start;
-        start += line.len();
-        let trimmed = line.trim();
-        let begins = at + (line.len() - line.trim_start().len());
-        (!trimmed.is_empty() && !trimmed.starts_with('#')).then(|| Row { line: index + 1, at: begins, text: trimmed })
-    });
+    let lines = text.lines().enumerate().map(|(index, line)| Row { line: index + 1, text: line.trim() });
+    let mut lines = lines.filter(|row| !row.text.is_empty() && !row.text.starts_with('#'));
     let Some(header) = lines.next() else {
         return Err(BadTable { row: None, reason: "it has no rows".to_owned(), help: HEADER });
     };
@@ -47,14 +41,14 @@ const HEADER: &str = "begin with the line `displacement_m,force_n`, then a row a
 struct Row<'t> {
     /// From 1.
     line: usize,
-    /// Bytes before it.
-    at: usize,
     text: &'t str,
 }
 
 impl Row<'_> {
     fn bad(&self, reason: &str, help: &'static str) -> BadTable {
-        BadTable { row: Some((self.line, self.at..self.at + self.text.len())), reason: reason.to_owned(), help }
+        // A row may be as long as a file.
+        let shown: String = self.text.chars().take(60).collect();
+        BadTable { row: Some((self.line, shown)), reason: reason.to_owned(), help }
     }
 
     fn cells(&self) -> Result<[&str; 2], BadTable> {
@@ -143,9 +137,9 @@ mod tests {
             ("displacement_m,force_n\n0.1,-3\n", 2, "against"),
         ] {
             let bad = points(text).unwrap_err();
-            let (at, bytes) = bad.row.clone().expect("a row is to blame");
+            let (at, row) = bad.row.clone().expect("a row is to blame");
             assert!(at == line && bad.reason.contains(reason), "{text}: {bad:?}");
-            assert_eq!(&text[bytes], text.lines().nth(line - 1).unwrap());
+            assert_eq!(Some(row.as_str()), text.lines().nth(line - 1));
         }
         for text in ["", "# nothing\n", "displacement_m,force_n\n", "displacement_m,force_n\n0,0\n"] {
             assert!(points(text).unwrap_err().row.is_none(), "{text}");

@@ -96,6 +96,8 @@ codes! {
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E646 RateWithoutSpeed Error;
+    E647 NoUseWithRate Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -105,6 +107,7 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W711 ResolutionUnknown Warning;
     W715 TableTooShort Warning;
 }
 

@@ -2,7 +2,7 @@
 //! each, events, and what was asked of the specimen in all. It knows no protocol.
 //!
 //! Everything that a protocol does to the rig goes through [`Specimen`], which tells the observer first. So the record of
-//! the requests, played back through [`Specimen::carry_out`], asks the guard and the rig for the same again.
+//! the requests, played back through `Specimen::carry_out`, asks the guard and the rig for the same again.
 
 use std::time::{Duration, Instant};
 

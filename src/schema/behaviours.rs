@@ -132,7 +132,8 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
     Variant::with(
         "table",
         &[
-            Field::file("file", "points, header `displacement_m,force_n` (also `_mm`, `_kn`)").required("file: \"loop.csv\""),
+            Field::text("file", "file of points in the plan's folder, header `displacement_m,force_n` (also `_mm`, `_kn`)")
+                .required("file: \"loop.csv\""),
             Field::choice("unloading", UNLOADING, "how it unloads").or_said("initial_stiffness"),
         ],
         "measured points from a file; one-sided points hold both ways, and the last force holds beyond them",
@@ -148,12 +149,14 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
     ),
     Variant::with(
         "series",
-        &[Field::inners("of", "what stands one behind the other").required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
+        &[Field::inners("of", "what stands one behind the other")
+            .required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
         "one force, displacements add",
     ),
     Variant::with(
         "parallel",
-        &[Field::inners("of", "what stands side by side").required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
+        &[Field::inners("of", "what stands side by side")
+            .required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
         "one displacement, forces add",
     ),
     Variant::with(

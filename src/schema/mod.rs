@@ -2,6 +2,7 @@
 //! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
 
 mod behaviours;
+mod cyclic;
 mod declarations;
 mod devices;
 mod functions;
@@ -29,12 +30,12 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::STIFFNESS_RAMP,
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
+    &cyclic::CYCLE,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
     &later::GROUND,
     &later::SHAKE,
-    &later::CYCLE,
     &later::STUDY,
     &later::GOLDEN,
 ];

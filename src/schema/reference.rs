@@ -118,7 +118,6 @@ fn takes(field: &Field) -> String {
     match field.ty {
         FieldType::Text => "a text".to_owned(),
         FieldType::Texts => "a list of texts".to_owned(),
-        FieldType::File => "a text: a file in the plan's folder".to_owned(),
         FieldType::Inner => "one of this list".to_owned(),
         FieldType::Inners => "two or more of this list".to_owned(),
         FieldType::Quantity(dimension) => format!("{}{}", measure(dimension), allowed(field.range, dimension)),

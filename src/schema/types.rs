@@ -13,6 +13,7 @@ pub enum Kind {
     StiffnessRamp,
     DampingSweep,
     Impact,
+    Cycle,
     Move,
     Inspect,
     Report,
@@ -72,8 +73,6 @@ pub enum FieldType {
     Text,
     /// A list of texts.
     Texts,
-    /// A text that names a file of data, relative to the file that names it; it becomes a file of the plan.
-    File,
     /// One of the variants of the list in which the field stands, that is: a behaviour inside a behaviour.
     Inner,
     /// Several of them, written after each other or as a list; the only argument of its variant.
@@ -173,6 +172,8 @@ pub struct ResultKind {
     pub measured: bool,
     /// Whether it counts something: a whole number.
     pub count: bool,
+    /// Whether it is several numbers of one dimension, read as a list: `max(fatigue.energies)`.
+    pub list: bool,
     pub doc: &'static str,
 }
 
@@ -219,10 +220,6 @@ impl Field {
 
     pub(super) const fn texts(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Texts, doc)
-    }
-
-    pub(super) const fn file(name: &'static str, doc: &'static str) -> Self {
-        Self::new(name, FieldType::File, doc)
     }
 
     pub(super) const fn inner(name: &'static str, doc: &'static str) -> Self {
@@ -386,7 +383,7 @@ impl Variant {
 
 impl ResultKind {
     pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: false, count: false, doc }
+        Self { name, dimension, measured: false, count: false, list: false, doc }
     }
 
     pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
@@ -395,5 +392,10 @@ impl ResultKind {
 
     pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {
         Self { count: true, ..Self::new(name, Dimension::NUMBER, doc) }
+    }
+
+    /// Several numbers of one dimension.
+    pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self { list: true, ..Self::new(name, dimension, doc) }
     }
 }

@@ -1,4 +1,4 @@
-//! Faults of used files: E5xx.
+//! Faults of used files and of data files: E5xx.
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -43,7 +43,7 @@ pub fn too_many_files(most: usize, span: Span) -> Diagnostic {
 pub fn bad_data_path(path: &str, span: Span, reason: &str) -> Diagnostic {
     Diagnostic::new(Code::BadPath, format!("`{path}` cannot be read: {reason}"))
         .at(span, "not a path inside the plan's folder")
-        .help("put the file into the plan's folder, or a folder in it: `\"data/loop.csv\"`")
+        .help("put the file into the plan's folder, or a folder in it")
 }
 
 pub fn data_refused(path: &str, reason: &str, span: Span) -> Diagnostic {

@@ -21,15 +21,10 @@ pub fn corner(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
         .help(help)
 }
 
-/// A row of a table, or its header; without a row: what the file as a whole lacks.
-pub fn table_file(file: &str, row: Option<(usize, Span)>, reason: &str, named_at: Span, help: &str) -> Diagnostic {
-    match row {
-        Some((line, span)) => Diagnostic::new(Code::BadTableFile, format!("`{file}`, line {line}: {reason}"))
-            .at(span, "this row")
-            .at(named_at, "named here")
-            .help(help),
-        None => Diagnostic::new(Code::BadTableFile, format!("`{file}`: {reason}")).at(named_at, "named here").help(help),
-    }
+/// A row of a table, its line from 1 and its text; without one: what the file as a whole lacks.
+pub fn table_file(file: &str, row: Option<&(usize, String)>, reason: &str, named_at: Span, help: &str) -> Diagnostic {
+    let place = row.map_or_else(String::new, |(line, text)| format!(", line {line}, `{text}`"));
+    Diagnostic::new(Code::BadTableFile, format!("`{file}`{place}: {reason}")).at(named_at, "the table").help(help)
 }
 
 /// Two arguments of which one means nothing without the other.
