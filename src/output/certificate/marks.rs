@@ -24,10 +24,11 @@ pub(super) fn boxed(run: &Run<'_>) -> Vec<Mark> {
     standing::grounds(run).into_iter().filter_map(of).map(|(words, text)| Mark { words, text: text.into() }).collect()
 }
 
-/// The words across every page.
+/// The words across every page: of a paper that is passed on, any page may be the only one.
 pub(super) fn across(run: &Run<'_>) -> Vec<&'static str> {
+    let real_line = run.plan.rig.link.as_real().is_some();
     let words = standing::grounds(run).into_iter().filter_map(|ground| match ground {
-        Standing::Rehearsal if run.record.rig.simulated => Some("REHEARSAL ON A SIMULATED RIG"),
+        Standing::Rehearsal if real_line && run.record.rig.simulated => Some("REHEARSAL ON A SIMULATED RIG"),
         Standing::Rehearsal => Some("REHEARSAL"),
         Standing::Incomplete => Some("INCOMPLETE"),
         Standing::NotCertifiable { .. } => Some("NOT CERTIFIABLE"),

@@ -16,14 +16,15 @@ struct Drawing {
     shapes: RefCell<String>,
 }
 
-/// Draws on a white sheet of `width × height` reference pixels.
+/// Draws on a sheet of `width × height` reference pixels. It is white where it stands alone, and on paper lets through what
+/// lies below it.
 pub(super) fn svg(width: u32, height: u32, paint: impl FnOnce(&dyn Canvas) -> Result<(), String>) -> Result<String, String> {
     let drawing = Drawing { shapes: RefCell::new(String::new()) };
     paint(&drawing)?;
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"DejaVu Sans, Verdana, sans-serif\" fill=\"none\" stroke-linejoin=\"round\">\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+         font-family=\"DejaVu Sans, Verdana, sans-serif\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
+         {}</svg>\n",
         drawing.shapes.into_inner()
     ))
 }
