@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Loader;
+use super::data::DataFile;
 use super::faults::names as fault;
 use super::scope::Scope;
 use crate::diagnostic::Diagnostic;
@@ -60,6 +62,9 @@ pub struct Place {
 pub struct Checker<'a> {
     pub sources: &'a Sources,
     pub scope: &'a Scope<'a>,
+    pub loader: &'a dyn Loader,
+    /// Data files that the plan names, each once.
+    pub data: Vec<DataFile>,
     pub faults: Vec<Diagnostic>,
     /// Whether names may be missing because a used file could not be read.
     pub names_lost: bool,
@@ -73,9 +78,16 @@ pub struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    pub fn new(sources: &'a Sources, scope: &'a Scope<'a>, faults: Vec<Diagnostic>, unread: Vec<Span>, names_lost: bool) -> Self {
+    pub fn new(
+        sources: &'a Sources,
+        scope: &'a Scope<'a>,
+        loader: &'a dyn Loader,
+        faults: Vec<Diagnostic>,
+        unread: Vec<Span>,
+        names_lost: bool,
+    ) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
-        Self { sources, scope, faults, names_lost, unread, known, used, real_rig: None, stack }
+        Self { sources, scope, loader, data: Vec::new(), faults, names_lost, unread, known, used, real_rig: None, stack }
     }
 
     /// Notes a fault; returns None, so that a caller can leave with it.

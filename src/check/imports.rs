@@ -71,9 +71,7 @@ impl Loading<'_> {
         if let Some(reason) = refused(written) {
             return Err(fault::bad_path(written, used.span, reason));
         }
-        let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
-        let steps = written.split('/').filter(|step| *step != ".");
-        let path = folder.split('/').filter(|step| !step.is_empty()).chain(steps).collect::<Vec<_>>().join("/");
+        let path = resolved(from, written);
         if let Some(start) = self.chain.iter().position(|open| *open == path) {
             return Err(fault::use_cycle(&self.chain[start..], &path, used.span));
         }
@@ -97,8 +95,21 @@ impl Loading<'_> {
     }
 }
 
+/// The path, relative to the plan's folder, of what the file `from` calls `written`.
+pub fn resolved(from: &str, written: &str) -> String {
+    let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let steps = written.split('/').filter(|step| *step != ".");
+    folder.split('/').filter(|step| !step.is_empty()).chain(steps).collect::<Vec<_>>().join("/")
+}
+
+/// The path of a file of the plan, relative to the plan's folder.
+pub fn own_path(sources: &Sources, file: FileId) -> String {
+    let name = sources.file(file).name.as_str();
+    if file == FileId(0) { name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned() } else { name.to_owned() }
+}
+
 /// Why a path may not be used, if so.
-fn refused(path: &str) -> Option<&'static str> {
+pub fn refused(path: &str) -> Option<&'static str> {
     let drive = path.as_bytes().get(1) == Some(&b':');
     if path.is_empty() {
         Some("it is empty")

@@ -6,6 +6,7 @@ mod call;
 mod checker;
 mod choice;
 mod damping_sweep;
+mod data;
 mod device;
 mod dialect;
 mod expression;
@@ -89,7 +90,7 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
         sources.iter().map(|(_, file)| PlanFile { name: file.name.clone(), text: file.text.clone() }).collect();
     let settings = parameters::read_settings(&mut sources, &imports.asts, &options.settings, &mut faults);
     let scope = Scope::collect(&imports.asts, &settings, &mut faults);
-    let mut checker = Checker::new(&sources, &scope, faults, unread, imports.incomplete);
+    let mut checker = Checker::new(&sources, &scope, loader, faults, unread, imports.incomplete);
     let plan = plan(&mut checker, name, files, options);
     let mut diagnostics = checker.faults;
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
@@ -159,7 +160,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         procedures: by_place.into_iter().collect::<Option<_>>()?,
         requirements: requirements?,
         report: report?,
-        files,
+        files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),
     })
 }

@@ -100,6 +100,7 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W711 ResolutionUnknown Warning;
 }
 
 impl std::fmt::Display for Code {

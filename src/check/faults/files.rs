@@ -1,4 +1,4 @@
-//! Faults of used files: E5xx.
+//! Faults of used files and of data files: E5xx.
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -38,4 +38,16 @@ pub fn too_many_files(most: usize, span: Span) -> Diagnostic {
     Diagnostic::new(Code::TooManyFiles, format!("a plan may be made of at most {most} files"))
         .at(span, "one too many")
         .help("put declarations that belong together into one file")
+}
+
+pub fn bad_data_path(path: &str, span: Span, reason: &str) -> Diagnostic {
+    Diagnostic::new(Code::BadPath, format!("`{path}` cannot be read: {reason}"))
+        .at(span, "not a path inside the plan's folder")
+        .help("put the file into the plan's folder, or a folder in it")
+}
+
+pub fn data_refused(path: &str, reason: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::FileNotFound, format!("`{path}` cannot be read: {reason}"))
+        .at(span, "cannot be read")
+        .help("name a file of UTF-8 text in the plan's folder")
 }
