@@ -109,23 +109,29 @@ fn force_note(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history:
     let Some(ProcedureKind::Impact(impact)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
     let step = number::text(history.time_step, Dimension::TIME);
     let critical = number::text(history.critical_time_step, Dimension::TIME);
-    let mut text = format!("Contact law: {}. ", contact_law(&impact.contact));
-    text += &match (scalar(procedure, "max_contact_force"), scalar(procedure, "impulse")) {
+    let forces = match (scalar(procedure, "max_contact_force"), scalar(procedure, "impulse")) {
         (Some(peak), Some(impulse)) => format!(
-            "Peak contact force {} with an impulse of {} at a time step of {step}. ",
+            "Peak contact force {} with an impulse of {} at a time step of {step}.",
             number::text(peak, Dimension::FORCE),
             number::text(impulse, Dimension::IMPULSE)
         ),
-        _ => format!("Time step {step}. "),
+        _ => format!("Time step {step}."),
     };
-    text += &format!("Critical time step (Melo et al. 2006, eq. 7) {critical}. ");
+    let mut sentences = vec![
+        format!("Contact law: {}.", contact_law(&impact.contact)),
+        forces,
+        format!("Critical time step (Melo et al. 2006, eq. 7) {critical}."),
+    ];
     if matches!(impact.contact, Contact::Rigid) {
-        text += "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the \
-                 blow, the peak is not. ";
-        text += &implied_restitution(run, procedure, impact);
+        sentences.push(
+            "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the \
+             blow, the peak is not."
+                .to_owned(),
+        );
+        sentences.extend(implied_restitution(run, procedure, impact));
     }
-    text += &damping_range(run, procedure, impact);
-    body.push(Block::paragraph(text.trim_end()));
+    sentences.extend(damping_range(run, procedure, impact));
+    body.push(Block::paragraph(sentences.join(" ")));
 }
 
 fn scalar(procedure: &ProcedureRecord, name: &str) -> Option<f64> {
@@ -136,7 +142,7 @@ fn scalar(procedure: &ProcedureRecord, name: &str) -> Option<f64> {
 }
 
 /// How far the damping of a sweep is carried beyond the velocities it was measured at: an extrapolation.
-fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> String {
+fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> Vec<String> {
     let mut references = Vec::new();
     impact.damping.collect_references(&mut references);
     let swept = references.iter().filter_map(|reference| run.record.procedures.get(reference.procedure.0));
@@ -144,7 +150,7 @@ fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) ->
         swept.filter_map(|sweep| Some((&sweep.name, scalar(sweep, "max_velocity")?, scalar(procedure, "max_velocity")?)));
     let told = ranges.filter(|(_, _, used)| *used > 0.0).map(|(name, measured, used)| {
         format!(
-            "The damping of {name} was measured up to {}, {}\u{a0}% of the largest velocity of the structure here ({}){} ",
+            "The damping of {name} was measured up to {}, {}\u{a0}% of the largest velocity of the structure here ({}){}",
             number::text(measured, Dimension::VELOCITY),
             number::text(100.0 * measured / used, Dimension::NUMBER),
             number::text(used, Dimension::VELOCITY),
@@ -165,15 +171,15 @@ fn contact_law(contact: &Contact) -> &'static str {
 }
 
 /// e = Ms/(Ms + 2M): what the rigid law is as the time step goes to zero.
-fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> String {
+fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> Option<String> {
     let mass = procedure.inputs.iter().find(|(name, ..)| *name == "mass").map(|(_, estimate, _)| estimate.value);
     let striker = run.plan.strikers.get(impact.striker).map(|striker| striker.mass);
-    let (Some(mass), Some(striker)) = (mass.or_else(|| impact.mass.constant()), striker) else { return String::new() };
+    let (mass, striker) = (mass.or_else(|| impact.mass.constant())?, striker?);
     let restitution = striker / (striker + 2.0 * mass);
-    format!(
-        "It implies a coefficient of restitution e = Ms/(Ms + 2M) = {} (Ms striker mass, M equivalent mass of the structure). ",
+    Some(format!(
+        "It implies a coefficient of restitution e = Ms/(Ms + 2M) = {} (Ms striker mass, M equivalent mass of the structure).",
         number::text(restitution, Dimension::NUMBER)
-    )
+    ))
 }
 
 /// Where the striker's energy was at the end of the run.

@@ -2,6 +2,7 @@
 //! document's own, the fonts the program's. Every text goes to the template as data, so that none of it is ever markup.
 
 use std::borrow::Cow;
+use std::fmt::Write as _;
 
 use serde_json::Value;
 use typst::diag::SourceDiagnostic;
@@ -83,7 +84,7 @@ fn settable(text: &str) -> Cow<'_, str> {
                 settable.push(ZERO_WIDTH_SPACE);
             }
             if lacking(c) {
-                settable.push_str(&format!("[U+{:04X}]", u32::from(c)));
+                let _ = write!(settable, "[U+{:04X}]", u32::from(c));
             } else {
                 settable.push(c);
             }

@@ -104,7 +104,9 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     assert_eq!(missing(&expired), ["a valid calibration (it held until 2027-02-28, the test ended on 2027-03-01)"]);
     let files = files(&expired);
     let html = text(&files, "certificate.html");
-    assert!(html.contains("class=\"watermark\"") && html.contains("NOT CERTIFIABLE") && html.contains("OVERDUE</span> on 2027-03-01"));
+    assert!(
+        html.contains("class=\"watermark\"") && html.contains("NOT CERTIFIABLE") && html.contains("OVERDUE</span> on 2027-03-01")
+    );
     assert!(console::verdict_text(&expired.run(), false).contains("(NOT CERTIFIABLE: lacks a valid calibration"));
     // Without times in the record the plan's own date is judged, and a date that is none is none.
     let mut undated = real();
