@@ -53,7 +53,8 @@ fn provenance(run: &Run<'_>) -> Block {
     let settings = if settings.is_empty() { "none".to_owned() } else { settings.join("; ") };
     let simulated = if run.record.rig.simulated { " (simulated)" } else { "" };
     let mut rows = vec![
-        ("Report and run", Text::new().id(&run.provenance.run_id)),
+        ("Report", Text::new().id(run.provenance.report_id())),
+        ("Run", Text::new().id(&run.provenance.run_id)),
         ("Program", format!("psd {}", run.provenance.psd_version).into()),
         ("SHA-256 of the plan", Text::new().id(&run.provenance.plan_sha256)),
         ("Settings on the command line", settings.into()),

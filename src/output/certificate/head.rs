@@ -2,7 +2,7 @@
 //! before any of it is believed. In: a run. Out: blocks.
 
 use super::super::document::{Block, Column, Style, Table, Text, Verdict as Stated};
-use super::super::{Run, deviations, number, summary};
+use super::super::{Run, amendment, deviations, number, summary};
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
@@ -33,6 +33,26 @@ fn sentence(run: &Run<'_>) -> String {
         Verdict::Aborted => "The run was stopped before its end; what follows is what was recorded until then.".to_owned(),
         Verdict::Error => "The rig failed; what follows is what was recorded until then.".to_owned(),
     }
+}
+
+/// Why there is another report of the same run, and what it says otherwise.
+pub(super) fn amendments(run: &Run<'_>, body: &mut Vec<Block>) {
+    let told = amendment::told(run);
+    if told.is_empty() {
+        return;
+    }
+    body.push(Block::section("Amendment"));
+    body.push(Block::List { items: told.into_iter().map(Text::from).collect() });
+    body.push(Block::note(
+        "The record of the run is the same, and so is every measured and computed number. The report named above is kept and no \
+         longer valid.",
+    ));
+}
+
+/// The report that this one takes the place of.
+pub(super) fn replaced(run: &Run<'_>) -> Option<String> {
+    let amends = run.provenance.amends.as_ref()?;
+    amends.amendments.last().map(|amendment| amendment.replaces.clone())
 }
 
 /// Whether deviations stand before the requirements: of a real rig, and where long requirements would push them off the

@@ -4,6 +4,7 @@
 mod appendix;
 mod conditions;
 mod contact_log;
+mod cycles;
 mod equipment;
 mod head;
 mod marks;
@@ -17,6 +18,7 @@ use super::figures::Drawn;
 /// The whole report.
 pub(super) fn document(run: &Run<'_>, figures: &[Drawn]) -> Document {
     let mut body = Vec::new();
+    head::amendments(run, &mut body);
     if head::deviations_come_first(run) {
         head::deviations(run, &mut body);
         head::requirements(run, &mut body);
@@ -38,14 +40,15 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn]) -> Document {
     Document {
         kind: "Report of a pseudo-dynamic test",
         title: title(run).into(),
-        id: run.provenance.run_id.clone(),
+        replaces: head::replaced(run),
+        id: run.provenance.report_id().to_owned(),
         date: run.provenance.date.clone(),
         front: particulars::front(run),
         verdict: head::verdict(run),
         marks: marks::boxed(run),
         across: marks::across(run),
         body,
-        end: Text::from("— End of report ").id(&run.provenance.run_id).and(" —"),
+        end: Text::from("— End of report ").id(run.provenance.report_id()).and(" —"),
         attachments: appendix::attachments(run),
     }
 }

@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{contact_log, words};
+use super::{contact_log, cycles, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -20,7 +20,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
         body.push(Block::part(Text::from(procedure.name.as_str()).soft(format!(" · {}{state}", procedure.kind))));
         inputs(procedure, body);
         if !procedure.results.is_empty() {
-            body.push(table(&procedure.results));
+            body.push(table(procedure));
         }
         match &procedure.history {
             History::Ramp(history) => {
@@ -38,6 +38,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
                 energy_balance(history, body);
                 contact_log::table(history, body);
             }
+            History::Cycle(history) => cycles::table(history, body),
             History::Move(_) | History::Inspect => {}
         }
     }
@@ -58,7 +59,10 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     }
 }
 
-fn table(results: &[NamedResult]) -> Block {
+/// Lists whose numbers stand in a table of their own are not printed twice.
+fn table(procedure: &ProcedureRecord) -> Block {
+    let tabled = matches!(procedure.history, History::Cycle(_));
+    let results = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
     let columns = vec![
         Column::words("Result", 1),
         Column::numbers("Value"),
@@ -67,7 +71,7 @@ fn table(results: &[NamedResult]) -> Block {
         Column::short("Unit"),
         Column::short("In the plan"),
     ];
-    Block::Table(Table { columns, rows: results.iter().map(row).collect() })
+    Block::Table(Table { columns, rows: results.map(row).collect() })
 }
 
 fn row(result: &NamedResult) -> Vec<Text> {
@@ -84,7 +88,8 @@ fn row(result: &NamedResult) -> Vec<Text> {
         }
         ResultValue::Number { value: None, .. } => [Text::missing("none in this run"), dash(), dash(), dash()],
         ResultValue::List(values) => {
-            let texts: Vec<String> = values.iter().map(|value| number::text(*value, result.dimension)).collect();
+            let text = |value: &f64| if value.is_finite() { number::text(*value, result.dimension) } else { "none".to_owned() };
+            let texts: Vec<String> = values.iter().map(text).collect();
             [texts.join(", ").into(), dash(), dash(), dash()]
         }
     };

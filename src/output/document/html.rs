@@ -60,6 +60,7 @@ fn top(document: &Document) -> Markup {
         header.title {
             div {
                 p.kind { (document.kind) }
+                @if let Some(replaced) = &document.replaces { p.kind { b { "Amendment to report " (replaced) } } }
                 h1 { (line(&document.title)) }
             }
             div.run {

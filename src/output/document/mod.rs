@@ -16,6 +16,8 @@ pub(super) use text::{Style, Text, printable};
 pub(super) struct Document {
     /// What kind of paper this is, above the title.
     pub kind: &'static str,
+    /// The report that this one takes the place of.
+    pub replaces: Option<String>,
     pub title: Text,
     /// Identifies the report on every page.
     pub id: String,
