@@ -1,12 +1,14 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod integrator;
 mod cycle;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use integrator::Integrator;
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
