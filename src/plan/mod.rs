@@ -418,6 +418,7 @@ impl FigureKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Html,
+    Pdf,
     Csv,
     Parquet,
 }
