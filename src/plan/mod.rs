@@ -1,15 +1,15 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
-mod integrator;
 mod cycle;
+mod integrator;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
-pub use integrator::Integrator;
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use integrator::Integrator;
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -438,9 +438,7 @@ impl FigureKind {
                 Self::ForceDisplacement,
                 Self::Energy,
             ],
-            ProcedureKind::Cycle(_) => {
-                &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation]
-            }
+            ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }

@@ -77,10 +77,9 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
             cyclic::loops(history),
             format!("{name}: restoring force against displacement; the area of a loop is the energy of its cycle."),
         ),
-        (History::Cycle(history), FigureKind::Backbone) => (
-            cyclic::backbone(history),
-            format!("{name}: backbone, the force at the ends of the cycles, amplitude by amplitude."),
-        ),
+        (History::Cycle(history), FigureKind::Backbone) => {
+            (cyclic::backbone(history), format!("{name}: backbone, the force at the ends of the cycles, amplitude by amplitude."))
+        }
         (History::Cycle(history), FigureKind::CycleEnergy) => {
             (cyclic::energy(history), format!("{name}: energy of each cycle, and of all cycles so far."))
         }
