@@ -447,6 +447,7 @@ impl FigureKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Html,
+    Pdf,
     Csv,
     Parquet,
 }
