@@ -28,7 +28,7 @@ fn strike(input: &FrameImpactInput) -> (Vec<f64>, FrameImpactSolver, f64) {
     (places, solver, worst)
 }
 
-fn blow<'a>(frame: FrameInput<'a>, struck: usize, law: ContactLaw) -> FrameImpactInput<'a> {
+fn blow(frame: FrameInput, struck: usize, law: ContactLaw) -> FrameImpactInput {
     FrameImpactInput { frame, struck, striker_mass: 10.0, striker_velocity: 1.0, gap: 0.0, law }
 }
 
