@@ -284,7 +284,7 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle,
+            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Mode, Procedure, ProcedureKind, Report, RigPlan, Settle,
             Specimen, Striker, Until,
         };
         let specimen = Specimen {
@@ -304,6 +304,7 @@ mod tests {
             integrator: Integrator::Tangent,
             allow_unstable: false,
             i_modification: false,
+            mode: Mode::StepAndPause,
             time_step: Constant(0.01),
             duration: Constant(1.0),
             until: Until::StrikerStop,

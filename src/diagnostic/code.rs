@@ -98,6 +98,8 @@ codes! {
     E634 NoSuchProperty Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
+    E644 NoPathToFollow Error;
+    E645 StopsOnTheWay Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     // 7: what runs but is unwise
@@ -111,6 +113,7 @@ codes! {
     W708 DeviceNotPinned Warning;
     W711 ResolutionUnknown Warning;
     W715 TableTooShort Warning;
+    W716 DampingTwice Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -12,7 +12,7 @@ use crate::quantity::Dimension;
 
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
-pub use integrator::Integrator;
+pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
@@ -243,6 +243,7 @@ pub struct Impact {
     pub allow_unstable: bool,
     /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
     pub i_modification: bool,
+    pub mode: Mode,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// Upper bound of virtual time, s.

@@ -3,6 +3,7 @@
 mod cycle;
 #[cfg(test)]
 mod cycle_tests;
+mod continuous;
 mod damping_sweep;
 pub mod driven;
 mod gate;

@@ -2,6 +2,7 @@
 //! every step as it ended, and what they come to. It judges no plan.
 
 use super::StepReport;
+use super::continuous;
 use super::impact::Setting;
 use super::session::Session;
 use super::stop::Stop;
@@ -9,12 +10,12 @@ use super::triggers::Triggers;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use crate::mechanics::monitor::{Monitor, Tracking, WARN};
 use crate::mechanics::summary::SummaryBuilder;
-use crate::plan::{Impact, Until};
+use crate::plan::{Impact, Mode, Until};
 use crate::quantity::display::significant;
 use crate::record::{EventKind, ImpactStep};
 
 pub(super) struct Strike {
-    setting: Setting,
+    pub(super) setting: Setting,
     pub steps: Vec<ImpactStep>,
     pub summary: SummaryBuilder,
     /// Energy error of tracking over the input, the largest by size so far, signed.
@@ -34,6 +35,9 @@ impl Strike {
     }
 
     pub(super) fn run(&mut self, plan: &Impact, session: &mut Session<'_>) -> Result<(), Stop> {
+        if let Mode::Continuous { time_scale } = plan.mode {
+            return continuous::run(self, plan, time_scale, session);
+        }
         let Setting { input, steps, pause, .. } = self.setting;
         let mut triggers = Triggers::new(&plan.inspect);
         // X starts where the actuator was sent to, and R₀ is read there once, before the first step.
@@ -62,7 +66,7 @@ impl Strike {
     }
 
     /// A step has ended: it is kept, judged and told.
-    fn step(&mut self, state: &ImpactState, tracking: Tracking, session: &mut Session<'_>) -> Result<(), Stop> {
+    pub(super) fn step(&mut self, state: &ImpactState, tracking: Tracking, session: &mut Session<'_>) -> Result<(), Stop> {
         self.take(state, tracking, session);
         let error = error_fraction(state, &self.setting.input);
         let share = tracking.share_of(self.setting.input.striker_energy());
@@ -99,7 +103,7 @@ impl Strike {
         }
     }
 
-    fn take(&mut self, state: &ImpactState, tracking: Tracking, session: &Session<'_>) {
+    pub(super) fn take(&mut self, state: &ImpactState, tracking: Tracking, session: &Session<'_>) {
         self.summary.push(state);
         self.steps.push(ImpactStep {
             step: state.step,

@@ -2,7 +2,7 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, Impact, Integrator, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle,
+    Behaviour, Calibration, Contact, Impact, Integrator, Limits, Mode, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle,
     Specimen, StiffnessRamp, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
@@ -74,6 +74,7 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         integrator: Integrator::Tangent,
         allow_unstable: false,
         i_modification: false,
+            mode: Mode::StepAndPause,
         time_step: Formula::Constant(0.01),
         duration: Formula::Constant(0.5),
         until: Until::StrikerStop,

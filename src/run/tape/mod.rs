@@ -14,6 +14,7 @@ mod observer;
 mod played;
 mod rig;
 mod state;
+mod way;
 #[cfg(test)]
 mod tests;
 
