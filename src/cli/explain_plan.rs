@@ -6,11 +6,12 @@ use std::fmt::Write as _;
 use super::columns::columns;
 use super::dry_rig::{Reach, Watched};
 use super::exit::Exit;
+use super::explain_tracking;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
 use crate::output::behaviour;
-use crate::plan::{Interval, Link, Plan, VirtualLink};
+use crate::plan::{Interval, Link, Plan, ProcedureKind, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::{digits, join, readable, significant, stated, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
@@ -107,11 +108,12 @@ impl<'a> DryRun<'a> {
             }
         }
         section("What moves", self.motions());
-        for procedure in &self.record.procedures {
-            if let History::Impact(history) = &procedure.history
+        for (procedure, planned) in self.record.procedures.iter().zip(&self.plan.procedures) {
+            if let (History::Impact(history), ProcedureKind::Impact(blow)) = (&procedure.history, &planned.kind)
                 && !history.steps.is_empty()
             {
-                section(&format!("{}, impact", procedure.name), impact(history));
+                let foretold = explain_tracking::rows(self.plan, blow, procedure, history);
+                section(&format!("{}, impact", procedure.name), [impact(history), foretold].concat());
             }
         }
         section("Limits", self.limits());

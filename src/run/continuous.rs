@@ -54,8 +54,7 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
         let target = solver.predict();
         let velocity = solver.predicted_velocity() / time_scale;
         let rest = (1.0 - AHEAD) * step_time;
-        let on =
-            Path { from: ahead.to, to: target, start_velocity: ahead.end_velocity, end_velocity: velocity, seconds: rest };
+        let on = Path { from: ahead.to, to: target, start_velocity: ahead.end_velocity, end_velocity: velocity, seconds: rest };
         let (measured, force) = first(&follow(on, READINGS.1, session)?);
         motion = Motion { place: target, velocity, acceleration: (velocity - motion.velocity) / step_time };
         let tracking = monitor.take(target, measured, force);

@@ -6,3 +6,4 @@ mod identification;
 mod methods;
 mod reference;
 mod support;
+mod tracking;

@@ -8,6 +8,7 @@ mod cycles;
 mod equipment;
 mod head;
 mod marks;
+mod method;
 mod particulars;
 mod results;
 

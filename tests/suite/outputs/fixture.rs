@@ -8,9 +8,9 @@ use psd::mechanics::identification::LineFit;
 use psd::mechanics::monitor::Tracking;
 use psd::output::{Provenance, Run};
 use psd::plan::{
-    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Integrator, Mode,
-    Interval, Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
-    StiffnessRamp, Striker, Test, Until, VirtualLink,
+    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Integrator,
+    Interval, Limits, Link, Mode, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle,
+    Specimen, StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
 use psd::record::{
@@ -300,7 +300,7 @@ fn plan() -> Plan {
                 integrator: Integrator::Tangent,
                 allow_unstable: false,
                 i_modification: false,
-            mode: Mode::StepAndPause,
+                mode: Mode::StepAndPause,
                 time_step: constant(TIME_STEP),
                 duration: constant(0.4),
                 until: Until::StrikerStop,
