@@ -33,6 +33,7 @@ mod stiffness_ramp;
 mod striker;
 #[cfg(test)]
 mod tests;
+mod unload;
 mod warnings;
 
 pub use imports::{DEEPEST, MOST_FILES};

@@ -3,6 +3,7 @@
 
 mod cycle;
 mod rig;
+mod unload;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
@@ -12,6 +13,7 @@ pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
 };
+pub use unload::Unload;
 
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -177,6 +179,7 @@ pub enum ProcedureKind {
     DampingSweep(DampingSweep),
     Impact(Impact),
     Cycle(Cycle),
+    Unload(Unload),
     Move(Move),
     /// A person looks at the specimen.
     Inspect {
@@ -193,6 +196,7 @@ impl ProcedureKind {
             Self::DampingSweep(_) => "damping sweep",
             Self::Impact(_) => "impact",
             Self::Cycle(_) => "cycle",
+            Self::Unload(_) => "unload",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
         }
@@ -206,6 +210,7 @@ impl ProcedureKind {
             Self::DampingSweep(sweep) => Some(sweep.specimen),
             Self::Impact(impact) => Some(impact.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
+            Self::Unload(unload) => Some(unload.specimen),
             Self::Move(_) | Self::Inspect { .. } => None,
         }
     }
@@ -439,7 +444,7 @@ impl FigureKind {
             ProcedureKind::Cycle(_) => {
                 &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation]
             }
-            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
+            ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }
 }

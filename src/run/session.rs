@@ -212,7 +212,7 @@ fn steps(kind: &ProcedureKind) -> Option<u64> {
             let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
             Some(once * u64::from(ramp.repeats))
         }
-        ProcedureKind::DampingSweep(_) => None,
+        ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) => None,
         ProcedureKind::Impact(impact) => {
             let critical = critical_time_step(impact.mass.constant()?, impact.stiffness.constant()?);
             let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;

@@ -13,6 +13,7 @@ mod reference;
 mod report;
 mod results;
 mod rig;
+mod sequences;
 mod types;
 
 pub use functions::{FUNCTIONS, FunctionKind};
@@ -30,6 +31,7 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
     &cyclic::CYCLE,
+    &sequences::UNLOAD,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,

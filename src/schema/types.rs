@@ -14,6 +14,7 @@ pub enum Kind {
     DampingSweep,
     Impact,
     Cycle,
+    Unload,
     Move,
     Inspect,
     Report,
