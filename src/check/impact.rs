@@ -44,7 +44,11 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         contact: contact?,
         time_step: time_step?,
         duration: duration?,
-        until: if until? == "duration" { Until::Duration } else { Until::StrikerStop },
+        until: match until? {
+            "duration" => Until::Duration,
+            "rebound" => Until::Rebound,
+            _ => Until::StrikerStop,
+        },
         pause: pause?,
         max_tangent_ratio: max_tangent_ratio?,
         inspect: inspect?,

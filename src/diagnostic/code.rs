@@ -103,6 +103,7 @@ codes! {
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
     W711 ResolutionUnknown Warning;
+    W720 BlowOnBlow Warning;
 }
 
 impl std::fmt::Display for Code {

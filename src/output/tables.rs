@@ -99,6 +99,7 @@ fn impact(steps: &[ImpactStep]) -> Vec<Column> {
         of("damping_energy_j", |step| step.energies.damping),
         of("contact_loss_j", |step| step.energies.contact_loss),
         of("indentation_energy_j", |step| step.energies.indentation),
+        of("weight_work_j", |step| step.energies.weight),
         of("energy_error_j", |step| step.energies.error),
     ]
 }

@@ -108,6 +108,8 @@ pub struct Striker {
     pub velocity: f64,
     /// Distance to the structure at the start, m, at least 0.
     pub gap: f64,
+    /// Acceleration along its way, m/s²: gn of a weight that falls.
+    pub gravity: f64,
 }
 
 /// Closed intervals (SI); an absent bound is infinite, so that `lo <= x && x <= hi` is the whole test.
@@ -298,6 +300,8 @@ pub enum Contact {
 pub enum Until {
     /// The first step end with Ẋs ≤ 0 and Ẋ ≤ 0.
     StrikerStop,
+    /// Striker and structure are apart for good.
+    Rebound,
     /// The whole `duration`.
     Duration,
 }

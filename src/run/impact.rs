@@ -80,6 +80,7 @@ impl Setting {
             striker_mass: striker.mass,
             striker_velocity: striker.velocity,
             gap: striker.gap,
+            gravity: striker.gravity,
             time_step,
             max_tangent_ratio,
             law,
@@ -154,7 +155,7 @@ impl Strike {
                 force: restoring_force,
                 energy_error: Some(error_fraction(&state, &input)),
             })?;
-            if plan.until == Until::StrikerStop && solver.finished() {
+            if over(plan.until, &solver) {
                 break;
             }
             if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
@@ -183,6 +184,15 @@ impl Strike {
             indentation: state.indentation,
             energies: state.energies,
         });
+    }
+}
+
+/// Whether the run has come to its end before its duration.
+fn over(until: Until, solver: &ImpactSolver) -> bool {
+    match until {
+        Until::StrikerStop => solver.finished(),
+        Until::Rebound => solver.rebounded(),
+        Until::Duration => false,
     }
 }
 

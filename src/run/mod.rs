@@ -18,6 +18,8 @@ mod results;
 #[cfg(test)]
 mod rig_fault_tests;
 mod samples;
+#[cfg(test)]
+mod sequence_tests;
 mod session;
 mod stiffness_ramp;
 mod stop;

@@ -23,3 +23,10 @@ pub fn no_use_with_rate(field: &str, span: Span, rate: Span) -> Diagnostic {
         .at(rate, "moved without stopping")
         .help(format!("leave out `{field}`, or `rate`"))
 }
+
+pub fn blow_on_blow(head: Span, before: &str, before_at: Span) -> Diagnostic {
+    Diagnostic::new(Code::BlowOnBlow, format!("this blow begins where `{before}` ended: under load, and at rest"))
+        .at(head, "begins there")
+        .at(before_at, "ends near its largest displacement")
+        .help("take the load off in between: `unload rest { }`")
+}

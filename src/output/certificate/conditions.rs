@@ -123,12 +123,16 @@ fn held(ends: Ends) -> String {
 }
 
 fn striker_table(striker: &Striker) -> Markup {
-    described(vec![
+    let mut rows = vec![
         ("mass", number::stated(striker.mass, Dimension::MASS)),
         ("velocity at the start", number::stated(striker.velocity, Dimension::VELOCITY)),
         ("energy", number::stated(0.5 * striker.mass * striker.velocity * striker.velocity, Dimension::ENERGY)),
         ("gap at the start", number::stated(striker.gap, Dimension::LENGTH)),
-    ])
+    ];
+    if striker.gravity != 0.0 {
+        rows.push(("acceleration along its way", number::stated(striker.gravity, Dimension::ACCELERATION)));
+    }
+    described(rows)
 }
 
 fn rig(run: &Run<'_>) -> Markup {

@@ -172,8 +172,8 @@ fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impa
 /// Where the striker's energy was at the end of the run.
 fn energy_balance(history: &ImpactHistory) -> Markup {
     let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else { return html! {} };
-    let input = first.energies.striker;
     let e = last.energies;
+    let input = first.energies.striker + e.weight;
     let parts = [
         ("striker, kinetic", e.striker),
         ("structure, kinetic", e.structure),
@@ -186,7 +186,7 @@ fn energy_balance(history: &ImpactHistory) -> Markup {
         table.results {
             thead { tr { th { "Energy balance at the end of the run" } th.number { "Energy" } th.number { "Of the input" } } }
             tbody {
-                tr { td { "input, ½MsV₀²" } td.number { (number::text(input, Dimension::ENERGY)) } td.number { "100 %" } }
+                tr { td { @if e.weight == 0.0 { "input, ½MsV₀²" } @else { "input, ½MsV₀² and the work of the striker's weight" } } td.number { (number::text(input, Dimension::ENERGY)) } td.number { "100 %" } }
                 @for (name, energy) in parts {
                     tr {
                         td { (name) }
