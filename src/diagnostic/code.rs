@@ -93,6 +93,7 @@ codes! {
     E614 FieldWithoutUse Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
+    E648 ConditionWithoutBlow Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -104,6 +105,7 @@ codes! {
     W708 DeviceNotPinned Warning;
     W711 ResolutionUnknown Warning;
     W720 BlowOnBlow Warning;
+    W721 LevelsDoNotRise Warning;
 }
 
 impl std::fmt::Display for Code {
