@@ -91,6 +91,8 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E642 LawNeedsTangent Error;
+    E643 Unstable Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;

@@ -5,11 +5,17 @@ pub mod contact;
 pub mod cyclic;
 pub mod damping;
 pub mod energy;
+pub mod frame;
 pub mod identification;
 pub mod impact;
 pub mod integrator;
 pub mod law;
+pub mod method;
+pub mod monitor;
+pub mod scheme;
 pub mod specimen;
+pub mod split;
 pub mod summary;
+pub mod tangent;
 
 pub use integrator::critical_time_step;

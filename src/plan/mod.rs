@@ -2,6 +2,7 @@
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
 mod cycle;
+mod integrator;
 mod rig;
 mod unload;
 
@@ -9,6 +10,7 @@ use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use integrator::Integrator;
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -154,6 +156,10 @@ pub struct Limits {
     pub tracking_error: Interval,
     /// |energy error| over the input energy.
     pub energy_error: Interval,
+    /// |energy error of tracking| over the input energy; where it bounds nothing, the default holds.
+    pub tracking_energy_error: Interval,
+    /// Root mean square of the tracking error over that of the command.
+    pub nrms_error: Interval,
 }
 
 impl Limits {
@@ -164,6 +170,8 @@ impl Limits {
         increment: Interval::ALL,
         tracking_error: Interval::ALL,
         energy_error: Interval::ALL,
+        tracking_energy_error: Interval::ALL,
+        nrms_error: Interval::ALL,
     };
 }
 
@@ -266,6 +274,11 @@ pub struct Impact {
     /// C of eqs. 4–5, N·s/m
     pub damping: Formula,
     pub contact: Contact,
+    pub integrator: Integrator,
+    /// Whether it runs beyond the stability limit of its integrator.
+    pub allow_unstable: bool,
+    /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
+    pub i_modification: bool,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// Upper bound of virtual time, s.
@@ -390,6 +403,8 @@ pub enum FigureKind {
     ContactForce,
     ForceDisplacement,
     Energy,
+    /// Command against measurement.
+    Tracking,
     DampingFit,
     /// Largest forces against the displacements of them, amplitude by amplitude.
     Backbone,
@@ -424,6 +439,7 @@ impl FigureKind {
             Self::ContactForce => "contact_force",
             Self::ForceDisplacement => "force_displacement",
             Self::Energy => "energy",
+            Self::Tracking => "tracking",
             Self::DampingFit => "damping_fit",
             Self::Backbone => "backbone",
             Self::CycleEnergy => "cycle_energy",
@@ -444,10 +460,9 @@ impl FigureKind {
                 Self::ContactForce,
                 Self::ForceDisplacement,
                 Self::Energy,
+                Self::Tracking,
             ],
-            ProcedureKind::Cycle(_) => {
-                &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation]
-            }
+            ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }

@@ -2,6 +2,8 @@
 
 mod contact;
 mod falling;
+mod frame;
 mod identification;
+mod methods;
 mod reference;
 mod support;
