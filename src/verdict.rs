@@ -1,7 +1,7 @@
 //! Requirements against the record. In: a [`Plan`] and a [`Record`]. Out: an [`Assessment`], every requirement with
 //! value, limit and margin. A missed requirement is a verdict, never an error.
 
-use crate::formula::{Formula, FormulaError};
+use crate::formula::{Formula, FormulaError, Results};
 use crate::plan::{Comparison, Condition, Plan, Requirement, Test};
 use crate::quantity::Dimension;
 use crate::record::{Outcome, Record};
@@ -99,7 +99,7 @@ fn assess_requirement(requirement: &Requirement, record: &Record) -> Requirement
 }
 
 /// Value and bound are evaluated each on its own, so that a report shows whichever exists.
-fn assess_condition(condition: &Condition, record: &Record) -> ConditionOutcome {
+pub(crate) fn assess_condition(condition: &Condition, record: &dyn Results) -> ConditionOutcome {
     let value = condition.value.evaluate(record, None);
     let bound = evaluate_bound(&condition.test, record);
     let known = match (&value, &bound) {
@@ -123,7 +123,7 @@ fn assess_condition(condition: &Condition, record: &Record) -> ConditionOutcome 
     }
 }
 
-fn evaluate_bound(test: &Test, record: &Record) -> Result<Bound, FormulaError> {
+fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaError> {
     let number = |formula: &Formula| formula.evaluate(record, None).map(|estimate| estimate.value);
     Ok(match test {
         Test::Compare { comparison, limit } => Bound::Compare { comparison: *comparison, limit: number(limit)? },

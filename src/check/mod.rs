@@ -10,6 +10,7 @@ mod damping_sweep;
 mod data;
 mod device;
 mod dialect;
+mod escalate;
 mod expression;
 mod faults;
 mod fields;

@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::faults::{cyclic, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker, Test};
+use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker};
 use crate::source::{FileId, Span};
 
 /// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
@@ -72,14 +72,7 @@ fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)],
     for (index, requirement) in requirements.iter().enumerate() {
         let mut references = Vec::new();
         for condition in &requirement.conditions {
-            condition.value.collect_references(&mut references);
-            match &condition.test {
-                Test::Compare { limit, .. } => limit.collect_references(&mut references),
-                Test::Within { target, tolerance, .. } => {
-                    target.collect_references(&mut references);
-                    tolerance.collect_references(&mut references);
-                }
-            }
+            condition.collect_references(&mut references);
         }
         for reference in references.iter().filter(|reference| reference.name == "max_contact_force") {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)

@@ -2,14 +2,18 @@
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
 mod cycle;
+mod escalate;
+mod figure;
 mod integrator;
 mod rig;
 mod unload;
 
-use crate::formula::{Formula, ProcedureId};
+use crate::formula::{Formula, ResultReference};
 use crate::quantity::Dimension;
 
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use escalate::{Between, Escalate, MOST_BLOWS};
+pub use figure::{Figure, FigureKind};
 pub use integrator::Integrator;
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
@@ -190,6 +194,7 @@ pub enum ProcedureKind {
     Impact(Impact),
     Cycle(Cycle),
     Unload(Unload),
+    Escalate(Escalate),
     Move(Move),
     /// A person looks at the specimen.
     Inspect {
@@ -207,6 +212,7 @@ impl ProcedureKind {
             Self::Impact(_) => "impact",
             Self::Cycle(_) => "cycle",
             Self::Unload(_) => "unload",
+            Self::Escalate(_) => "escalate",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
         }
@@ -221,6 +227,7 @@ impl ProcedureKind {
             Self::Impact(impact) => Some(impact.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
+            Self::Escalate(escalate) => Some(escalate.blow.specimen),
             Self::Move(_) | Self::Inspect { .. } => None,
         }
     }
@@ -354,6 +361,20 @@ pub struct Condition {
     pub dimension: Dimension,
 }
 
+impl Condition {
+    /// Adds every result that it reads, each once.
+    pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
+        self.value.collect_references(into);
+        match &self.test {
+            Test::Compare { limit, .. } => limit.collect_references(into),
+            Test::Within { target, tolerance, .. } => {
+                target.collect_references(into);
+                tolerance.collect_references(into);
+            }
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub enum Test {
     Compare {
@@ -384,88 +405,6 @@ pub struct Report {
     pub figures: Vec<Figure>,
     pub formats: Vec<Format>,
     pub sign: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Figure {
-    pub kind: FigureKind,
-    pub procedure: ProcedureId,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum FigureKind {
-    /// Displacement of structure and striker against virtual time (paper Fig. 9–11, 16).
-    Displacement,
-    /// Striker's velocity (paper Fig. 16).
-    StrikerVelocity,
-    /// Structure's and striker's velocity on one axis.
-    Velocity,
-    ContactForce,
-    ForceDisplacement,
-    Energy,
-    /// Command against measurement.
-    Tracking,
-    DampingFit,
-    /// Largest forces against the displacements of them, amplitude by amplitude.
-    Backbone,
-    /// Energy of each cycle.
-    CycleEnergy,
-    /// Secant stiffness of each cycle.
-    StiffnessDegradation,
-}
-
-impl FigureKind {
-    /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 10] = [
-        Self::Displacement,
-        Self::StrikerVelocity,
-        Self::Velocity,
-        Self::ContactForce,
-        Self::ForceDisplacement,
-        Self::Energy,
-        Self::DampingFit,
-        Self::Backbone,
-        Self::CycleEnergy,
-        Self::StiffnessDegradation,
-    ];
-
-    /// Name in `figures = [...]` and in file names.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Displacement => "displacement",
-            Self::StrikerVelocity => "striker_velocity",
-            Self::Velocity => "velocity",
-            Self::ContactForce => "contact_force",
-            Self::ForceDisplacement => "force_displacement",
-            Self::Energy => "energy",
-            Self::Tracking => "tracking",
-            Self::DampingFit => "damping_fit",
-            Self::Backbone => "backbone",
-            Self::CycleEnergy => "cycle_energy",
-            Self::StiffnessDegradation => "stiffness_degradation",
-        }
-    }
-
-    /// The figures a procedure can draw, in the order of a report.
-    #[must_use]
-    pub const fn of(kind: &ProcedureKind) -> &'static [FigureKind] {
-        match kind {
-            ProcedureKind::StiffnessRamp(_) => &[Self::ForceDisplacement],
-            ProcedureKind::DampingSweep(_) => &[Self::DampingFit],
-            ProcedureKind::Impact(_) => &[
-                Self::Displacement,
-                Self::Velocity,
-                Self::StrikerVelocity,
-                Self::ContactForce,
-                Self::ForceDisplacement,
-                Self::Energy,
-                Self::Tracking,
-            ],
-            ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
-            ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

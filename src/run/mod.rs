@@ -5,6 +5,9 @@ mod cycle;
 mod cycle_tests;
 mod damping_sweep;
 pub mod driven;
+mod escalate;
+#[cfg(test)]
+mod escalate_tests;
 mod gate;
 mod impact;
 #[cfg(test)]
@@ -205,6 +208,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, inputs, session),
+        ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),

@@ -32,6 +32,7 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
     &cyclic::CYCLE,
+    &sequences::ESCALATE,
     &sequences::UNLOAD,
     &procedures::MOVE,
     &procedures::INSPECT,

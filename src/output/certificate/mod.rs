@@ -2,6 +2,7 @@
 //! figures. Out: HTML without scripts and without anything to load; every text of the plan is escaped by the template.
 
 mod appendix;
+mod blows;
 mod conditions;
 mod contact_log;
 mod cycles;

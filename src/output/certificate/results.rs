@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 use super::super::figures::Drawn;
 use super::super::{Run, number};
-use super::{contact_log, cycles, pairs, words};
+use super::{blows, contact_log, cycles, pairs, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -23,6 +23,7 @@ pub(super) fn procedures(run: &Run<'_>) -> Markup {
                 h3 { (procedure.name) " " span.soft { "· " (procedure.kind) @if !procedure.complete { " · not complete" } } }
                 (inputs(procedure))
                 @if !procedure.results.is_empty() { (table(procedure)) }
+                @if let History::Escalate(history) = &procedure.history { (blows::table(history)) }
                 @if let History::Cycle(history) = &procedure.history { (cycles::table(history)) }
                 @if let History::Impact(history) = &procedure.history {
                     (force_note(run, index, procedure, history))
@@ -51,7 +52,7 @@ fn inputs(procedure: &ProcedureRecord) -> Markup {
 
 /// Lists whose numbers stand in a table of their own are not printed twice.
 fn table(procedure: &ProcedureRecord) -> Markup {
-    let tabled = matches!(procedure.history, History::Cycle(_));
+    let tabled = matches!(procedure.history, History::Cycle(_) | History::Escalate(_));
     let results =
         procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_)))).collect::<Vec<_>>();
     html! {
