@@ -91,6 +91,11 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E630 CornersDoNotFit Error;
+    E631 BadTableFile Error;
+    E632 BehaviourIncomplete Error;
+    E633 UnfitInside Error;
+    E634 NoSuchProperty Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E646 RateWithoutSpeed Error;
@@ -106,6 +111,7 @@ codes! {
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
     W711 ResolutionUnknown Warning;
+    W715 TableTooShort Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
 }

@@ -7,6 +7,7 @@ pub mod files;
 pub mod methods;
 pub mod names;
 pub mod rigs;
+pub mod specimens;
 pub mod types;
 pub mod values;
 pub mod whole;
