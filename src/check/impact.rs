@@ -22,7 +22,7 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         Some(_) => checker.quantity(block, "mass"),
         None => specimen_block.and_then(|tested| specimen::export(checker, tested, "mass", head)).map(Formula::Constant),
     };
-    let stiffness = checker.stiffness_or_specimens(block);
+    let stiffness = checker.stiffness_or_specimens(block, specimen_block);
     let damping = checker.quantity(block, "damping");
     let contact = contact(checker, block);
     let integrator = integrator::integrator(checker, block);

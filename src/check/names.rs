@@ -44,7 +44,10 @@ impl<'a> Checker<'a> {
                 let siblings = place.entry.map_or(&[][..], |(block, _)| &self.scope.blocks[block].block.fields);
                 let known =
                     siblings.iter().map(|entry| entry.key.node.as_str()).filter(|key| *key != name).chain(self.scope.names());
-                let fault = fault::unknown_name(name, span, known);
+                // After a blow its results have names of their own.
+                let results = matches!(place.reads, Reads::Blow(_)).then(|| schema::block(Kind::Impact).results);
+                let results = results.unwrap_or_default().iter().map(|result| result.name);
+                let fault = fault::unknown_name(name, span, known.chain(results));
                 self.fail(fault)
             }
         }

@@ -74,7 +74,10 @@ impl<'a> Checker<'a> {
                 let (value, comparison, limit) = value_first(left, comparison, right);
                 Some(Condition { text, value, test: Test::Compare { comparison, limit }, dimension })
             }
-            _ => self.fail(fault::condition_wanted(expr.span, self.text(expr.span))),
+            _ => {
+                let wanted_by = if matches!(place.reads, Reads::Blow(_)) { "while" } else { "require" };
+                self.fail(fault::condition_wanted(wanted_by, expr.span, self.text(expr.span)))
+            }
         }
     }
 }
