@@ -4,7 +4,7 @@
 use super::chart::{Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
 use crate::formula::ResultValue;
 use crate::quantity::Dimension;
-use crate::quantity::display::readable;
+use crate::quantity::display::stated;
 use crate::record::{Blow, EscalateHistory, ImpactStep};
 
 /// Restoring force against displacement, blow over blow.
@@ -77,7 +77,7 @@ fn over_each_other(history: &EscalateHistory, x: Quantity, y: Quantity, of: impl
 }
 
 fn energy(blow: &Blow) -> String {
-    readable(blow.energy, Dimension::ENERGY)
+    stated(blow.energy, Dimension::ENERGY)
 }
 
 /// From the light blue of the first to the dark one of the last but one.
