@@ -1,15 +1,15 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
-mod integrator;
 mod cycle;
+mod integrator;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
-pub use integrator::Integrator;
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use integrator::Integrator;
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -29,6 +29,7 @@ pub struct Plan {
     pub limits: Limits,
     pub procedures: Vec<Procedure>,
     pub requirements: Vec<Requirement>,
+    pub decision_rule: DecisionRule,
     pub report: Report,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
@@ -332,6 +333,27 @@ pub struct Condition {
     pub value: Formula,
     pub test: Test,
     pub dimension: Dimension,
+}
+
+/// How a value is held against a limit (ILAC-G8:09/2019).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DecisionRule {
+    /// The value decides, whatever its uncertainty (simple acceptance).
+    #[default]
+    Simple,
+    /// Between the value and the limit a guard band w = U = 2u must be left: within it nothing is decided.
+    Guarded,
+}
+
+impl DecisionRule {
+    /// The word of the language.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Simple => "simple",
+            Self::Guarded => "guarded",
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
