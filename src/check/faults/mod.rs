@@ -4,8 +4,10 @@ use crate::quantity::{Dimension, display};
 
 pub mod cyclic;
 pub mod files;
+pub mod methods;
 pub mod names;
 pub mod rigs;
+pub mod specimens;
 pub mod types;
 pub mod values;
 pub mod whole;
