@@ -327,6 +327,7 @@ mod tests {
             limits: Limits { displacement: Interval { low: -0.1, high: farthest }, ..Limits::NONE },
             procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],
             requirements: Vec::new(),
+            decision_rule: crate::plan::DecisionRule::Simple,
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
             files: Vec::new(),
             settings: Vec::new(),

@@ -39,6 +39,7 @@ pub struct Plan {
     pub limits: Limits,
     pub procedures: Vec<Procedure>,
     pub requirements: Vec<Requirement>,
+    pub decision_rule: DecisionRule,
     pub report: Report,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
@@ -340,6 +341,27 @@ impl Condition {
                 target.collect_references(into);
                 tolerance.collect_references(into);
             }
+        }
+    }
+}
+
+/// How a value is held against a limit (ILAC-G8:09/2019).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DecisionRule {
+    /// The value decides, whatever its uncertainty (simple acceptance).
+    #[default]
+    Simple,
+    /// Between the value and the limit a guard band w = U = 2u must be left: within it nothing is decided.
+    Guarded,
+}
+
+impl DecisionRule {
+    /// The word of the language.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Simple => "simple",
+            Self::Guarded => "guarded",
         }
     }
 }

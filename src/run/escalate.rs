@@ -43,7 +43,7 @@ fn run(
         done += blown.history.steps.last().map_or(0, |last| last.step);
         let over = blown.stop.is_none();
         let known = OfBlow { own: plan.own, blow: &blown.results, before: inputs.results() };
-        let held = over.then(|| plan.condition.iter().all(|part| assess_condition(part, &known).verdict == Verdict::Pass));
+        let held = over.then(|| plan.condition.iter().all(|part| assess_condition(part, whole.decision_rule, &known).verdict == Verdict::Pass));
         history.blows.push(Blow {
             velocity: striker_velocity,
             energy,
