@@ -15,11 +15,11 @@
 use super::impact::Setting;
 use super::session::{Session, first};
 use super::stop::Stop;
-use super::strike::Strike;
+use super::strike::{Strike, over};
 use crate::mechanics::impact::{ImpactSolver, ImpactState};
 use crate::mechanics::monitor::Monitor;
 use crate::mechanics::path::Path;
-use crate::plan::{Impact, Until};
+use crate::plan::Impact;
 use crate::rig::Reading;
 
 /// Share of a step in which the target is not known yet.
@@ -60,7 +60,7 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
         let tracking = monitor.take(target, measured, force);
         let state = *solver.complete(measured, force);
         strike.step(&state, tracking, session)?;
-        if plan.until == Until::StrikerStop && solver.finished() {
+        if over(plan.until, &solver) {
             break;
         }
     }

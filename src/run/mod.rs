@@ -8,6 +8,9 @@ mod cycle;
 mod cycle_tests;
 mod damping_sweep;
 pub mod driven;
+mod escalate;
+#[cfg(test)]
+mod escalate_tests;
 mod gate;
 mod impact;
 #[cfg(test)]
@@ -21,6 +24,8 @@ mod results;
 #[cfg(test)]
 mod rig_fault_tests;
 mod samples;
+#[cfg(test)]
+mod sequence_tests;
 mod session;
 mod stiffness_ramp;
 mod stop;
@@ -31,6 +36,7 @@ pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod triggers;
+mod unload;
 
 pub use damping_sweep::MOST_SAMPLES;
 pub use request::{Parting, Request};
@@ -205,6 +211,8 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, inputs, session),
+        ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
+        ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),
     }

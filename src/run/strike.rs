@@ -16,6 +16,8 @@ use crate::record::{EventKind, ImpactStep};
 
 pub(super) struct Strike {
     pub(super) setting: Setting,
+    /// Steps of the procedure done before these.
+    before: u64,
     pub steps: Vec<ImpactStep>,
     pub summary: SummaryBuilder,
     /// Energy error of tracking over the input, the largest by size so far, signed.
@@ -24,9 +26,11 @@ pub(super) struct Strike {
 }
 
 impl Strike {
-    pub(super) fn new(setting: &Setting) -> Self {
+    /// `before` steps of the procedure are done already.
+    pub(super) fn new(setting: &Setting, before: u64) -> Self {
         Self {
             setting: *setting,
+            before,
             steps: room_for(setting.steps),
             summary: SummaryBuilder::new(&setting.input),
             worst_share: None,
@@ -55,7 +59,7 @@ impl Strike {
             let tracking = monitor.take(target, measured, restoring_force);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;
-            if plan.until == Until::StrikerStop && solver.finished() {
+            if over(plan.until, &solver) {
                 break;
             }
             if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
@@ -74,7 +78,7 @@ impl Strike {
         session.guard.check_energy_error(error)?;
         session.guard.check_tracking(share, tracking.nrms_error)?;
         session.step_done(&StepReport {
-            step: state.step,
+            step: self.before + state.step,
             time: state.time,
             command: state.target,
             displacement: state.measured_displacement,
@@ -124,6 +128,15 @@ impl Strike {
             energies: state.energies,
             tracking,
         });
+    }
+}
+
+/// Whether the run has come to its end before its duration.
+pub(super) fn over(until: Until, solver: &ImpactSolver) -> bool {
+    match until {
+        Until::StrikerStop => solver.finished(),
+        Until::Rebound => solver.rebounded(),
+        Until::Duration => false,
     }
 }
 
