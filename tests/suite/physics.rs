@@ -3,5 +3,7 @@
 mod contact;
 mod frame;
 mod identification;
+mod portal;
 mod reference;
+mod specimens;
 mod support;
