@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use psd::check::{LoadFault, Loader, Options, check};
 use psd::diagnostic::render::{Appearance, render_all};
-use psd::output::{Provenance, Run, everything};
+use psd::output::{Provenance, Run, vectors};
 use psd::plan::FigureKind;
 use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
@@ -43,7 +43,6 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
     let checked = check(&format!("{name}.psd"), text, &Docs, &Options::default());
     let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
     let mut plan = checked.plan.filter(|_| checked.diagnostics.is_empty()).unwrap_or_else(|| panic!("{said}"));
-    plan.report.formats.clear();
     plan.report.figures.retain(|figure| figure.kind == FigureKind::ForceDisplacement);
     let mut rig = VirtualRig::of_plan(&plan);
     let record = run(&plan, &mut rig, &mut Unwatched);
@@ -57,9 +56,9 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
         real: None,
         amends: None,
     };
-    let files = everything(&Run { plan: &plan, record: &record, assessment: &assessment, provenance: &provenance })
+    let files = vectors(&Run { plan: &plan, record: &record, assessment: &assessment, provenance: &provenance })
         .expect("the outputs can be made");
-    let is_loop = |path: &str| path.starts_with("figures/") && path.ends_with("_force_displacement.png");
+    let is_loop = |path: &str| path.starts_with("figures/") && path.ends_with("_force_displacement.svg");
     files.into_iter().find(|file| is_loop(&file.path)).expect("a cycle has its loop").bytes
 }
 
@@ -70,14 +69,14 @@ fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
         let mut sources = Sources::default();
         let file = sources.add("specimens.md", &text);
         assert_eq!(format(&parse(&sources, file).0, &text), text, "psd fmt would change `{name}`");
-        let png = drawn(&name, &text);
-        let path = docs().join("specimens").join(format!("{name}.png"));
+        let svg = drawn(&name, &text);
+        let path = docs().join("specimens").join(format!("{name}.svg"));
         if bless {
-            fs::write(&path, &png).expect("the figure can be written");
+            fs::write(&path, &svg).expect("the figure can be written");
         }
-        assert!(png.len() <= 60_000, "{name}: {} bytes", png.len());
+        assert!(svg.len() <= 60_000, "{name}: {} bytes", svg.len());
         let kept = fs::read(&path).unwrap_or_default();
-        assert!(kept == png, "docs/specimens/{name}.png is not what the plan draws: PSD_BLESS=1 cargo test specimens_page");
+        assert!(kept == svg, "docs/specimens/{name}.svg is not what the plan draws: PSD_BLESS=1 cargo test specimens_page");
     }
 }
 
@@ -89,6 +88,6 @@ fn every_behaviour_has_its_place_on_the_page() {
     for behaviour in behaviours.iter().filter(|behaviour| behaviour.name != "elastic") {
         assert!(page.contains(&format!("## `{}`", behaviour.name)), "{} has no section", behaviour.name);
         assert!(plans().iter().any(|(name, _)| name == behaviour.name), "{} has no plan", behaviour.name);
-        assert!(page.contains(&format!("(specimens/{}.png)", behaviour.name)), "{} has no figure", behaviour.name);
+        assert!(page.contains(&format!("(specimens/{}.svg)", behaviour.name)), "{} has no figure", behaviour.name);
     }
 }
