@@ -3,6 +3,7 @@
 mod contact;
 mod frame;
 mod identification;
+mod methods;
 mod portal;
 mod reference;
 mod specimens;
