@@ -1,7 +1,7 @@
 //! Requirements against the record. In: a [`Plan`] and a [`Record`]. Out: an [`Assessment`], every requirement with
 //! value, limit, margin and, under the guarded rule, guard band. A missed requirement is a verdict, never an error.
 
-use crate::formula::{Formula, FormulaError, Operator};
+use crate::formula::{Formula, FormulaError, Operator, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
 use crate::record::{Outcome, Record};
@@ -108,7 +108,7 @@ fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Re
 pub const COVERAGE: f64 = 2.0;
 
 /// Value and bound are evaluated each on its own, so that a report shows whichever exists.
-fn assess_condition(condition: &Condition, rule: DecisionRule, record: &Record) -> ConditionOutcome {
+pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record: &dyn Results) -> ConditionOutcome {
     let value = condition.value.evaluate(record, None);
     let bound = evaluate_bound(&condition.test, record);
     let known = match (&value, &bound) {
@@ -140,7 +140,7 @@ fn assess_condition(condition: &Condition, rule: DecisionRule, record: &Record) 
 
 /// w = U = 2u of the distance between value and bound, so that a limit which was measured itself counts too, and a result
 /// that stands on both sides counts once. None where nothing of it is uncertain.
-fn guard_band(condition: &Condition, value: f64, bound: Bound, record: &Record) -> Option<f64> {
+fn guard_band(condition: &Condition, value: f64, bound: Bound, record: &dyn Results) -> Option<f64> {
     let difference = |a: &Formula, b: &Formula| Formula::Binary(Operator::Subtract, Box::new(a.clone()), Box::new(b.clone()));
     let distance = match (&condition.test, bound) {
         (Test::Compare { limit, .. }, _) => difference(&condition.value, limit),
@@ -160,7 +160,7 @@ fn guard_band(condition: &Condition, value: f64, bound: Bound, record: &Record) 
     (uncertainty > 0.0).then_some(COVERAGE * uncertainty)
 }
 
-fn evaluate_bound(test: &Test, record: &Record) -> Result<Bound, FormulaError> {
+fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaError> {
     let number = |formula: &Formula| formula.evaluate(record, None).map(|estimate| estimate.value);
     Ok(match test {
         Test::Compare { comparison, limit } => Bound::Compare { comparison: *comparison, limit: number(limit)? },

@@ -11,6 +11,7 @@ mod damping_sweep;
 mod data;
 mod device;
 mod dialect;
+mod escalate;
 mod expression;
 mod faults;
 mod fields;
@@ -36,6 +37,7 @@ mod striker;
 mod table_file;
 #[cfg(test)]
 mod tests;
+mod unload;
 mod warnings;
 
 pub use imports::{DEEPEST, MOST_FILES};

@@ -316,7 +316,7 @@ mod tests {
             particulars: Vec::new(),
             parameters: Vec::new(),
             specimens: vec![specimen],
-            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
             rig: RigPlan {
                 name: "noisy".to_owned(),
                 link: Link::Virtual(VirtualLink { noise: 5.0, lag: 0.1, ..VirtualLink::default() }),

@@ -44,7 +44,7 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
             damping: 0.0,
             coulomb: 0.0,
         }],
-        strikers: vec![Striker { name: "pendulum".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+        strikers: vec![Striker { name: "pendulum".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
         procedures: procedures.into_iter().enumerate().map(named).collect(),
         ..empty_plan()
     }
