@@ -278,8 +278,8 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Calibration, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
-            Striker, Until,
+            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle,
+            Specimen, Striker, Until,
         };
         let specimen = Specimen {
             name: "beam".to_owned(),
@@ -295,6 +295,8 @@ mod tests {
             stiffness: Constant(327.65),
             damping: Constant(0.0),
             contact: Contact::Rigid,
+            integrator: Integrator::Tangent,
+            allow_unstable: false,
             time_step: Constant(0.01),
             duration: Constant(1.0),
             until: Until::StrikerStop,

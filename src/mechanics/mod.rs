@@ -8,7 +8,11 @@ pub mod identification;
 pub mod impact;
 pub mod integrator;
 pub mod law;
+pub mod method;
+pub mod scheme;
 pub mod specimen;
+pub mod split;
 pub mod summary;
+pub mod tangent;
 
 pub use integrator::critical_time_step;

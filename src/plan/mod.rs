@@ -1,11 +1,13 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod integrator;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use integrator::Integrator;
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -243,6 +245,9 @@ pub struct Impact {
     /// C of eqs. 4–5, N·s/m
     pub damping: Formula,
     pub contact: Contact,
+    pub integrator: Integrator,
+    /// Whether it runs beyond the stability limit of its integrator.
+    pub allow_unstable: bool,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// Upper bound of virtual time, s.

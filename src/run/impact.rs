@@ -8,12 +8,15 @@ use super::session::Session;
 use super::stop::Stop;
 use super::triggers::Triggers;
 use super::{Performed, StepReport};
+use crate::formula::Estimate;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::critical_time_step;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
+use crate::mechanics::method::longest_stable_step;
 use crate::mechanics::summary::{ImpactSummary, SummaryBuilder};
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until};
 use crate::quantity::Dimension;
+use crate::quantity::display::stated;
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
 
 pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -55,7 +58,8 @@ struct Setting {
 impl Setting {
     fn evaluate(plan: &Impact, striker: &Striker, inputs: &mut Inputs<'_>, session: &Session<'_>) -> Result<Self, Stop> {
         let mass = inputs.positive("mass", &plan.mass, Dimension::MASS)?;
-        let stiffness = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS)?;
+        let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
+        let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));
         let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
         let law = law(&plan.contact, inputs)?;
         let critical_time_step = critical_time_step(mass, stiffness);
@@ -72,6 +76,7 @@ impl Setting {
                 wanted: format!("long enough for at most {MOST_STEPS} steps").into(),
             });
         }
+        stable(plan, time_step, stiffness / mass)?;
         let noise = session.guard.declared_noise();
         let input = ImpactInput {
             mass,
@@ -83,6 +88,9 @@ impl Setting {
             time_step,
             max_tangent_ratio,
             law,
+            integrator: plan.integrator,
+            operator_stiffness,
+            i_modification: false,
             force_noise: noise.force,
             resolution: noise.resolution,
         };
@@ -90,6 +98,22 @@ impl Setting {
         let steps = steps as u64;
         Ok(Self { input, critical_time_step, steps, pause })
     }
+}
+
+/// `K_I`: the high end of the interval in which the stiffness lies (two standard uncertainties), for α-OS is stable only
+/// as long as the specimen is not stiffer (physics, section 11; never a noisy secant).
+fn high_end(stiffness: Estimate) -> f64 {
+    stiffness.value + 2.0 * stiffness.uncertainty.unwrap_or(0.0)
+}
+
+/// What `check` could not know yet: the stability limit by the stiffness of an earlier procedure.
+fn stable(plan: &Impact, time_step: f64, highest: f64) -> Result<(), Stop> {
+    let limit = longest_stable_step(plan.integrator, highest, 0.0);
+    if time_step <= limit || plan.allow_unstable {
+        return Ok(());
+    }
+    let wanted = format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
+    Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
 }
 
 fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
@@ -171,7 +195,7 @@ impl Strike {
             time: state.time,
             wall_time: session.guard.time(),
             state: state.state,
-            command: state.displacement,
+            command: state.target,
             displacement: state.measured_displacement,
             velocity: state.velocity,
             acceleration: state.acceleration,

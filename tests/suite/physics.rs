@@ -2,5 +2,6 @@
 
 mod contact;
 mod identification;
+mod methods;
 mod reference;
 mod support;

@@ -7,8 +7,8 @@ use psd::mechanics::energy::Energies;
 use psd::mechanics::identification::LineFit;
 use psd::output::{Provenance, Run};
 use psd::plan::{
-    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Interval,
-    Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
+    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Integrator,
+    Interval, Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
     StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
@@ -291,6 +291,8 @@ fn plan() -> Plan {
                 stiffness: result(0, "stiffness"),
                 damping: constant(0.0),
                 contact: Contact::Rigid,
+                integrator: Integrator::Tangent,
+                allow_unstable: false,
                 time_step: constant(TIME_STEP),
                 duration: constant(0.4),
                 until: Until::StrikerStop,
