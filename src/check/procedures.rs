@@ -1,9 +1,9 @@
 //! What is run, in the order written, and on which specimen.
 
 use super::checker::Checker;
-use super::faults::{names, whole as fault};
-use super::{damping_sweep, impact, inspect, move_block, stiffness_ramp};
-use crate::plan::{Procedure, ProcedureKind};
+use super::faults::{frames, names, whole as fault};
+use super::{damping_sweep, impact, inspect, move_block, shake, stiffness_ramp};
+use crate::plan::{Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
 
@@ -19,6 +19,7 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
         Kind::StiffnessRamp => stiffness_ramp::stiffness_ramp(checker, block),
         Kind::DampingSweep => damping_sweep::damping_sweep(checker, block),
         Kind::Impact => impact::impact(checker, block),
+        Kind::Shake => shake::shake(checker, block),
         Kind::Move => move_block::move_block(checker, block),
         _ => inspect::inspect(checker, block),
     };
@@ -27,17 +28,11 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
 
 /// One rig holds one specimen: every procedure must test the one that the first of them tests.
 pub fn hold_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
-    let tested = |kind: &ProcedureKind| match kind {
-        ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
-        ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
-        ProcedureKind::Impact(impact) => Some(impact.specimen),
-        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
-    };
     let mut on_rig: Option<(usize, Span)> = None;
     for (block, procedure) in procedures {
         // Without the first one's specimen nothing can be said of those after it.
         let Some(procedure) = procedure else { return };
-        let Some(specimen) = tested(&procedure.kind) else { continue };
+        let Some(specimen) = procedure.kind.specimen() else { continue };
         let head = checker.scope.blocks[*block].block.head;
         let span = checker.given(*block, "specimen").map_or(head, |(_, entry)| entry.value.span);
         let (first, first_span) = *on_rig.get_or_insert((specimen, span));
@@ -48,6 +43,28 @@ pub fn hold_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedu
             };
             let fault = fault::another_specimen(name(specimen), span, name(first), first_span);
             checker.faults.push(fault);
+        }
+    }
+}
+
+/// What drives one actuator cannot drive the several of a frame, and a real rig has one.
+pub fn hold_axes(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], specimens: &[Option<Specimen>]) {
+    let on_rig = procedures.iter().find_map(|(_, procedure)| procedure.as_ref()?.kind.specimen()).unwrap_or(0);
+    let Some(Some(specimen)) = specimens.get(on_rig) else { return };
+    let axes = specimen.degrees_of_freedom();
+    if axes == 1 {
+        return;
+    }
+    let declared = checker.scope.of_kind(Kind::Specimen).nth(on_rig).map(|(_, block)| block.block.head);
+    for (block, procedure) in procedures {
+        let Some(procedure) = procedure else { continue };
+        let head = checker.scope.blocks[*block].block.head;
+        match procedure.kind {
+            ProcedureKind::Shake(_) if checker.real_rig.is_some() => {
+                checker.faults.push(frames::frame_on_real_rig(&specimen.name, axes, head));
+            }
+            ProcedureKind::Shake(_) | ProcedureKind::Inspect { .. } => {}
+            _ => checker.faults.push(frames::one_degree_of_freedom(procedure.kind.keyword(), &specimen.name, axes, head, declared)),
         }
     }
 }

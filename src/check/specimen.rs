@@ -2,7 +2,8 @@
 
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
-use super::faults::names as fault;
+use super::frame;
+use super::faults::{frames, names as fault};
 use crate::plan::{Behaviour, Ends, Specimen};
 use crate::schema::FieldType;
 use crate::source::Span;
@@ -11,13 +12,15 @@ use crate::source::Span;
 pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let declared = &checker.scope.blocks[block];
     let (name, head) = (declared.name, declared.block.head);
+    if frame::is_frame(checker, block) {
+        let frame = frame::frame(checker, block)?;
+        let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
+        return Some(Specimen { name: name?.node.clone(), mass, frame, behaviour: None, damping: 0.0, coulomb: 0.0 });
+    }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {
         // A misspelt field is said already.
-    } else if mass.is_none()
-        && !any_given(checker, block)
-        && !declared.block.fields.iter().any(|entry| entry.key.node == "storeys")
-    {
+    } else if mass.is_none() && !any_given(checker, block) {
         checker.faults.push(fault::missing_field(declared.kind, name, head, "mass", "mass = 0.73 kg"));
     } else if mass.is_none()
         && checker.given(block, "mass").is_none()
@@ -35,7 +38,8 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
-    Some(Specimen { name: name?.node.clone(), mass: mass?, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
+    let frame = None;
+    Some(Specimen { name: name?.node.clone(), mass: mass?, frame, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
@@ -55,7 +59,12 @@ fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
 /// The value of `beam.mass` or `beam.stiffness`; None where the specimen has a fault that is reported in its place.
 pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -> Option<f64> {
     match name {
+        "mass" if frame::is_frame(checker, block) => frame::frame(checker, block).map(|frame| frame.total_mass()),
         "mass" => mass(checker, block),
+        _ if frame::is_frame(checker, block) => {
+            let name = checker.scope.blocks[block].name;
+            checker.fail(frames::no_one_stiffness(name, asked_at))
+        }
         // Known only of a behaviour; that a virtual specimen lacks it is said already.
         _ if checker.real_rig.is_some() && checker.given(block, "behaviour").is_none() => {
             let declared = &checker.scope.blocks[block];
@@ -71,19 +80,24 @@ pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<
     let behaviour = checker.within_entry(block, "behaviour", asked_at, |checker, written, place| {
         let FieldType::Choice(variants) = checker.scope.blocks[block].kind.field("behaviour")?.ty else { return None };
         let chosen = checker.chosen("behaviour", variants, written)?;
-        match chosen.variant.name {
-            "elastic" => Some(Behaviour::Elastic { stiffness: checker.constant_argument(&chosen, "stiffness", place)? }),
-            "bilinear" => {
-                let stiffness = checker.constant_argument(&chosen, "stiffness", place);
-                let yield_force = checker.constant_argument(&chosen, "yield_force", place);
-                let hardening = checker.constant_argument(&chosen, "hardening", place);
-                Some(Behaviour::Bilinear { stiffness: stiffness?, yield_force: yield_force?, hardening: hardening? })
-            }
-            _ => beam(checker, &chosen, place),
-        }
+        bends(checker, &chosen, place)
     });
     checker.drop_repeated(known);
     behaviour
+}
+
+/// The behaviour that was chosen, of a specimen or of a storey.
+pub fn bends<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<Behaviour> {
+    match chosen.variant.name {
+        "elastic" => Some(Behaviour::Elastic { stiffness: checker.constant_argument(chosen, "stiffness", place)? }),
+        "bilinear" => {
+            let stiffness = checker.constant_argument(chosen, "stiffness", place);
+            let yield_force = checker.constant_argument(chosen, "yield_force", place);
+            let hardening = checker.constant_argument(chosen, "hardening", place);
+            Some(Behaviour::Bilinear { stiffness: stiffness?, yield_force: yield_force?, hardening: hardening? })
+        }
+        _ => beam(checker, chosen, place),
+    }
 }
 
 /// Midspan or tip stiffness of a beam: cantilever 3EI/L³, simply supported 48EI/L³, built in 192EI/L³, partly built in

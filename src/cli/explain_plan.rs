@@ -5,11 +5,12 @@ use std::fmt::Write as _;
 
 use super::columns::columns;
 use super::dry_rig::{Reach, Watched};
+use super::explain_shake;
 use super::exit::Exit;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
-use crate::plan::{Interval, Link, Plan, ProcedureKind, VirtualLink};
+use crate::plan::{Interval, Link, Plan, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::{digits, join, readable, significant, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
@@ -28,14 +29,8 @@ pub enum Explained<'a> {
 impl<'a> Explained<'a> {
     /// Runs the plan dry, where the specimen that it tests has a behaviour or none is tested.
     pub fn of(plan: &'a Plan) -> Self {
-        let tested = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
-            ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
-            ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
-            ProcedureKind::Impact(impact) => Some(impact.specimen),
-            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
-        });
-        match tested.or(Some(0)).and_then(|place| plan.specimens.get(place)) {
-            Some(specimen) if specimen.behaviour.is_none() => Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name },
+        match plan.specimen_on_the_rig() {
+            Some(specimen) if specimen.behaviour.is_none() && specimen.frame.is_none() => Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name },
             _ => Self::Dry(Box::new(DryRun::of(plan))),
         }
     }
@@ -109,6 +104,10 @@ impl<'a> DryRun<'a> {
                 && !history.steps.is_empty()
             {
                 section(&format!("{}, impact", procedure.name), impact(history));
+            }
+            if let History::Shake(history) = &procedure.history {
+                section(&format!("{}, modes", procedure.name), explain_shake::modes(history));
+                section(&format!("{}, shake", procedure.name), explain_shake::steps(history));
             }
         }
         section("Limits", self.limits());
@@ -284,6 +283,7 @@ mod tests {
         let specimen = Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
             damping: 0.0,
             coulomb: 0.0,
@@ -310,6 +310,7 @@ mod tests {
             parameters: Vec::new(),
             specimens: vec![specimen],
             strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+            grounds: Vec::new(),
             rig: RigPlan {
                 name: "noisy".to_owned(),
                 link: Link::Virtual(VirtualLink { noise: 5.0, lag: 0.1, ..VirtualLink::default() }),

@@ -10,6 +10,7 @@ mod dry_rig;
 mod exit;
 mod explain;
 mod explain_plan;
+mod explain_shake;
 mod fmt;
 mod limits;
 mod loader;

@@ -91,6 +91,15 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E620 GroundRecord Error;
+    E621 BadMatrix Error;
+    E622 StoreyStiffness Error;
+    E623 SpecimenTwice Error;
+    E624 NoStoreys Error;
+    E625 OneDegreeOfFreedom Error;
+    E626 FrameOnRealRig Error;
+    E627 DampingRatios Error;
+    E628 NoOneStiffness Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     // 7: what runs but is unwise
@@ -102,6 +111,8 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W712 BeyondStability Warning;
+    W713 RecordFinerThanStep Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -7,6 +7,7 @@ mod deviations;
 mod figures;
 mod manifest;
 mod number;
+mod shake_table;
 pub mod standing;
 pub mod summary;
 mod tables;

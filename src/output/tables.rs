@@ -3,7 +3,7 @@
 
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
 
-use super::{OutputError, OutputFile, Run, wants};
+use super::{OutputError, OutputFile, Run, shake_table, wants};
 use crate::plan::Format;
 use crate::record::{History, ImpactStep, ProcedureRecord, RampStep, SweepStep};
 use crate::run::driven::DrivenStep;
@@ -59,6 +59,7 @@ fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> 
         History::Move(steps) => (steps.len(), ramp(steps)),
         History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
         History::Impact(history) => (history.steps.len(), impact(&history.steps)),
+        History::Shake(history) => shake_table::columns(&history.steps),
         History::Inspect => return Ok(None),
     };
     DataFrame::new(height, columns).map(Some)

@@ -3,6 +3,7 @@
 
 use super::{Behaviour, InspectTrigger, Integrator};
 use crate::formula::Formula;
+use crate::mechanics::frame::Damping;
 
 /// Degrees of freedom of one frame, at most: each has an actuator and a load cell of its own.
 pub const MOST_STOREYS: usize = 64;
@@ -130,4 +131,21 @@ pub enum ShakeDamping {
     Rayleigh(Formula),
     /// Each mode its own, the longest period first.
     Modal(Vec<Formula>),
+}
+
+impl ShakeDamping {
+    /// The ratios as `mechanics` takes them, where they are known before the run.
+    #[must_use]
+    pub fn known(&self) -> Option<Damping> {
+        Some(match self {
+            Self::Rayleigh(ratio) => rayleigh(ratio.constant()?),
+            Self::Modal(ratios) => Damping::Modal(ratios.iter().map(Formula::constant).collect::<Option<_>>()?),
+        })
+    }
+}
+
+/// Rayleigh damping with one ratio in the first two modes; no ratio is no damping at all.
+#[must_use]
+pub fn rayleigh(ratio: f64) -> Damping {
+    if ratio == 0.0 { Damping::None } else { Damping::rayleigh(ratio) }
 }

@@ -1,12 +1,14 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod frame;
 mod integrator;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
 pub use integrator::Integrator;
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
@@ -21,6 +23,7 @@ pub struct Plan {
     pub parameters: Vec<Parameter>,
     pub specimens: Vec<Specimen>,
     pub strikers: Vec<Striker>,
+    pub grounds: Vec<Ground>,
     /// The rig this run uses: the one named, else the first virtual one of the plan itself, else an ideal virtual rig.
     pub rig: RigPlan,
     /// The intersection of the plan's limits and the rig's.
@@ -32,6 +35,21 @@ pub struct Plan {
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of name.
     pub settings: Vec<(String, String)>,
+}
+
+impl Plan {
+    /// The specimen that stands on the rig: the one that the first procedure names, else the first.
+    #[must_use]
+    pub fn specimen_on_the_rig(&self) -> Option<&Specimen> {
+        let named = self.procedures.iter().find_map(|procedure| procedure.kind.specimen());
+        self.specimens.get(named.unwrap_or(0))
+    }
+
+    /// Actuators that its rig needs, each with a load cell.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.specimen_on_the_rig().map_or(1, Specimen::degrees_of_freedom)
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,8 +71,10 @@ pub struct Parameter {
 #[derive(Clone, Debug)]
 pub struct Specimen {
     pub name: String,
-    /// Equivalent mass at the struck section, kg.
+    /// Equivalent mass at the struck section, kg; of a frame, all its floors.
     pub mass: f64,
+    /// The storeys, where it has any; each has an actuator and a load cell.
+    pub frame: Option<Frame>,
     /// What a virtual rig bends.
     pub behaviour: Option<Behaviour>,
     /// c of c·v on the virtual load cell while the actuator moves, N·s/m.
@@ -84,6 +104,14 @@ pub enum Ends {
     PartlyBuiltIn {
         rotational_stiffness: f64,
     },
+}
+
+impl Specimen {
+    /// Actuators it takes, each with its load cell.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.frame.as_ref().map_or(1, Frame::degrees_of_freedom)
+    }
 }
 
 impl Behaviour {
@@ -176,6 +204,7 @@ pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
     DampingSweep(DampingSweep),
     Impact(Impact),
+    Shake(Shake),
     Move(Move),
     /// A person looks at the specimen.
     Inspect {
@@ -184,6 +213,18 @@ pub enum ProcedureKind {
 }
 
 impl ProcedureKind {
+    /// What is tested, as an index into `Plan::specimens`; None of what only moves or looks.
+    #[must_use]
+    pub const fn specimen(&self) -> Option<usize> {
+        match self {
+            Self::StiffnessRamp(ramp) => Some(ramp.specimen),
+            Self::DampingSweep(sweep) => Some(sweep.specimen),
+            Self::Impact(impact) => Some(impact.specimen),
+            Self::Shake(shake) => Some(shake.specimen),
+            Self::Move(_) | Self::Inspect { .. } => None,
+        }
+    }
+
     /// The block's keyword, as in `summary.json`.
     #[must_use]
     pub const fn keyword(&self) -> &'static str {
@@ -191,6 +232,7 @@ impl ProcedureKind {
             Self::StiffnessRamp(_) => "stiffness ramp",
             Self::DampingSweep(_) => "damping sweep",
             Self::Impact(_) => "impact",
+            Self::Shake(_) => "shake",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
         }
@@ -371,9 +413,34 @@ pub enum FigureKind {
     ForceDisplacement,
     Energy,
     DampingFit,
+    /// Difference of displacement between floors against virtual time.
+    Drift,
+    /// Storey shear against drift.
+    Hysteresis,
+    BaseShear,
+    /// Shapes of the natural modes.
+    Modes,
+    /// Acceleration of the ground as it was applied.
+    Ground,
 }
 
 impl FigureKind {
+    /// Every figure there is, in the order of the reference.
+    pub const ALL: [Self; 12] = [
+        Self::Displacement,
+        Self::StrikerVelocity,
+        Self::Velocity,
+        Self::ContactForce,
+        Self::ForceDisplacement,
+        Self::Energy,
+        Self::DampingFit,
+        Self::Drift,
+        Self::Hysteresis,
+        Self::BaseShear,
+        Self::Modes,
+        Self::Ground,
+    ];
+
     /// Name in `figures = [...]` and in file names.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -385,6 +452,11 @@ impl FigureKind {
             Self::ForceDisplacement => "force_displacement",
             Self::Energy => "energy",
             Self::DampingFit => "damping_fit",
+            Self::Drift => "drift",
+            Self::Hysteresis => "hysteresis",
+            Self::BaseShear => "base_shear",
+            Self::Modes => "modes",
+            Self::Ground => "ground",
         }
     }
 
@@ -400,6 +472,15 @@ impl FigureKind {
                 Self::StrikerVelocity,
                 Self::ContactForce,
                 Self::ForceDisplacement,
+                Self::Energy,
+            ],
+            ProcedureKind::Shake(_) => &[
+                Self::Modes,
+                Self::Ground,
+                Self::Displacement,
+                Self::Drift,
+                Self::Hysteresis,
+                Self::BaseShear,
                 Self::Energy,
             ],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],

@@ -177,6 +177,7 @@ impl Strike {
                 acceleration: Some(state.acceleration),
                 force: restoring_force,
                 energy_error: Some(error_fraction(&state, &input)),
+                others: Vec::new(),
             })?;
             if plan.until == Until::StrikerStop && solver.finished() {
                 break;

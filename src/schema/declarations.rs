@@ -1,9 +1,10 @@
 //! What is tested and what strikes it: `specimen` and `striker`.
 
+use super::frames::{MASS_MATRIX, STIFFNESS_MATRIX, STOREYS};
 use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind, Variant};
 use crate::quantity::Dimension;
 
-const STIFFNESS: Field =
+pub(super) const STIFFNESS: Field =
     Field::quantity("stiffness", Dimension::STIFFNESS, "force over displacement").required("stiffness: 300 kN/m").above_zero();
 
 const ENDS: &[Variant] = &[
@@ -19,7 +20,7 @@ const ENDS: &[Variant] = &[
     ),
 ];
 
-const BEHAVIOURS: &[Variant] = &[
+pub(super) const BEHAVIOURS: &[Variant] = &[
     Variant::with("elastic", &[STIFFNESS], "a linear spring"),
     Variant::with(
         "bilinear",
@@ -73,10 +74,12 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
             .or(0.0, "N*s/m")
             .at_least_zero(),
         Field::quantity("coulomb", Dimension::FORCE, "friction on the virtual load cell").or(0.0, "N").at_least_zero(),
-        Field::later("storeys", "storeys from the ground up"),
+        STOREYS,
+        MASS_MATRIX,
+        STIFFNESS_MATRIX,
     ],
     exports: &[
-        ResultKind::new("mass", Dimension::MASS, "equivalent mass"),
+        ResultKind::new("mass", Dimension::MASS, "equivalent mass; of storeys, all floors together"),
         ResultKind::new("stiffness", Dimension::STIFFNESS, "stiffness of the behaviour at no displacement"),
     ],
     results: &[],

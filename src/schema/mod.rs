@@ -3,6 +3,7 @@
 
 mod declarations;
 mod devices;
+mod frames;
 mod functions;
 mod later;
 mod limits;
@@ -24,16 +25,16 @@ pub const BLOCKS: &[&BlockKind] = &[
     &plan_block::PLAN,
     &declarations::SPECIMEN,
     &declarations::STRIKER,
+    &frames::GROUND,
     &limits::LIMITS,
     &rig::RIG,
     &procedures::STIFFNESS_RAMP,
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
+    &frames::SHAKE,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
-    &later::GROUND,
-    &later::SHAKE,
     &later::CYCLE,
     &later::STUDY,
     &later::GOLDEN,

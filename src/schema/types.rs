@@ -13,6 +13,8 @@ pub enum Kind {
     StiffnessRamp,
     DampingSweep,
     Impact,
+    Ground,
+    Shake,
     Move,
     Inspect,
     Report,
@@ -167,6 +169,8 @@ pub struct ResultKind {
     pub measured: bool,
     /// Whether it counts something: a whole number.
     pub count: bool,
+    /// Whether it is a list, a value for each storey or mode.
+    pub list: bool,
     pub doc: &'static str,
 }
 
@@ -368,11 +372,16 @@ impl Variant {
 
 impl ResultKind {
     pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: false, count: false, doc }
+        Self { name, dimension, measured: false, count: false, list: false, doc }
     }
 
     pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
         Self { measured: true, ..Self::new(name, dimension, doc) }
+    }
+
+    /// A value for each storey or mode.
+    pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self { list: true, ..Self::new(name, dimension, doc) }
     }
 
     pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {

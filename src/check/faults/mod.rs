@@ -3,6 +3,7 @@
 use crate::quantity::{Dimension, display};
 
 pub mod files;
+pub mod frames;
 pub mod methods;
 pub mod names;
 pub mod rigs;

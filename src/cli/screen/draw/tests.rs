@@ -36,6 +36,7 @@ fn model() -> Model {
             acceleration: None,
             force: 3e5 * displacement,
             energy_error: Some(0.012),
+            others: Vec::new(),
         });
     }
     for (step, kind, text) in [

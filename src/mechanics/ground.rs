@@ -1,0 +1,32 @@
+//! The acceleration of the ground at any instant: linear between the samples of its record, at rest before and after. In:
+//! times and accelerations. Out: one number. It knows no file and no unit.
+
+/// m/s² at `time` (s), of samples at rising `times`.
+#[must_use]
+pub fn acceleration_at(times: &[f64], accelerations: &[f64], time: f64) -> f64 {
+    let after = times.partition_point(|sample| *sample <= time);
+    match (after.checked_sub(1), accelerations.get(after)) {
+        (None, _) => 0.0,
+        (Some(before), Some(next)) => {
+            let (from, to) = (times[before], times[after]);
+            let share = (time - from) / (to - from);
+            accelerations[before] + share * (next - accelerations[before])
+        }
+        // The last sample itself, to the rounding of a time that was counted in steps.
+        (Some(last), None) if time <= times[last] * (1.0 + 1e-12) => accelerations[last],
+        (Some(_), None) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::acceleration_at;
+
+    #[test]
+    fn is_linear_between_uneven_samples_and_nothing_outside_them() {
+        let (times, accelerations) = ([0.0, 0.1, 0.4], [0.0, 1.0, -2.0]);
+        for (time, expected) in [(-0.1, 0.0), (0.0, 0.0), (0.05, 0.5), (0.1, 1.0), (0.2, 0.0), (0.4, -2.0), (0.41, 0.0)] {
+            assert!((acceleration_at(&times, &accelerations, time) - expected).abs() < 1e-15, "{time} s");
+        }
+    }
+}
