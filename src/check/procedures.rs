@@ -2,7 +2,7 @@
 
 use super::checker::Checker;
 use super::faults::{frames, names, whole as fault};
-use super::{damping_sweep, impact, inspect, move_block, shake, stiffness_ramp};
+use super::{cycle, damping_sweep, impact, inspect, move_block, shake, stiffness_ramp};
 use crate::plan::{Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
@@ -20,6 +20,7 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
         Kind::DampingSweep => damping_sweep::damping_sweep(checker, block),
         Kind::Impact => impact::impact(checker, block),
         Kind::Shake => shake::shake(checker, block),
+        Kind::Cycle => cycle::cycle(checker, block),
         Kind::Move => move_block::move_block(checker, block),
         _ => inspect::inspect(checker, block),
     };

@@ -102,6 +102,8 @@ codes! {
     E628 NoOneStiffness Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
+    E646 RateWithoutSpeed Error;
+    E647 NoUseWithRate Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -113,6 +115,7 @@ codes! {
     W708 DeviceNotPinned Warning;
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
+    W711 ResolutionUnknown Warning;
 }
 
 impl std::fmt::Display for Code {

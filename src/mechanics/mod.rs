@@ -2,6 +2,7 @@
 
 pub mod beam;
 pub mod contact;
+pub mod cyclic;
 pub mod damping;
 pub mod energy;
 pub mod frame;

@@ -1,6 +1,7 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod cycle;
 mod frame;
 mod integrator;
 mod rig;
@@ -8,6 +9,7 @@ mod rig;
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
 pub use integrator::Integrator;
 pub use rig::{
@@ -205,6 +207,7 @@ pub enum ProcedureKind {
     DampingSweep(DampingSweep),
     Impact(Impact),
     Shake(Shake),
+    Cycle(Cycle),
     Move(Move),
     /// A person looks at the specimen.
     Inspect {
@@ -213,18 +216,6 @@ pub enum ProcedureKind {
 }
 
 impl ProcedureKind {
-    /// What is tested, as an index into `Plan::specimens`; None of what only moves or looks.
-    #[must_use]
-    pub const fn specimen(&self) -> Option<usize> {
-        match self {
-            Self::StiffnessRamp(ramp) => Some(ramp.specimen),
-            Self::DampingSweep(sweep) => Some(sweep.specimen),
-            Self::Impact(impact) => Some(impact.specimen),
-            Self::Shake(shake) => Some(shake.specimen),
-            Self::Move(_) | Self::Inspect { .. } => None,
-        }
-    }
-
     /// The block's keyword, as in `summary.json`.
     #[must_use]
     pub const fn keyword(&self) -> &'static str {
@@ -233,8 +224,22 @@ impl ProcedureKind {
             Self::DampingSweep(_) => "damping sweep",
             Self::Impact(_) => "impact",
             Self::Shake(_) => "shake",
+            Self::Cycle(_) => "cycle",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
+        }
+    }
+
+    /// What is tested, as an index into `Plan::specimens`; None of what only moves or looks.
+    #[must_use]
+    pub const fn specimen(&self) -> Option<usize> {
+        match self {
+            Self::StiffnessRamp(ramp) => Some(ramp.specimen),
+            Self::DampingSweep(sweep) => Some(sweep.specimen),
+            Self::Impact(impact) => Some(impact.specimen),
+            Self::Shake(shake) => Some(shake.specimen),
+            Self::Cycle(cycle) => Some(cycle.specimen),
+            Self::Move(_) | Self::Inspect { .. } => None,
         }
     }
 }
@@ -422,11 +427,17 @@ pub enum FigureKind {
     Modes,
     /// Acceleration of the ground as it was applied.
     Ground,
+    /// Largest forces against the displacements of them, amplitude by amplitude.
+    Backbone,
+    /// Energy of each cycle.
+    CycleEnergy,
+    /// Secant stiffness of each cycle.
+    StiffnessDegradation,
 }
 
 impl FigureKind {
     /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::Displacement,
         Self::StrikerVelocity,
         Self::Velocity,
@@ -439,6 +450,9 @@ impl FigureKind {
         Self::BaseShear,
         Self::Modes,
         Self::Ground,
+        Self::Backbone,
+        Self::CycleEnergy,
+        Self::StiffnessDegradation,
     ];
 
     /// Name in `figures = [...]` and in file names.
@@ -457,6 +471,9 @@ impl FigureKind {
             Self::BaseShear => "base_shear",
             Self::Modes => "modes",
             Self::Ground => "ground",
+            Self::Backbone => "backbone",
+            Self::CycleEnergy => "cycle_energy",
+            Self::StiffnessDegradation => "stiffness_degradation",
         }
     }
 
@@ -483,6 +500,9 @@ impl FigureKind {
                 Self::BaseShear,
                 Self::Energy,
             ],
+            ProcedureKind::Cycle(_) => {
+                &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation]
+            }
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }

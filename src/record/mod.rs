@@ -1,12 +1,14 @@
 //! The record of a run: everything that happened, typed, SI. `run` writes it; verdict, tables, figures and
 //! certificates are functions of it.
 
+mod cycle;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results};
 pub use crate::mechanics::contact::StepState;
+pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 use crate::mechanics::energy::Energies;
 pub use crate::mechanics::frame::{FrameEnergies, Modes};
 use crate::mechanics::frame::{drifts, shears};
@@ -94,6 +96,7 @@ pub enum History {
     Sweep(SweepHistory),
     Impact(ImpactHistory),
     Shake(ShakeHistory),
+    Cycle(CycleHistory),
     Move(Vec<RampStep>),
     Inspect,
 }

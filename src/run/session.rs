@@ -236,6 +236,7 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
             Some(ratio.ceil() as u64)
         }
         ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),
+        ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
     }

@@ -15,6 +15,7 @@ pub enum Kind {
     Impact,
     Ground,
     Shake,
+    Cycle,
     Move,
     Inspect,
     Report,
@@ -169,7 +170,7 @@ pub struct ResultKind {
     pub measured: bool,
     /// Whether it counts something: a whole number.
     pub count: bool,
-    /// Whether it is a list, a value for each storey or mode.
+    /// Whether it is several numbers of one dimension, read as a list: `max(fatigue.energies)`.
     pub list: bool,
     pub doc: &'static str,
 }
@@ -255,13 +256,6 @@ impl Field {
 
     pub(super) const fn figures(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Figures, doc)
-    }
-
-    /// A known word of a later version.
-    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
-        let mut field = Self::new(name, FieldType::Text, doc);
-        field.available = false;
-        field
     }
 
     /// Must stand; the example is a line that is right.
@@ -379,12 +373,12 @@ impl ResultKind {
         Self { measured: true, ..Self::new(name, dimension, doc) }
     }
 
-    /// A value for each storey or mode.
-    pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { list: true, ..Self::new(name, dimension, doc) }
-    }
-
     pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {
         Self { count: true, ..Self::new(name, Dimension::NUMBER, doc) }
+    }
+
+    /// Several numbers of one dimension.
+    pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self { list: true, ..Self::new(name, dimension, doc) }
     }
 }
