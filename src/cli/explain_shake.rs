@@ -57,6 +57,6 @@ fn peaks(history: &ShakeHistory, read: fn(&ShakeStep) -> Vec<f64>, dimension: Di
         }
     }
     let (unit, factor) = unit(largest.iter().copied().fold(0.0, f64::max), dimension);
-    let numbers: Vec<String> = largest.iter().map(|value| digits(value / factor, factor, dimension)).collect();
+    let numbers: Vec<String> = largest.iter().map(|value| digits(*value, factor, dimension)).collect();
     format!("{} {unit}", numbers.join(", "))
 }
