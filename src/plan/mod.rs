@@ -500,9 +500,7 @@ impl FigureKind {
                 Self::BaseShear,
                 Self::Energy,
             ],
-            ProcedureKind::Cycle(_) => {
-                &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation]
-            }
+            ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }
@@ -511,6 +509,7 @@ impl FigureKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Html,
+    Pdf,
     Csv,
     Parquet,
 }

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results};
 pub use crate::mechanics::contact::StepState;
-pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 use crate::mechanics::energy::Energies;
 pub use crate::mechanics::frame::{FrameEnergies, Modes};
 use crate::mechanics::frame::{drifts, shears};
 pub use crate::mechanics::identification::LineFit;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
+pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 
 #[derive(Clone, Debug)]
 pub struct Record {

@@ -187,8 +187,9 @@ impl Looks {
         let mut reason = None;
         for trigger in inspect {
             let due = match *trigger {
-                CycleInspection::Every(levels) => (levels > 0 && self.levels.is_multiple_of(levels))
-                    .then(|| format!("inspection after the cycles to {shown}")),
+                CycleInspection::Every(levels) => {
+                    (levels > 0 && self.levels.is_multiple_of(levels)).then(|| format!("inspection after the cycles to {shown}"))
+                }
                 CycleInspection::ForceDrop(fraction) => {
                     let dropped = force < (1.0 - fraction) * self.largest;
                     self.largest = if dropped { force } else { self.largest.max(force) };

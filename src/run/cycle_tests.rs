@@ -66,7 +66,8 @@ fn a_yielding_specimen_spends_the_area_of_its_loop() {
     assert!((energies[1] - 0.72).abs() < 1e-12, "{} J", energies[1]);
     // The first begins on the virgin curve: from the sum of the areas under it, by hand.
     // 0 → 30 mm: ½·10·10 mm + 11·20 mm; → −30 mm over the corner at 10 mm, −8 N; → 0 over −10 mm, 8 N.
-    let by_hand = 0.27 + (0.5 * (12.0 - 8.0) * -0.02 + 0.5 * (-8.0 - 12.0) * -0.04) + (0.5 * (-12.0 + 8.0) * 0.02 + 0.5 * 17.0 * 0.01);
+    let by_hand =
+        0.27 + (0.5 * (12.0 - 8.0) * -0.02 + 0.5 * (-8.0 - 12.0) * -0.04) + (0.5 * (-12.0 + 8.0) * 0.02 + 0.5 * 17.0 * 0.01);
     assert!((energies[0] - by_hand).abs() < 1e-12, "{} J is not {by_hand} J", energies[0]);
     assert!((number(&record, 0, "dissipated_energy").0.unwrap() - by_hand - 0.72).abs() < 1e-12);
     assert!((number(&record, 0, "last_stiffness").0.unwrap() - 400.0).abs() < 1e-9);
@@ -109,8 +110,7 @@ fn one_sided_cycles_go_to_one_side_and_elsewhere() {
 fn moved_without_stopping_it_is_read_at_its_rate() {
     let (speed, amplitude, damping) = (0.01, 0.01, 50.0);
     let energy = |rate: f64| {
-        let mut plan =
-            plan(Cycle { rate: Some(Constant(rate)), speed: Some(Constant(speed)), ..cycle(&[amplitude], 2) });
+        let mut plan = plan(Cycle { rate: Some(Constant(rate)), speed: Some(Constant(speed)), ..cycle(&[amplitude], 2) });
         plan.specimens[0].damping = damping;
         let record = run_unwatched(&plan);
         assert_eq!(history(&record).cycles.len(), 2);
@@ -126,19 +126,12 @@ fn moved_without_stopping_it_is_read_at_its_rate() {
 fn a_person_looks_between_amplitudes_and_when_the_force_has_fallen() {
     let inspect = vec![CycleInspection::Every(2), CycleInspection::ForceDrop(0.2)];
     let record = run_unwatched(&plan(Cycle { inspect, ..cycle(&[0.001, 0.002, 0.001, 0.001], 1) }));
-    let looks: Vec<&str> = record
-        .events
-        .iter()
-        .filter(|event| event.kind == EventKind::Inspection)
-        .map(|event| event.text.as_str())
-        .collect();
+    let looks: Vec<&str> =
+        record.events.iter().filter(|event| event.kind == EventKind::Inspection).map(|event| event.text.as_str()).collect();
     // The third falls by half; after the fourth nothing follows.
     assert_eq!(
         looks,
-        [
-            "inspection after the cycles to 2.000 mm",
-            "the largest force of the cycles to 1.000 mm fell by 20 % or more",
-        ]
+        ["inspection after the cycles to 2.000 mm", "the largest force of the cycles to 1.000 mm fell by 20 % or more",]
     );
 }
 

@@ -20,11 +20,7 @@ pub(super) fn loops(history: &CycleHistory) -> Chart {
     if history.cycles.len() > 1 {
         series.push(Series { label: "the last".to_owned(), points: of_last, style: Style::line(palette::VERMILION, 2.0, SOLID) });
     }
-    chart(
-        Quantity::along("Displacement X", Dimension::LENGTH),
-        Quantity::of("Restoring force R", Dimension::FORCE),
-        series,
-    )
+    chart(Quantity::along("Displacement X", Dimension::LENGTH), Quantity::of("Restoring force R", Dimension::FORCE), series)
 }
 
 /// The ends of the first cycle at each amplitude, and of the last one where there are more.
@@ -50,11 +46,7 @@ pub(super) fn backbone(history: &CycleHistory) -> Chart {
             style: Style { marker: Some(Marker::Ring(4.2)), ..Style::line(palette::VERMILION, 1.4, DASHED) },
         });
     }
-    chart(
-        Quantity::along("Displacement X", Dimension::LENGTH),
-        Quantity::of("Restoring force R", Dimension::FORCE),
-        series,
-    )
+    chart(Quantity::along("Displacement X", Dimension::LENGTH), Quantity::of("Restoring force R", Dimension::FORCE), series)
 }
 
 /// What each cycle took, and all so far.

@@ -79,7 +79,7 @@ pub(super) fn modes(modes: &Modes) -> Chart {
     });
     Chart {
         x: Quantity::along("Shape, largest entry 1", Dimension::NUMBER),
-        y: Quantity { end: End::Air, ..Quantity::of("Floor", Dimension::NUMBER) },
+        y: Quantity { end: End::Whole, ..Quantity::of("Floor", Dimension::NUMBER) },
         bands: Vec::new(),
         series: series.collect(),
         references: Vec::new(),

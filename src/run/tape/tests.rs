@@ -232,6 +232,7 @@ fn measured(record: &Record) -> String {
                 for step in &history.steps {
                     writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
                 }
+            }
             History::Shake(history) => {
                 for step in &history.steps {
                     writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
