@@ -4,13 +4,14 @@
 use super::super::document::{Attachment, Block, Text};
 use super::super::{RealRun, Run, safe_path};
 use super::pairs;
+use crate::plan::PlanFile;
 
 /// Plan, provenance, statements, signatures.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Plan as run"));
     for file in &run.plan.files {
         body.push(Block::part(file.name.as_str()));
-        body.push(Block::Code { lines: file.text.lines().map(str::to_owned).collect() });
+        printed(file, body);
     }
     body.push(Block::section("Provenance"));
     body.push(provenance(run));
@@ -41,10 +42,24 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     }
 }
 
+/// A file of the language whole; of data the first lines, for a record has thousands.
+fn printed(file: &PlanFile, body: &mut Vec<Block>) {
+    const FIRST: usize = 8;
+    let lines: Vec<String> = file.text.lines().map(str::to_owned).collect();
+    let left = lines.len().saturating_sub(FIRST);
+    if file.name.ends_with(".psd") || left <= FIRST {
+        body.push(Block::Code { lines });
+        return;
+    }
+    body.push(Block::Code { lines: lines.into_iter().take(FIRST).collect() });
+    let text = Text::from(format!("and {left} more lines; the whole file is "));
+    body.push(Block::note(text.code(format!("plan/{}", safe_path(&file.name))).and(" in the folder of the run.")));
+}
+
 /// The plan and every file it used, under the names that they have in the run folder.
 pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
     let attached =
-        |file: &crate::plan::PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
+        |file: &PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
     run.plan.files.iter().map(attached).collect()
 }
 
