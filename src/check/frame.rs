@@ -3,11 +3,13 @@
 
 use std::rc::Rc;
 
+use super::behaviour::{self, Written};
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::{frames as fault, values};
-use super::{matrix, specimen};
+use super::matrix;
 use crate::plan::{Behaviour, Frame, MOST_STOREYS, Storey};
+use crate::schema::{Field, FieldType};
 use crate::source::Span;
 use crate::syntax::ast::ExprKind;
 
@@ -81,9 +83,9 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
     let total = checker.optional_argument(chosen, "stiffness", place);
     let column = checker.optional_argument(chosen, "column_stiffness", place);
     let behaviour = match chosen.find("behaviour") {
-        Some((_, Some(_))) => {
-            let bending = checker.chosen_argument(chosen, "behaviour");
-            bending.and_then(|bending| specimen::bends(checker, &bending, place)).map(Some)
+        Some((Field { ty: FieldType::Choice(variants), .. }, Some(expr))) => {
+            let written = Written { field: "behaviour", variants, expr, place, own_mass: None };
+            behaviour::behaviour(checker, &written).map(Some)
         }
         _ => Some(None),
     };

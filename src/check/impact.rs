@@ -27,6 +27,7 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let contact = contact(checker, block);
     let integrator = integrator::integrator(checker, block);
     let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
+    let i_modification = checker.word(block, "i_modification", "false").map(|word| word == "true");
     let time_step = match checker.given(block, "time_step") {
         Some(_) => checker.quantity(block, "time_step"),
         None => Some(twentieth_of_critical()),
@@ -45,6 +46,7 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         contact: contact?,
         integrator: integrator?,
         allow_unstable: allow_unstable?,
+        i_modification: i_modification?,
         time_step: time_step?,
         duration: duration?,
         until: if until? == "duration" { Until::Duration } else { Until::StrikerStop },

@@ -100,6 +100,11 @@ codes! {
     E626 FrameOnRealRig Error;
     E627 DampingRatios Error;
     E628 NoOneStiffness Error;
+    E630 CornersDoNotFit Error;
+    E631 BadTableFile Error;
+    E632 BehaviourIncomplete Error;
+    E633 UnfitInside Error;
+    E634 NoSuchProperty Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E646 RateWithoutSpeed Error;
@@ -116,6 +121,7 @@ codes! {
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
+    W715 TableTooShort Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -18,9 +18,26 @@ pub fn acceleration_at(times: &[f64], accelerations: &[f64], time: f64) -> f64 {
     }
 }
 
+/// Largest velocity of the ground, m/s, by size: the acceleration integrated from rest.
+#[must_use]
+pub fn peak_velocity(times: &[f64], accelerations: &[f64]) -> f64 {
+    let steps = times.windows(2).zip(accelerations.windows(2));
+    let (_, peak) = steps.fold((0.0, 0.0), |(velocity, peak): (f64, f64), (time, acceleration)| {
+        let velocity = velocity + 0.5 * (acceleration[0] + acceleration[1]) * (time[1] - time[0]);
+        (velocity, peak.max(velocity.abs()))
+    });
+    peak
+}
+
 #[cfg(test)]
 mod tests {
-    use super::acceleration_at;
+    use super::{acceleration_at, peak_velocity};
+
+    #[test]
+    fn the_velocity_is_the_area_under_the_acceleration() {
+        // 0.05 + (1 − 2)/2 · 0.3 = −0.1: down from 0.05, and from 0.1 at the turn in between.
+        assert!((peak_velocity(&[0.0, 0.1, 0.4], &[0.0, 1.0, -2.0]) - 0.1).abs() < 1e-15);
+    }
 
     #[test]
     fn is_linear_between_uneven_samples_and_nothing_outside_them() {

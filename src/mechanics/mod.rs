@@ -13,6 +13,7 @@ pub mod impact;
 pub mod integrator;
 pub mod law;
 pub mod method;
+pub mod monitor;
 pub mod scheme;
 pub mod specimen;
 pub mod split;

@@ -2,6 +2,7 @@
 //! bytes; only `cli` writes files. Knows no clock, no file, no environment: the same run gives the same bytes.
 
 mod amendment;
+pub mod behaviour;
 mod certificate;
 pub mod console;
 mod deviations;

@@ -6,6 +6,7 @@ use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, settling_time};
 use super::virtual_rig::OWN_SPEED;
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
+use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Frame, Settle, VirtualLink};
@@ -38,7 +39,8 @@ struct Axis {
 /// What gives the floors their forces.
 enum Structure {
     /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift.
-    Storeys { models: Vec<SpecimenModel>, drift: Vec<f64>, shear: Vec<f64> },
+    /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest.
+    Storeys { models: Vec<SpecimenModel>, rates: Vec<CellDamping>, drift: Vec<f64>, shear: Vec<f64> },
     /// R = K X.
     Matrix(SymmetricBand),
 }
@@ -51,12 +53,13 @@ impl Structure {
         }
         let nothing = vec![0.0; frame.storeys.len()];
         let models = frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect();
-        Self::Storeys { models, drift: nothing.clone(), shear: nothing }
+        let rates = frame.storeys.iter().map(|storey| CellDamping::new(0.0, 0.0).with_rate_of(&storey.behaviour)).collect();
+        Self::Storeys { models, rates, drift: nothing.clone(), shear: nothing }
     }
 
     fn move_to(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
         match self {
-            Self::Storeys { models, drift, shear } => {
+            Self::Storeys { models, drift, shear, .. } => {
                 drifts(displacement, drift);
                 for ((model, drift), shear) in models.iter_mut().zip(drift).zip(&mut *shear) {
                     *shear = model.move_to(*drift);
@@ -65,6 +68,21 @@ impl Structure {
             }
             Self::Matrix(stiffness) => stiffness.mul_into(displacement, restoring_force),
         }
+    }
+
+    /// What the cells feel of the floors' forces while these move, N.
+    fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
+        let mut felt = restoring_force.to_vec();
+        if let Self::Storeys { rates, shear, .. } = self
+            && velocities.iter().any(|velocity| *velocity != 0.0)
+        {
+            let mut apart = vec![0.0; velocities.len()];
+            drifts(velocities, &mut apart);
+            let storeys = rates.iter_mut().zip(shear).zip(apart);
+            let shears: Vec<f64> = storeys.map(|((rate, shear), velocity)| rate.felt(*shear, velocity)).collect();
+            floor_forces(&shears, &mut felt);
+        }
+        felt
     }
 }
 
@@ -133,6 +151,7 @@ impl VirtualFrame {
                 stiffness: axis.stiffness,
                 damping: 0.0,
                 drift: self.link.drift,
+                rate: None,
             };
             settling_time(&self.settle, &unsettled)
         });
@@ -209,8 +228,9 @@ impl Rig for VirtualFrame {
     fn read(&mut self) -> Result<Reading, RigFault> {
         let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
         let displacement = self.bent.iter().map(|bent| sign * to_quantum(*bent, resolution)).collect();
-        let cells = self.axes.iter_mut().zip(&self.restoring_force);
-        let force = cells.map(|(axis, force)| sign * axis.cell.read(*force, time)).collect();
+        let velocities: Vec<f64> = self.axes.iter().map(|axis| axis.actuator.velocity()).collect();
+        let felt = self.structure.felt(&velocities, &self.restoring_force);
+        let force = self.axes.iter_mut().zip(felt).map(|(axis, force)| sign * axis.cell.read(force, time)).collect();
         Ok(Reading { time, displacement, force, raw: Vec::new() })
     }
 

@@ -215,6 +215,8 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
             force: self.felt.force,
             energy_error: nothing,
             others: Vec::new(),
+            tracking: None,
+            tracking_energy_error: None,
         });
     }
 

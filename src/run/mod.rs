@@ -23,18 +23,21 @@ mod shake;
 mod shake_results;
 mod stiffness_ramp;
 mod stop;
+mod strike;
 pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod triggers;
+mod watch;
 
 pub use damping_sweep::MOST_SAMPLES;
 pub use request::{Parting, Request};
 
 use serde::{Deserialize, Serialize};
 
+use crate::mechanics::monitor::Tracking;
 use crate::plan::{Plan, Procedure, ProcedureKind, SafeState};
 use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
@@ -92,6 +95,10 @@ pub struct StepReport {
     pub force: f64,
     /// Energy error over the input energy; only of procedures that integrate.
     pub energy_error: Option<f64>,
+    /// What the monitors of tracking show; only of procedures that integrate.
+    pub tracking: Option<Tracking>,
+    /// Its energy error over the energy put into the test so far.
+    pub tracking_energy_error: Option<f64>,
     /// The axes after the first, whose numbers stand above, of a procedure that moves several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<AxisReport>,

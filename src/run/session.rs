@@ -184,6 +184,8 @@ impl<'run> Session<'run> {
             force,
             energy_error: nothing,
             others: Vec::new(),
+            tracking: None,
+            tracking_energy_error: None,
         })
     }
 

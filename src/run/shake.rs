@@ -6,16 +6,19 @@ use super::inputs::Inputs;
 use super::session::Session;
 use super::shake_results::{ShakeSummary, results};
 use super::stop::Stop;
+use super::watch::Watch;
 use super::triggers::Triggers;
 use super::{AxisReport, Performed, StepReport};
 use crate::formula::{Formula, NoResults};
-use crate::mechanics::frame::{Damping, FrameEnergies, FrameInput, FrameSolver, FrameState, Tangents, storeys_of};
+use crate::mechanics::frame::{Damping, FrameInput, FrameSolver, FrameState, Tangents, storeys_of};
 use crate::mechanics::frame_properties::FrameProperties;
-use crate::mechanics::ground::acceleration_at;
+use crate::mechanics::ground::{acceleration_at, peak_velocity};
+use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::plan::{Frame, Ground, MOST_STEPS, Plan, Shake, ShakeDamping, rayleigh};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::record::{History, ShakeHistory, ShakeStep};
+use crate::rig::Reading;
 
 pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let ground = &whole.grounds[plan.ground];
@@ -36,7 +39,7 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
         time_step: setting.time_step,
         critical_time_step: setting.properties.critical_time_step(),
     };
-    let mut shaking = Shaking { setting: &setting, history, summary: ShakeSummary::new(setting.properties.matrices.order()) };
+    let mut shaking = Shaking { setting: &setting, history, summary: ShakeSummary::new(setting.properties.matrices.order()), watch: Watch::default() };
     let stop = shaking.run(plan, ground, session).err();
     let results = results(shaking.history.modes.as_ref(), Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty()));
     Performed { results, history: History::Shake(shaking.history), stop }
@@ -71,6 +74,8 @@ struct Setting {
     scale: f64,
     /// s
     pause: f64,
+    /// ½ ιᵀMι v², v the largest velocity of the ground, J: what its motion can put in, before it has.
+    ground_energy: f64,
 }
 
 impl Setting {
@@ -110,7 +115,9 @@ impl Setting {
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
         let steps = steps as u64;
-        Ok(Self { properties, tangents, time_step, steps, scale, pause })
+        let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
+        let ground_energy = 0.5 * frame.total_mass() * velocity * velocity;
+        Ok(Self { properties, tangents, time_step, steps, scale, pause, ground_energy })
     }
 }
 
@@ -138,11 +145,12 @@ struct Shaking<'a> {
     setting: &'a Setting,
     history: ShakeHistory,
     summary: ShakeSummary,
+    watch: Watch,
 }
 
 impl Shaking<'_> {
     fn run(&mut self, plan: &Shake, ground: &Ground, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Setting { properties, tangents, time_step, steps, scale, pause } = self.setting;
+        let Setting { properties, tangents, time_step, steps, scale, pause, .. } = self.setting;
         let matrices = &properties.matrices;
         let ground_at = |time| scale * acceleration_at(&ground.times, &ground.accelerations, time);
         let mut triggers = Triggers::new(&plan.inspect);
@@ -170,9 +178,10 @@ impl Shaking<'_> {
             value: *time_step,
             wanted: format!("one that can be stepped: {error}").into(),
         })?;
+        let mut monitors = Monitors::new(&start, &reading);
         let mut at_rest = solver.state().clone();
         at_rest.measured_displacement = reading.displacement;
-        self.take(&at_rest, ground_at(0.0), session);
+        self.take(&at_rest, ground_at(0.0), Tracking::default(), session);
         for step in 1..=*steps {
             #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
             let acceleration = ground_at(step as f64 * time_step);
@@ -181,10 +190,13 @@ impl Shaking<'_> {
             session.guard.move_to(&targets, None)?;
             session.guard.pause(*pause)?;
             let reading = session.guard.read()?;
+            let tracking = monitors.take(&targets, &reading);
             let state = solver.complete(&reading.displacement, &reading.force);
-            let error = self.take(state, acceleration, session);
-            session.guard.check_energy_error(error)?;
-            session.step_done(&report(state, error))?;
+            let told = self.take(state, acceleration, tracking, session);
+            self.watch.judge(told.tracking_energy_error, session);
+            session.guard.check_energy_error(told.energy_error)?;
+            session.guard.check_tracking(told.tracking_energy_error, tracking.nrms_error)?;
+            session.step_done(&report(state, &told))?;
             let base_shear = state.restoring_force.iter().sum();
             if let Some(reason) = triggers.after(state.step, state.time, base_shear) {
                 session.inspect(&reason)?;
@@ -193,8 +205,8 @@ impl Shaking<'_> {
         Ok(())
     }
 
-    /// Keeps a step; gives its energy error over the input energy.
-    fn take(&mut self, state: &FrameState, ground_acceleration: f64, session: &Session<'_>) -> f64 {
+    /// Keeps a step; gives its errors over the energy of the test.
+    fn take(&mut self, state: &FrameState, ground_acceleration: f64, tracking: Tracking, session: &Session<'_>) -> Told {
         self.history.steps.push(ShakeStep {
             step: state.step,
             time: state.time,
@@ -207,12 +219,48 @@ impl Shaking<'_> {
             acceleration: state.acceleration.clone(),
             restoring_force: state.restoring_force.clone(),
             energies: state.energies,
+            tracking,
         });
-        self.summary.push(state)
+        self.summary.push(state);
+        // An input that begins with nothing divides nothing: until it is larger, what the ground can put in counts.
+        let energy = self.summary.largest_energy().max(self.setting.ground_energy);
+        Told {
+            energy_error: if state.energies.error == 0.0 { 0.0 } else { state.energies.error / energy },
+            tracking,
+            tracking_energy_error: tracking.share_of(energy),
+        }
     }
 }
 
-fn report(state: &FrameState, energy_error: f64) -> StepReport {
+/// The errors of a step.
+struct Told {
+    energy_error: f64,
+    tracking: Tracking,
+    tracking_energy_error: Option<f64>,
+}
+
+/// The monitors of every axis, told as one: energies add, of the others the largest counts.
+struct Monitors(Vec<Monitor>);
+
+impl Monitors {
+    fn new(commanded: &[f64], reading: &Reading) -> Self {
+        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
+        Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
+    }
+
+    fn take(&mut self, commanded: &[f64], reading: &Reading) -> Tracking {
+        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
+        let each = self.0.iter_mut().zip(axes).map(|(monitor, (to, (measured, force)))| monitor.take(*to, *measured, *force));
+        each.fold(Tracking::default(), |all, axis| Tracking {
+            energy_error: all.energy_error + axis.energy_error,
+            indicator: all.indicator + axis.indicator,
+            nrms_error: all.nrms_error.max(axis.nrms_error),
+            peak_error: all.peak_error.max(axis.peak_error),
+        })
+    }
+}
+
+fn report(state: &FrameState, told: &Told) -> StepReport {
     let axis = |floor: usize| AxisReport {
         command: state.target[floor],
         displacement: state.measured_displacement[floor],
@@ -229,12 +277,9 @@ fn report(state: &FrameState, energy_error: f64) -> StepReport {
         velocity: Some(first.velocity),
         acceleration: Some(first.acceleration),
         force: first.force,
-        energy_error: Some(energy_error),
+        energy_error: Some(told.energy_error),
+        tracking: Some(told.tracking),
+        tracking_energy_error: told.tracking_energy_error,
         others: (1..state.target.len()).map(axis).collect(),
     }
-}
-
-/// What the balance misses, over the largest energy there was so far: an input that begins with nothing divides nothing.
-pub(super) fn error_fraction(energies: &FrameEnergies, largest: f64) -> f64 {
-    if energies.error == 0.0 { 0.0 } else { energies.error / largest }
 }

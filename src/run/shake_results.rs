@@ -2,7 +2,6 @@
 //! schema's order. It drives nothing.
 
 use super::results::result;
-use super::shake::error_fraction;
 use crate::formula::ResultValue;
 use crate::mechanics::frame::{FrameState, Modes, drifts};
 use crate::quantity::Dimension;
@@ -34,8 +33,8 @@ impl ShakeSummary {
         }
     }
 
-    /// Takes a step; gives its energy error over the largest energy so far.
-    pub(super) fn push(&mut self, state: &FrameState) -> f64 {
+    /// Takes the end of a step.
+    pub(super) fn push(&mut self, state: &FrameState) {
         drifts(&state.displacement, &mut self.drift);
         let widen = |largest: &mut [f64], values: &[f64]| {
             for (largest, value) in largest.iter_mut().zip(values) {
@@ -47,9 +46,13 @@ impl ShakeSummary {
         self.max_base_shear = self.max_base_shear.max(state.restoring_force.iter().sum::<f64>().abs());
         let e = &state.energies;
         self.largest_energy = self.largest_energy.max(e.input.abs()).max(e.kinetic);
-        self.energy_error = error_fraction(e, self.largest_energy);
+        self.energy_error = if e.error == 0.0 { 0.0 } else { e.error / self.largest_energy };
         self.steps = state.step;
-        self.energy_error
+    }
+
+    /// J
+    pub(super) const fn largest_energy(&self) -> f64 {
+        self.largest_energy
     }
 }
 

@@ -75,6 +75,7 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         contact: Contact::Rigid,
         integrator: Integrator::Tangent,
         allow_unstable: false,
+        i_modification: false,
         time_step: Formula::Constant(0.01),
         duration: Formula::Constant(0.5),
         until: Until::StrikerStop,

@@ -1,6 +1,6 @@
 //! Many degrees of freedom: storeys, `ground` and `shake`.
 
-use super::declarations::{BEHAVIOURS, STIFFNESS};
+use super::behaviours::{BEHAVIOURS, STIFFNESS};
 use super::procedures::{INSPECT_TRIGGERS, SPECIMEN};
 use super::types::{BlockKind, Field, Kind, Naming, Variant};
 use super::{methods, results};

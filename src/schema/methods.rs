@@ -18,5 +18,12 @@ pub(super) const INTEGRATOR: Field = Field::choice("integrator", INTEGRATORS, "t
 
 pub(super) const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::word("false", "no")];
 
+pub(super) const I_MODIFICATION: Field = Field::choice(
+    "i_modification",
+    TRUTH,
+    "whether the force is corrected to where the specimen was to be, r_m − K_I(d_m − d): as long as it is nearly elastic",
+)
+.or_said("false");
+
 pub(super) const ALLOW_UNSTABLE: Field =
     Field::choice("allow_unstable", TRUTH, "whether it runs beyond the stability limit of its integrator").or_said("false");

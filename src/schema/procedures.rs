@@ -126,6 +126,7 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         Field::choice("contact", CONTACTS, "contact law").or_said("rigid"),
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,
+        methods::I_MODIFICATION,
         Field::quantity("time_step", Dimension::TIME, "Δt; may read `critical`, Δt of eq. 7")
             .above_zero()
             .or_said("critical / 20"),

@@ -108,11 +108,11 @@ pub fn damping_impossible(reason: &str, span: Span) -> Diagnostic {
         .help("give each mode its own ratio: `damping_ratio = [2, 3] %`")
 }
 
-pub fn no_one_stiffness(name: Option<&Ident>, span: Span) -> Diagnostic {
+pub fn no_one_of_its_kind(name: Option<&Ident>, property: &str, span: Span) -> Diagnostic {
     let name = name.map_or("the frame", |name| name.node.as_str());
-    Diagnostic::new(Code::NoOneStiffness, format!("`{name}` is a frame: no one stiffness is its own"))
+    Diagnostic::new(Code::NoOneStiffness, format!("`{name}` is a frame: no one `{property}` is its own"))
         .at(span, "which storey's?")
-        .help("declare the storey's stiffness by `let`, and read that")
+        .help("declare the storey's own by `let`, and read that")
 }
 
 pub fn unstable_though(span: Span, step: f64, limit: f64) -> Diagnostic {

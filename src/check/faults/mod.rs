@@ -8,6 +8,7 @@ pub mod frames;
 pub mod methods;
 pub mod names;
 pub mod rigs;
+pub mod specimens;
 pub mod types;
 pub mod values;
 pub mod whole;

@@ -58,6 +58,8 @@ fn step(number: u64, reading: &Reading) -> StepReport {
         force: first(&reading.force),
         energy_error: None,
         others: reading.displacement.iter().zip(&reading.force).skip(1).map(|(x, force)| at_rest(*x, *force)).collect(),
+        tracking: None,
+        tracking_energy_error: None,
     }
 }
 

@@ -133,13 +133,17 @@ impl Model {
 
     /// The limits of the plan that a step says something of, those that bound nothing left out.
     pub fn limit_rows(&self) -> Vec<LimitRow> {
-        let Limits { displacement, force, increment, tracking_error, energy_error, .. } = self.limits;
+        let Limits { displacement, force, increment, tracking_error, energy_error, tracking_energy_error, nrms_error, .. } =
+            self.limits;
         // Of several axes the one with the largest size.
         let of = |value: fn((f64, f64, f64)) -> f64| {
             let values = self.last.iter().flat_map(StepReport::axes).map(value);
             values.reduce(|largest, value| if value.abs() > largest.abs() { value } else { largest })
         };
-        let energy = self.last.as_ref().and_then(|last| last.energy_error).map(f64::abs);
+        let last = self.last.as_ref();
+        let energy = last.and_then(|last| last.energy_error).map(f64::abs);
+        let share = last.and_then(|last| last.tracking_energy_error).map(f64::abs);
+        let nrms = last.and_then(|last| last.tracking).map(|tracking| tracking.nrms_error);
         let sizes = |limit: Interval| Interval { low: limit.low.max(0.0), ..limit };
         let row = |name, dimension, limit, size, value| LimitRow { name, dimension, limit, size, value };
         [
@@ -148,6 +152,8 @@ impl Model {
             row("increment", Dimension::LENGTH, sizes(increment), true, self.increment),
             row("tracking error", Dimension::LENGTH, sizes(tracking_error), true, self.tracking_error()),
             row("energy error", Dimension::NUMBER, sizes(energy_error), true, energy),
+            row("tracking energy", Dimension::NUMBER, sizes(tracking_energy_error), true, share),
+            row("NRMS error", Dimension::NUMBER, sizes(nrms_error), true, nrms),
         ]
         .into_iter()
         .filter(|row| row.limit.high < f64::INFINITY || row.limit.low > if row.size { 0.0 } else { f64::NEG_INFINITY })
@@ -186,6 +192,8 @@ pub mod tests {
             force,
             energy_error: Some(-1e-4),
             others: Vec::new(),
+            tracking: None,
+            tracking_energy_error: None,
         }
     }
 

@@ -2,9 +2,9 @@
 //! blocks. What was not given is said to be so, and what the plan states and nobody measured is marked.
 
 use super::super::document::{Block, Text};
-use super::super::{Run, number};
+use super::super::{Run, behaviour, number};
 use super::{described, frames, pairs, particulars};
-use crate::plan::{Behaviour, Ends, Interval, Limits, Settle, Specimen, Striker};
+use crate::plan::{Interval, Limits, Settle, Specimen, Striker};
 use crate::quantity::Dimension;
 use crate::record::History;
 
@@ -76,7 +76,9 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
 
 fn specimen_table(specimen: &Specimen) -> Block {
     let mut rows = vec![("equivalent mass", number::stated(specimen.mass, Dimension::MASS))];
-    rows.extend(specimen.behaviour.as_ref().map(|behaviour| ("virtual behaviour", bends(behaviour))));
+    if let Some(behaviour) = &specimen.behaviour {
+        rows.extend(behaviour::rows(behaviour, &number::stated));
+    }
     if specimen.damping != 0.0 {
         rows.push(("damping on the load cell", number::stated(specimen.damping, Dimension::DAMPING)));
     }
@@ -84,41 +86,6 @@ fn specimen_table(specimen: &Specimen) -> Block {
         rows.push(("friction on the load cell", number::stated(specimen.coulomb, Dimension::FORCE)));
     }
     described(rows)
-}
-
-/// How a virtual specimen or storey bends, in words.
-pub(super) fn bends(behaviour: &Behaviour) -> String {
-    match *behaviour {
-        Behaviour::Elastic { stiffness } => format!("elastic, stiffness {}", number::stated(stiffness, Dimension::STIFFNESS)),
-        Behaviour::Bilinear { stiffness, yield_force, hardening } => format!(
-            "bilinear, stiffness {}, yield force {}, hardening {}",
-            number::stated(stiffness, Dimension::STIFFNESS),
-            number::stated(yield_force, Dimension::FORCE),
-            number::stated(hardening, Dimension::NUMBER)
-        ),
-        Behaviour::Beam { stiffness, length, youngs_modulus, second_moment, ends } => format!(
-            "beam, {}, length {}, modulus {}, second moment {}: stiffness {}",
-            held(ends),
-            number::stated(length, Dimension::LENGTH),
-            number::stated(youngs_modulus, Dimension::PRESSURE),
-            number::stated(second_moment, Dimension::SECOND_MOMENT),
-            number::stated(stiffness, Dimension::STIFFNESS)
-        ),
-    }
-}
-
-fn held(ends: Ends) -> String {
-    match ends {
-        Ends::Cantilever => "cantilever".to_owned(),
-        Ends::SimplySupported => "simply supported".to_owned(),
-        Ends::BuiltIn => "built in".to_owned(),
-        Ends::PartlyBuiltIn { rotational_stiffness } => {
-            format!(
-                "partly built in ({} per radian)",
-                number::stated(rotational_stiffness, Dimension::ENERGY).replace('J', "N·m")
-            )
-        }
-    }
 }
 
 fn striker_table(striker: &Striker) -> Block {
@@ -151,6 +118,8 @@ fn limits(limits: &Limits) -> Block {
         ("increment", limits.increment, Dimension::LENGTH),
         ("tracking error", limits.tracking_error, Dimension::LENGTH),
         ("energy error", limits.energy_error, Dimension::NUMBER),
+        ("tracking energy error", limits.tracking_energy_error, Dimension::NUMBER),
+        ("NRMS tracking error", limits.nrms_error, Dimension::NUMBER),
     ]
     .into_iter()
     .filter(|(_, interval, _)| interval.is_bounded())

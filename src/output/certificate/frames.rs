@@ -2,8 +2,8 @@
 //! energy. In: a plan and a record. Out: blocks.
 
 use super::super::document::{Block, Column, Table, Text};
-use super::super::{Run, number};
-use super::{conditions, described, results};
+use super::super::{Run, behaviour, number};
+use super::{described, results};
 use crate::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
@@ -38,7 +38,7 @@ pub(super) fn structure(frame: &Frame, body: &mut Vec<Block>) {
             number::stated(storey.mass, Dimension::MASS).into(),
             number::stated(storey.stiffness, Dimension::STIFFNESS).into(),
             storey.height.map_or_else(|| "—".to_owned(), |height| number::stated(height, Dimension::LENGTH)).into(),
-            conditions::bends(&storey.behaviour).into(),
+            behaviour::words(&storey.behaviour, &number::stated).into(),
         ]
     };
     body.push(Block::Table(Table { columns, rows: frame.storeys.iter().enumerate().map(row).collect() }));
