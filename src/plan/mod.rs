@@ -176,8 +176,6 @@ pub struct Procedure {
     pub kind: ProcedureKind,
 }
 
-/// A plan has few procedures, so that their size does not matter.
-#[expect(clippy::large_enum_variant, reason = "a plan has a handful of them")]
 #[derive(Clone, Debug)]
 pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
@@ -475,15 +473,9 @@ impl FigureKind {
                 Self::Energy,
                 Self::Tracking,
             ],
-            ProcedureKind::Shake(_) => &[
-                Self::Modes,
-                Self::Ground,
-                Self::Displacement,
-                Self::Drift,
-                Self::Hysteresis,
-                Self::BaseShear,
-                Self::Energy,
-            ],
+            ProcedureKind::Shake(_) => {
+                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
+            }
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }

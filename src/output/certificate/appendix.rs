@@ -47,7 +47,8 @@ fn printed(file: &PlanFile, body: &mut Vec<Block>) {
     const FIRST: usize = 8;
     let lines: Vec<String> = file.text.lines().map(str::to_owned).collect();
     let left = lines.len().saturating_sub(FIRST);
-    if file.name.ends_with(".psd") || left <= FIRST {
+    let is_plan = file.name.rsplit('.').next().is_some_and(|ending| ending.eq_ignore_ascii_case("psd"));
+    if is_plan || left <= FIRST {
         body.push(Block::Code { lines });
         return;
     }
@@ -58,8 +59,7 @@ fn printed(file: &PlanFile, body: &mut Vec<Block>) {
 
 /// The plan and every file it used, under the names that they have in the run folder.
 pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
-    let attached =
-        |file: &PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
+    let attached = |file: &PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
     run.plan.files.iter().map(attached).collect()
 }
 
