@@ -31,7 +31,11 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     let setting = match setting {
         Ok(setting) => setting,
         Err(stop) => {
-            return Performed { history: History::Shake(ShakeHistory::default()), results: results(None, None), stop: Some(stop) };
+            return Performed {
+                history: History::Shake(ShakeHistory::default()),
+                results: results(None, None),
+                stop: Some(stop),
+            };
         }
     };
     let history = ShakeHistory {

@@ -129,7 +129,8 @@ fn the_record_of_a_shake_is_enough() {
     fs::remove_dir_all(path("ground")).expect("removed");
     psd(&["verify"], &path("run"));
     psd(&["report", path("run").to_str().expect("UTF-8"), "--out"], &path("again"));
-    let read = |folder: &str, name: &str| fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"));
+    let read =
+        |folder: &str, name: &str| fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"));
     for name in [
         "summary.json",
         "tables/quake.csv",
