@@ -12,6 +12,9 @@ pub mod standing;
 pub mod summary;
 mod tables;
 
+use std::collections::BTreeSet;
+
+use crate::inert;
 use crate::plan::{Format, Plan};
 use crate::record::Record;
 use crate::run::driven::DrivenStep;
@@ -97,7 +100,10 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let figures = figures::all(run)?;
     let mut files = Vec::new();
     if wants(run.plan, Format::Html) {
-        files.push(OutputFile { path: "certificate.html".to_owned(), bytes: certificate::html(run, &figures).into_bytes() });
+        files.push(OutputFile {
+            path: "certificate.html".to_owned(),
+            bytes: inert::page(&certificate::html(run, &figures)).into_bytes(),
+        });
     }
     files.push(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() });
     files.extend(tables::all(run)?);
@@ -108,6 +114,7 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
             .iter()
             .map(|file| OutputFile { path: format!("plan/{}", safe_path(&file.name)), bytes: file.text.clone().into_bytes() }),
     );
+    tell_apart(&mut files);
     files.push(manifest::of(&files));
     Ok(files)
 }
@@ -131,23 +138,33 @@ fn wants(plan: &Plan, format: Format) -> bool {
     plan.report.formats.is_empty() || plan.report.formats.contains(&format)
 }
 
-/// A relative path that cannot leave the run folder: no empty, `.` or `..` part, no drive, no control character.
+/// A relative path that cannot leave the run folder, each of its parts a plain name on every system.
 fn safe_path(name: &str) -> String {
-    let parts: Vec<String> = name
-        .split(['/', '\\'])
-        .filter(|part| !matches!(*part, "" | "." | ".."))
-        .map(|part| {
-            part.chars()
-                .map(|c| if c.is_control() || matches!(c, ':' | '*' | '?' | '"' | '<' | '>' | '|') { '_' } else { c })
-                .collect()
-        })
-        .collect();
+    let parts = name.split(['/', '\\']).filter(|part| !matches!(*part, "" | "." | ".."));
+    let parts: Vec<String> = parts.map(inert::file_part).collect();
     if parts.is_empty() { "plan.psd".to_owned() } else { parts.join("/") }
+}
+
+/// Paths that differ only in the size of their letters are one file on many systems: the later one gets a number.
+fn tell_apart(files: &mut [OutputFile]) {
+    let mut seen = BTreeSet::new();
+    for file in files {
+        let own = file.path.clone();
+        let (stem, ending) = match own.rsplit_once('.') {
+            Some((stem, ending)) if !ending.contains('/') => (stem, format!(".{ending}")),
+            _ => (own.as_str(), String::new()),
+        };
+        let mut number = 1;
+        while !seen.insert(file.path.to_lowercase()) {
+            number += 1;
+            file.path = format!("{stem}-{number}{ending}");
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::safe_path;
+    use super::{OutputFile, safe_path, tell_apart};
 
     #[test]
     fn a_path_never_leaves_the_run_folder() {
@@ -155,5 +172,13 @@ mod tests {
         assert_eq!(safe_path("../../etc/passwd"), "etc/passwd");
         assert_eq!(safe_path("C:\\plans\\a\n.psd"), "C_/plans/a_.psd");
         assert_eq!(safe_path(".."), "plan.psd");
+    }
+    #[test]
+    fn no_two_files_are_one_where_the_size_of_letters_says_nothing() {
+        let mut files = ["tables/hit.csv", "tables/Hit.csv", "tables/HIT-2.csv", "plan/a", "plan/A"]
+            .map(|path| OutputFile { path: path.to_owned(), bytes: Vec::new() });
+        tell_apart(&mut files);
+        let paths = files.map(|file| file.path);
+        assert_eq!(paths, ["tables/hit.csv", "tables/Hit-2.csv", "tables/HIT-2-2.csv", "plan/a", "plan/A-2"]);
     }
 }

@@ -4,6 +4,7 @@
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
 
 use super::{OutputError, OutputFile, Run, wants};
+use crate::inert;
 use crate::plan::Format;
 use crate::record::{History, ImpactStep, ProcedureRecord, RampStep, SweepStep};
 use crate::run::driven::DrivenStep;
@@ -15,11 +16,14 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         let failed = |error: PolarsError| OutputError::Table { procedure: procedure.name.clone(), reason: error.to_string() };
         let Some(mut frame) = frame(procedure).map_err(failed)? else { continue };
         if wants(run.plan, Format::Csv) {
-            files.push(OutputFile { path: format!("tables/{}.csv", procedure.name), bytes: csv(&mut frame).map_err(failed)? });
+            files.push(OutputFile {
+                path: format!("tables/{}.csv", inert::file_part(&procedure.name)),
+                bytes: csv(&mut frame).map_err(failed)?,
+            });
         }
         if wants(run.plan, Format::Parquet) {
             let bytes = parquet(&mut frame).map_err(failed)?;
-            files.push(OutputFile { path: format!("tables/{}.parquet", procedure.name), bytes });
+            files.push(OutputFile { path: format!("tables/{}.parquet", inert::file_part(&procedure.name)), bytes });
         }
     }
     Ok(files)
@@ -131,23 +135,5 @@ fn integers<T>(name: &str, steps: &[T], read: fn(&T) -> u64) -> Column {
 }
 
 fn texts<T>(name: &str, steps: &[T], read: fn(&T) -> &'static str) -> Column {
-    Column::new(name.into(), steps.iter().map(|step| inert(read(step))).collect::<Vec<String>>())
-}
-
-/// A text cell that no spreadsheet takes for a formula: one that starts like a formula gets a leading `'`.
-fn inert(cell: &str) -> String {
-    if cell.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{cell}") } else { cell.to_owned() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::inert;
-
-    #[test]
-    fn a_cell_that_starts_like_a_formula_becomes_text() {
-        for hostile in ["=1+1", "+1", "-1", "@sum", "\tx", "\rx"] {
-            assert_eq!(inert(hostile), format!("'{hostile}"));
-        }
-        assert_eq!(inert("contact"), "contact");
-    }
+    Column::new(name.into(), steps.iter().map(|step| inert::cell(read(step))).collect::<Vec<String>>())
 }
