@@ -2,6 +2,8 @@
 //! the sink shows and never obeys: no control of a terminal, no turned reading direction, nothing invisible, no formula, no
 //! name that a file system takes for a device.
 
+use std::fmt::Write as _;
+
 /// Whether a character does something else than stand there: control characters, marks of direction, what cannot be seen,
 /// tags, and code points that are no characters.
 #[must_use]
@@ -81,7 +83,7 @@ pub fn json(document: &str) -> String {
     for c in document.chars() {
         if steers(c) && c != '\n' {
             for unit in c.encode_utf16(&mut [0; 2]) {
-                safe.push_str(&format!("\\u{unit:04x}"));
+                let _ = write!(safe, "\\u{unit:04x}");
             }
         } else {
             safe.push(c);

@@ -91,6 +91,8 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E646 RateWithoutSpeed Error;
+    E647 NoUseWithRate Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

@@ -1,6 +1,7 @@
 //! The vocabulary, as data: every block, field, variant, default, range, result and function of the language, written
 //! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
 
+mod cyclic;
 mod declarations;
 mod devices;
 mod functions;
@@ -28,12 +29,12 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::STIFFNESS_RAMP,
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
+    &cyclic::CYCLE,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
     &later::GROUND,
     &later::SHAKE,
-    &later::CYCLE,
     &later::STUDY,
     &later::GOLDEN,
 ];

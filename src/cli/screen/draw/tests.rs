@@ -110,12 +110,14 @@ fn hostile_labels_stand_where_they_are_shown() {
         let mut hostile = model();
         (hostile.title, hostile.rig) = (label.clone(), label.clone());
         if let Some(running) = &mut hostile.procedure {
-            (running.name, running.keyword) = (label.clone(), label.clone());
+            running.name = label.clone();
         }
         for event in &mut hostile.events {
             (event.text, event.procedure) = (label.clone(), Some(label.clone()));
         }
-        let picture = picture((120, 40), &Dialogue::new(Some(label.clone())), &hostile);
+        let mut dialogue = Dialogue::new(Some(label.clone()));
+        dialogue.ask(&label);
+        let picture = picture((120, 40), &dialogue, &hostile);
         assert!(!picture.chars().any(|c| crate::inert::steers(c) && c != '\n'), "{label:?}:\n{picture}");
     }
 }
