@@ -1,6 +1,7 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod behaviour;
 mod calendar;
 mod call;
 mod checker;
@@ -31,6 +32,7 @@ mod scope;
 mod specimen;
 mod stiffness_ramp;
 mod striker;
+mod table_file;
 #[cfg(test)]
 mod tests;
 mod warnings;
@@ -146,6 +148,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
         if let Some(rig) = &rig {
             real_rig::warn(checker, rig);
+        }
+        if let Some(limits) = &limits {
+            specimen::warn_of_short_tables(checker, &specimens, limits);
         }
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
     }

@@ -9,9 +9,10 @@ use super::exit::Exit;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
+use crate::output::behaviour;
 use crate::plan::{Interval, Link, Plan, VirtualLink};
 use crate::quantity::Dimension;
-use crate::quantity::display::{digits, join, readable, significant, unit};
+use crate::quantity::display::{digits, join, readable, significant, stated, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
 use crate::verdict::{self, Assessment};
 
@@ -98,6 +99,13 @@ impl<'a> DryRun<'a> {
                 let _ = writeln!(text, "{}\n{}", settings.paint_heading(heading), columns(&rows));
             }
         };
+        for specimen in &self.plan.specimens {
+            if let Some(behaviour) = &specimen.behaviour {
+                let rows = behaviour::rows(behaviour, &stated);
+                let rows = rows.into_iter().map(|(label, text)| vec![label.to_owned(), escape(&text)]).collect();
+                section(&format!("Specimen {}", specimen.name), rows);
+            }
+        }
         section("What moves", self.motions());
         for procedure in &self.record.procedures {
             if let History::Impact(history) = &procedure.history

@@ -91,6 +91,11 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E630 CornersDoNotFit Error;
+    E631 BadTableFile Error;
+    E632 BehaviourIncomplete Error;
+    E633 UnfitInside Error;
+    E634 NoSuchProperty Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     // 7: what runs but is unwise
@@ -103,6 +108,7 @@ codes! {
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
     W711 ResolutionUnknown Warning;
+    W715 TableTooShort Warning;
 }
 
 impl std::fmt::Display for Code {

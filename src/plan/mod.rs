@@ -1,15 +1,19 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod behaviour;
 mod cycle;
 mod integrator;
+mod portal;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use integrator::Integrator;
+pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -63,39 +67,6 @@ pub struct Specimen {
     pub damping: f64,
     /// Friction on the virtual load cell, N.
     pub coulomb: f64,
-}
-
-/// Restoring force of a virtual specimen against displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Behaviour {
-    /// R = K X; K in N/m.
-    Elastic { stiffness: f64 },
-    /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
-    Bilinear { stiffness: f64, yield_force: f64, hardening: f64 },
-    /// A beam by geometry: already its stiffness (N/m), and what it was made from, for the report.
-    Beam { stiffness: f64, length: f64, youngs_modulus: f64, second_moment: f64, ends: Ends },
-}
-
-/// How the ends of a beam are held (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ends {
-    Cantilever,
-    SimplySupported,
-    BuiltIn,
-    /// Rotational stiffness of each end, N·m/rad.
-    PartlyBuiltIn {
-        rotational_stiffness: f64,
-    },
-}
-
-impl Behaviour {
-    /// Stiffness at no displacement, N/m.
-    #[must_use]
-    pub const fn initial_stiffness(&self) -> f64 {
-        match *self {
-            Self::Elastic { stiffness } | Self::Bilinear { stiffness, .. } | Self::Beam { stiffness, .. } => stiffness,
-        }
-    }
 }
 
 /// A computed body: only the structure is on the rig.
@@ -447,6 +418,7 @@ impl FigureKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Html,
+    Pdf,
     Csv,
     Parquet,
 }

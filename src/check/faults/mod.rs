@@ -6,6 +6,7 @@ pub mod cyclic;
 pub mod files;
 pub mod names;
 pub mod rigs;
+pub mod specimens;
 pub mod types;
 pub mod values;
 pub mod whole;

@@ -1,5 +1,5 @@
-//! Figures: what the plan's report asks for, drawn as PNG at 192 dpi. In: a run. Out: bytes with the caption the
-//! certificate prints below them. Knows no HTML.
+//! Figures: what the plan's report asks for, drawn as PNG at 192 dpi and in vectors. In: a run. Out: bytes with the caption
+//! the certificate prints below them. Knows no HTML.
 
 mod axis;
 mod canvas;
@@ -8,6 +8,8 @@ mod cyclic;
 mod draw;
 mod identification;
 mod impact;
+mod raster;
+mod vector;
 
 use rayon::prelude::*;
 
@@ -18,9 +20,11 @@ use chart::Chart;
 
 /// A figure, drawn.
 pub(super) struct Drawn {
-    /// `figures/NAME_FIGURE.png`
+    /// `figures/NAME_FIGURE`, without its ending.
     pub path: String,
     pub png: Vec<u8>,
+    /// The same in vectors.
+    pub svg: String,
     /// What it shows, in one sentence.
     pub caption: String,
 }
@@ -34,8 +38,9 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
 fn one(run: &Run<'_>, figure: Figure) -> Option<Result<Drawn, OutputError>> {
     let procedure = run.record.procedures.get(figure.procedure.0)?;
     let (chart, caption) = chart_of(run, procedure, figure)?;
-    Some(match draw::png(&chart) {
-        Ok(png) => Ok(Drawn { path: format!("figures/{}_{}.png", procedure.name, figure.kind.name()), png, caption }),
+    let drawn = draw::png(&chart).and_then(|png| draw::svg(&chart).map(|svg| (png, svg)));
+    Some(match drawn {
+        Ok((png, svg)) => Ok(Drawn { path: format!("figures/{}_{}", procedure.name, figure.kind.name()), png, svg, caption }),
         Err(reason) => Err(OutputError::Figure { figure: figure.kind.name(), procedure: procedure.name.clone(), reason }),
     })
 }

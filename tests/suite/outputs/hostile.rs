@@ -5,6 +5,7 @@ use psd::check::{Checked, LoadFault, Loader, Options, check};
 use psd::diagnostic::{json, render};
 use psd::inert;
 use psd::output::{OutputFile, console, everything};
+use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
 use rayon::prelude::*;
@@ -27,6 +28,7 @@ fn run_with(label: &str) -> Finished {
     finished.plan.report.title = Some(own());
     finished.plan.report.sign = vec![own(), own()];
     finished.plan.report.figures.clear();
+    finished.plan.report.formats = vec![Format::Html, Format::Csv];
     for field in ["customer", "operator", "laboratory", "specimen_id", "deviations", "notes", "date"] {
         finished.plan.particulars.push((field, own()));
     }
@@ -96,6 +98,28 @@ fn no_label_is_markup_on_a_page() {
             assert!(!page.contains(forbidden), "{label:?}: {forbidden}");
         }
     });
+}
+
+/// Every text goes to paper as data: typst would fail on markup that makes no sense, and a form made for archives takes no
+/// script and no link.
+#[test]
+fn no_label_is_markup_on_paper() {
+    let paper = |label: &str| {
+        let mut finished = run_with(label);
+        finished.plan.report.formats = vec![Format::Pdf];
+        finished.provenance.date = Some("2026-05-31".to_owned());
+        files_of(&finished).into_iter().find(|file| file.path == "certificate.pdf").unwrap().bytes
+    };
+    let labels = labels().into_iter().map(|label| label.chars().take(2000).collect::<String>()).collect::<Vec<_>>();
+    labels.par_iter().for_each(|label| {
+        let bytes = paper(label);
+        let holds = |word: &[u8]| bytes.windows(word.len()).any(|found| found == word);
+        assert!(bytes.starts_with(b"%PDF-1.7") && holds(b"<pdfaid:part>3"), "{label:?}");
+        for forbidden in [b"/JavaScript".as_slice(), b"/Launch", b"/OpenAction", b"/URI"] {
+            assert!(!holds(forbidden), "{label:?}");
+        }
+    });
+    assert!(paper(&labels[0]) == paper(&labels[0]), "the same bytes again");
 }
 
 #[test]
