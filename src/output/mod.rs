@@ -17,7 +17,7 @@ mod tables;
 use std::collections::BTreeSet;
 
 use crate::inert;
-use crate::plan::{Format, Plan};
+use crate::plan::{Format, Plan, PlanFile};
 use crate::record::Record;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
@@ -121,15 +121,18 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
         files.push(OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() });
     }
-    files.extend(
-        run.plan
-            .files
-            .iter()
-            .map(|file| OutputFile { path: format!("plan/{}", safe_path(&file.name)), bytes: file.text.clone().into_bytes() }),
-    );
+    files.extend(plan_files(run.plan));
     tell_apart(&mut files);
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// The texts of the plan and of what it used, under the names that they have in the run folder.
+fn plan_files(plan: &Plan) -> Vec<OutputFile> {
+    let file = |file: &PlanFile| OutputFile { path: format!("plan/{}", safe_path(&file.name)), bytes: file.text.clone().into() };
+    let mut files: Vec<OutputFile> = plan.files.iter().map(file).collect();
+    tell_apart(&mut files);
+    files
 }
 
 /// The table of a client that drove the rig.

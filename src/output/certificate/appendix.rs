@@ -2,7 +2,7 @@
 //! run. Out: blocks, and the plan's files to go with them.
 
 use super::super::document::{Attachment, Block, Text};
-use super::super::{RealRun, Run, safe_path};
+use super::super::{RealRun, Run, plan_files};
 use super::pairs;
 use crate::inert;
 
@@ -46,9 +46,8 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
 
 /// The plan and every file it used, under the names that they have in the run folder.
 pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
-    let attached =
-        |file: &crate::plan::PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
-    run.plan.files.iter().map(attached).collect()
+    let named = plan_files(run.plan).into_iter().zip(&run.plan.files);
+    named.map(|(named, file)| Attachment { name: named.path, text: file.text.clone() }).collect()
 }
 
 fn provenance(run: &Run<'_>) -> Block {

@@ -110,7 +110,24 @@ fn no_label_is_markup_on_paper() {
         finished.provenance.date = Some("2026-05-31".to_owned());
         files_of(&finished).into_iter().find(|file| file.path == "certificate.pdf").unwrap().bytes
     };
-    let labels = labels().into_iter().map(|label| label.chars().take(2000).collect::<String>()).collect::<Vec<_>>();
+    // Each kind once: paper takes its time.
+    let marks = [
+        "#eval",
+        "<script",
+        "</style",
+        "[31m",
+        "\u{202e}",
+        "\u{e0041}",
+        "\u{0}",
+        "\u{2028}",
+        "\u{ffff}",
+        "CON",
+        "long ",
+        "\u{301}",
+    ];
+    let all = labels();
+    let of = |mark: &&str| all.iter().find(|label| label.contains(*mark)).unwrap().chars().take(2000).collect::<String>();
+    let labels: Vec<String> = marks.iter().map(of).collect();
     labels.par_iter().for_each(|label| {
         let bytes = paper(label);
         let holds = |word: &[u8]| bytes.windows(word.len()).any(|found| found == word);
