@@ -17,6 +17,7 @@ mod fields;
 mod impact;
 mod imports;
 mod inspect;
+mod integrator;
 mod limits;
 mod literal;
 mod move_block;
@@ -138,6 +139,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(Procedure { kind: ProcedureKind::Impact(impact), .. }) = procedure {
             let striker = strikers.get(impact.striker).and_then(Option::as_ref);
             warnings::impact(checker, *block, impact, striker);
+            integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
         }
     }
     let requirements = checker.requirements();

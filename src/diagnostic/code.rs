@@ -96,6 +96,8 @@ codes! {
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E642 LawNeedsTangent Error;
+    E643 Unstable Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     // 7: what runs but is unwise

@@ -123,6 +123,10 @@ pub struct Limits {
     pub tracking_error: Interval,
     /// |energy error| over the input energy.
     pub energy_error: Interval,
+    /// |energy error of tracking| over the input energy; where it bounds nothing, the default holds.
+    pub tracking_energy_error: Interval,
+    /// Root mean square of the tracking error over that of the command.
+    pub nrms_error: Interval,
 }
 
 impl Limits {
@@ -133,6 +137,8 @@ impl Limits {
         increment: Interval::ALL,
         tracking_error: Interval::ALL,
         energy_error: Interval::ALL,
+        tracking_energy_error: Interval::ALL,
+        nrms_error: Interval::ALL,
     };
 }
 
@@ -232,6 +238,11 @@ pub struct Impact {
     /// C of eqs. 4–5, N·s/m
     pub damping: Formula,
     pub contact: Contact,
+    pub integrator: Integrator,
+    /// Whether it runs beyond the stability limit of its integrator.
+    pub allow_unstable: bool,
+    /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
+    pub i_modification: bool,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// Upper bound of virtual time, s.
@@ -354,6 +365,8 @@ pub enum FigureKind {
     ContactForce,
     ForceDisplacement,
     Energy,
+    /// Command against measurement.
+    Tracking,
     DampingFit,
     /// Largest forces against the displacements of them, amplitude by amplitude.
     Backbone,
@@ -365,13 +378,14 @@ pub enum FigureKind {
 
 impl FigureKind {
     /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Displacement,
         Self::StrikerVelocity,
         Self::Velocity,
         Self::ContactForce,
         Self::ForceDisplacement,
         Self::Energy,
+        Self::Tracking,
         Self::DampingFit,
         Self::Backbone,
         Self::CycleEnergy,
@@ -388,6 +402,7 @@ impl FigureKind {
             Self::ContactForce => "contact_force",
             Self::ForceDisplacement => "force_displacement",
             Self::Energy => "energy",
+            Self::Tracking => "tracking",
             Self::DampingFit => "damping_fit",
             Self::Backbone => "backbone",
             Self::CycleEnergy => "cycle_energy",
@@ -408,6 +423,7 @@ impl FigureKind {
                 Self::ContactForce,
                 Self::ForceDisplacement,
                 Self::Energy,
+                Self::Tracking,
             ],
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],

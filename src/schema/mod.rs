@@ -8,6 +8,7 @@ mod devices;
 mod functions;
 mod later;
 mod limits;
+mod methods;
 mod plan_block;
 mod procedures;
 mod reference;

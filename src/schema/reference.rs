@@ -150,6 +150,7 @@ fn measure(dimension: Dimension) -> String {
 /// The range of a value, `, above 0`; a limit of a dimension stands in its SI unit.
 fn allowed(range: Range, dimension: Dimension) -> String {
     let shown = |value: f64| {
+        let value = if dimension == Dimension::NUMBER { (value * 1e4).round() / 1e4 } else { value };
         let number = if value.abs() < 1e7 { value.to_string() } else { significant(value, 2) };
         if value == 0.0 || dimension == Dimension::NUMBER { number } else { format!("{number} {}", si_unit(dimension)) }
     };

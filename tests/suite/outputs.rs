@@ -14,9 +14,10 @@ use psd::plan::Format;
 use psd::record::{History, ImpactStep, Outcome, RampHistory};
 use psd::verdict::Verdict;
 
-const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
+const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,computed_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
 restoring_force_n,contact_force_n,striker_displacement_m,striker_velocity_m_per_s,tangent_stiffness_n_per_m,indentation_m,\
-striker_energy_j,structure_energy_j,restoring_energy_j,damping_energy_j,contact_loss_j,indentation_energy_j,energy_error_j";
+striker_energy_j,structure_energy_j,restoring_energy_j,damping_energy_j,contact_loss_j,indentation_energy_j,energy_error_j,\
+tracking_energy_error_j,tracking_indicator_m2";
 
 fn files(finished: &Finished) -> Vec<OutputFile> {
     everything(&finished.run()).expect("every output can be made")
@@ -110,12 +111,13 @@ fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
 }
 
 /// The numbers of a row in the order of the columns, step and state apart.
-fn row(step: &ImpactStep) -> [f64; 19] {
+fn row(step: &ImpactStep) -> [f64; 22] {
     let e = step.energies;
     [
         step.time,
         step.wall_time,
         step.command,
+        step.computed,
         step.displacement,
         step.velocity,
         step.acceleration,
@@ -132,6 +134,8 @@ fn row(step: &ImpactStep) -> [f64; 19] {
         e.contact_loss,
         e.indentation,
         e.error,
+        step.tracking.energy_error,
+        step.tracking.indicator,
     ]
 }
 

@@ -103,6 +103,8 @@ fn limits(limits: &Limits) -> Block {
         ("increment", limits.increment, Dimension::LENGTH),
         ("tracking error", limits.tracking_error, Dimension::LENGTH),
         ("energy error", limits.energy_error, Dimension::NUMBER),
+        ("tracking energy error", limits.tracking_energy_error, Dimension::NUMBER),
+        ("NRMS tracking error", limits.nrms_error, Dimension::NUMBER),
     ]
     .into_iter()
     .filter(|(_, interval, _)| interval.is_bounded())

@@ -77,6 +77,7 @@ fn blows(steps: &[ImpactStep]) -> Vec<Blow> {
 mod tests {
     use super::*;
     use crate::mechanics::energy::Energies;
+    use crate::mechanics::monitor::Tracking;
 
     #[test]
     fn neighbouring_steps_of_contact_are_one_blow() {
@@ -86,6 +87,7 @@ mod tests {
             wall_time: 0.0,
             state,
             command: 0.0,
+            computed: 0.0,
             displacement: 0.0,
             velocity: 0.0,
             acceleration: 0.0,
@@ -96,6 +98,7 @@ mod tests {
             tangent_stiffness: 0.0,
             indentation: 0.0,
             energies: Energies::default(),
+            tracking: Tracking::default(),
         };
         let steps = [
             step(0, StepState::Free, 0.0),

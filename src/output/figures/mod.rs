@@ -73,6 +73,12 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
             impact::energy(history),
             format!("{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."),
         ),
+        (History::Impact(history), FigureKind::Tracking) => (
+            impact::tracking(history),
+            format!(
+                "{name}: what the actuator missed of its commands, and the tracking indicator over the largest command; an indicator that falls says that the lag feeds energy into the test."
+            ),
+        ),
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares line."),
