@@ -15,6 +15,7 @@ mod reference;
 mod report;
 mod results;
 mod rig;
+mod sequences;
 mod types;
 
 pub use functions::{FUNCTIONS, FunctionKind};
@@ -32,6 +33,8 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
     &cyclic::CYCLE,
+    &sequences::ESCALATE,
+    &sequences::UNLOAD,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,

@@ -14,6 +14,8 @@ pub enum Kind {
     DampingSweep,
     Impact,
     Cycle,
+    Unload,
+    Escalate,
     Move,
     Inspect,
     Report,
@@ -98,6 +100,8 @@ pub enum FieldType {
     Reference(Kind),
     /// A list of `figure(procedure)`.
     Figures,
+    /// Conditions on the results of a blow, as in `require`.
+    Condition,
 }
 
 impl FieldType {
@@ -266,6 +270,10 @@ impl Field {
 
     pub(super) const fn figures(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Figures, doc)
+    }
+
+    pub(super) const fn condition(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Condition, doc)
     }
 
     /// A known word of a later version.

@@ -28,7 +28,7 @@ const IMPURE: &[&str] = &[
     "std::env",
     "env::var",
     "std::time",
-    "Instant",
+    "Instant::now",
     "SystemTime",
     "Zoned::now",
     "Timestamp::now",
