@@ -5,6 +5,8 @@ mod falling;
 mod frame;
 mod identification;
 mod methods;
+mod portal;
 mod reference;
+mod specimens;
 mod support;
 mod tracking;
