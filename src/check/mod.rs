@@ -12,6 +12,7 @@ mod dialect;
 mod expression;
 mod faults;
 mod fields;
+mod golden;
 mod impact;
 mod imports;
 mod inspect;
@@ -139,6 +140,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     let requirements = checker.requirements();
     let by_place: Vec<Option<Procedure>> = procedures.iter().map(|(_, procedure)| procedure.clone()).collect();
     let report = report::report(checker, &by_place);
+    let golden = golden::golden(checker);
     if !checker.faults.iter().any(Diagnostic::is_error) {
         let head = checker.scope.of_kind(Kind::Plan).map(|(_, block)| block.block.head).next();
         let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
@@ -160,6 +162,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         procedures: by_place.into_iter().collect::<Option<_>>()?,
         requirements: requirements?,
         report: report?,
+        golden: golden?,
         files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),
     })

@@ -319,6 +319,7 @@ mod tests {
             procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],
             requirements: Vec::new(),
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+            golden: crate::plan::Golden::default(),
             files: Vec::new(),
             settings: Vec::new(),
         }

@@ -91,6 +91,8 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E617 UnknownColumn Error;
+    E618 ToleranceTwice Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -100,6 +102,7 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W710 WideTolerance Warning;
 }
 
 impl std::fmt::Display for Code {

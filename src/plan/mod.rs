@@ -1,11 +1,13 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod golden;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -26,6 +28,7 @@ pub struct Plan {
     pub procedures: Vec<Procedure>,
     pub requirements: Vec<Requirement>,
     pub report: Report,
+    pub golden: Golden,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of name.

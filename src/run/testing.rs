@@ -27,6 +27,7 @@ pub(crate) fn empty_plan() -> Plan {
         procedures: Vec::new(),
         requirements: Vec::new(),
         report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+        golden: crate::plan::Golden::default(),
         files: Vec::new(),
         settings: Vec::new(),
     }

@@ -10,4 +10,3 @@ pub(super) const GROUND: BlockKind = later(&["ground"], Naming::Named, false, "A
 pub(super) const SHAKE: BlockKind = later(&["shake"], Naming::Named, true, "A ground motion on a specimen of storeys");
 pub(super) const CYCLE: BlockKind = later(&["cycle"], Naming::Named, true, "Cycles of displacement");
 pub(super) const STUDY: BlockKind = later(&["study"], Naming::Named, false, "Many runs of one plan");
-pub(super) const GOLDEN: BlockKind = later(&["golden"], Naming::Unnamed, false, "How near a rerun must be");

@@ -1,9 +1,11 @@
 //! The vocabulary, as data: every block, field, variant, default, range, result and function of the language, written
 //! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
 
+mod columns;
 mod declarations;
 mod devices;
 mod functions;
+mod golden;
 mod later;
 mod limits;
 mod plan_block;
@@ -14,6 +16,7 @@ mod results;
 mod rig;
 mod types;
 
+pub use columns::{Column, columns};
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use reference::reference;
 pub use types::{BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant};
@@ -31,11 +34,11 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
+    &golden::GOLDEN,
     &later::GROUND,
     &later::SHAKE,
     &later::CYCLE,
     &later::STUDY,
-    &later::GOLDEN,
 ];
 
 /// Items that are not blocks, for suggestions.

@@ -3,6 +3,7 @@
 use crate::quantity::{Dimension, display};
 
 pub mod files;
+pub mod golden;
 pub mod names;
 pub mod rigs;
 pub mod types;

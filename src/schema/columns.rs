@@ -1,0 +1,73 @@
+//! The columns of the tables with numbers, by procedure: the words of CSV and Parquet, of `golden` and of comparisons.
+//! Columns of words are not here: they are held to the letter.
+
+use super::types::Kind;
+use crate::quantity::Dimension;
+
+/// A column of a table, SI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Column {
+    pub name: &'static str,
+    pub dimension: Dimension,
+}
+
+const fn column(name: &'static str, dimension: Dimension) -> Column {
+    Column { name, dimension }
+}
+
+const STEP: Column = column("step", Dimension::NUMBER);
+const TIME: Column = column("time_s", Dimension::TIME);
+const WALL_TIME: Column = column("wall_time_s", Dimension::TIME);
+const COMMAND: Column = column("command_m", Dimension::LENGTH);
+const DISPLACEMENT: Column = column("displacement_m", Dimension::LENGTH);
+const VELOCITY: Column = column("velocity_m_per_s", Dimension::VELOCITY);
+const RESTORING_FORCE: Column = column("restoring_force_n", Dimension::FORCE);
+const TANGENT_STIFFNESS: Column = column("tangent_stiffness_n_per_m", Dimension::STIFFNESS);
+
+const RAMP: &[Column] = &[
+    STEP,
+    WALL_TIME,
+    COMMAND,
+    DISPLACEMENT,
+    RESTORING_FORCE,
+    column("force_scatter_n", Dimension::FORCE),
+    column("relaxation_n", Dimension::FORCE),
+    TANGENT_STIFFNESS,
+];
+
+const SWEEP: &[Column] =
+    &[STEP, WALL_TIME, VELOCITY, DISPLACEMENT, RESTORING_FORCE, column("damping_force_n", Dimension::FORCE)];
+
+const IMPACT: &[Column] = &[
+    STEP,
+    TIME,
+    WALL_TIME,
+    COMMAND,
+    DISPLACEMENT,
+    VELOCITY,
+    column("acceleration_m_per_s2", Dimension::ACCELERATION),
+    RESTORING_FORCE,
+    column("contact_force_n", Dimension::FORCE),
+    column("striker_displacement_m", Dimension::LENGTH),
+    column("striker_velocity_m_per_s", Dimension::VELOCITY),
+    TANGENT_STIFFNESS,
+    column("indentation_m", Dimension::LENGTH),
+    column("striker_energy_j", Dimension::ENERGY),
+    column("structure_energy_j", Dimension::ENERGY),
+    column("restoring_energy_j", Dimension::ENERGY),
+    column("damping_energy_j", Dimension::ENERGY),
+    column("contact_loss_j", Dimension::ENERGY),
+    column("indentation_energy_j", Dimension::ENERGY),
+    column("energy_error_j", Dimension::ENERGY),
+];
+
+/// The numeric columns of a procedure's table, in its order; none where it has no table.
+#[must_use]
+pub const fn columns(kind: Kind) -> &'static [Column] {
+    match kind {
+        Kind::StiffnessRamp | Kind::Move => RAMP,
+        Kind::DampingSweep => SWEEP,
+        Kind::Impact => IMPACT,
+        _ => &[],
+    }
+}
