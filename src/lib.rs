@@ -33,4 +33,6 @@ pub mod verdict;
 
 pub mod output;
 
+pub mod golden;
+
 pub mod cli;

@@ -58,7 +58,7 @@ fn near_result<'a>(
     chosen: &Chosen<'a>,
     said: &mut Said<(ProcedureId, &'static str)>,
 ) -> Option<NearResult> {
-    let of = chosen.find("of")?.1?;
+    let of = chosen.find("result")?.1?;
     let typed = checker.value(of, RESULTS)?;
     let Some(reference) = typed.formula.as_result().filter(|reference| reference.part == Part::Value) else {
         return checker.fail(fault::result_wanted(of.span, checker.text(of.span)));
@@ -74,7 +74,7 @@ fn near_column<'a>(
     chosen: &Chosen<'a>,
     said: &mut Said<(Option<ProcedureId>, &'static str)>,
 ) -> Option<NearColumn> {
-    let of = chosen.find("of")?.1?;
+    let of = chosen.find("column")?.1?;
     let (procedure, column) = column(checker, of)?;
     once(checker, said, (procedure, column.name), of.span)?;
     let tolerance = tolerance(checker, chosen, column.dimension)?;

@@ -11,6 +11,8 @@ pub mod standing;
 pub mod summary;
 mod tables;
 
+pub use figures::{Curve, Curves, FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures, PlainAxis};
+
 use crate::plan::{Format, Plan};
 use crate::record::Record;
 use crate::run::driven::DrivenStep;
@@ -99,6 +101,12 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     );
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// What the figures of a run plot, for who holds it against another run.
+#[must_use]
+pub fn figure_data(run: &Run<'_>) -> OutputFile {
+    OutputFile { path: FIGURE_DATA.to_owned(), bytes: figures::data(run).to_json().into_bytes() }
 }
 
 /// The table of a client that drove the rig.

@@ -8,7 +8,7 @@ const WITHIN: Field = Field::of_type("within", FieldType::Tolerance, "how near")
 const NEAR_RESULT: &[Variant] = &[Variant::with(
     "near",
     &[
-        Field::of_type("of", FieldType::ResultName, "the result; its uncertainty is held alike").required("hit.stop_time"),
+        Field::of_type("result", FieldType::ResultName, "the result; its uncertainty is held alike").required("hit.stop_time"),
         WITHIN,
     ],
     "a tolerance of its own",
@@ -17,7 +17,7 @@ const NEAR_RESULT: &[Variant] = &[Variant::with(
 const NEAR_COLUMN: &[Variant] = &[Variant::with(
     "near",
     &[
-        Field::of_type("of", FieldType::ColumnName, "the column, of one procedure or of all").required("hit.restoring_force_n"),
+        Field::of_type("column", FieldType::ColumnName, "the column, of one procedure or of all").required("hit.restoring_force_n"),
         WITHIN,
     ],
     "a tolerance of its own",

@@ -27,7 +27,7 @@ pub fn near_twice(text: &str, span: Span, first: Span) -> Diagnostic {
     Diagnostic::new(Code::ToleranceTwice, format!("`{text}` has two tolerances"))
         .at(span, "the second")
         .at(first, "the first")
-        .help("give one; the wider one would be the only one that counts")
+        .help("a name has one tolerance: leave one of them out")
 }
 
 pub fn negative(span: Span, text: &str) -> Diagnostic {

@@ -4,9 +4,11 @@
 mod axis;
 mod canvas;
 mod chart;
+mod data;
 mod draw;
 mod identification;
 mod impact;
+mod plain;
 
 use rayon::prelude::*;
 
@@ -14,6 +16,9 @@ use super::{OutputError, Run};
 use crate::plan::{Figure, FigureKind};
 use crate::record::{History, ProcedureRecord};
 use chart::Chart;
+
+pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
+pub use plain::{Curve, Curves, PlainAxis};
 
 /// A figure, drawn.
 pub(super) struct Drawn {
@@ -28,6 +33,17 @@ pub(super) struct Drawn {
 /// it recorded anything has no figure.
 pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
     run.plan.report.figures.par_iter().filter_map(|figure| one(run, *figure)).collect()
+}
+
+/// What the figures of a report plot, in the report's order.
+#[must_use]
+pub fn data(run: &Run<'_>) -> Figures {
+    let one = |figure: &Figure| {
+        let procedure = run.record.procedures.get(figure.procedure.0)?;
+        let (chart, _) = chart_of(run, procedure, *figure)?;
+        Some(data::of(format!("{}_{}", procedure.name, figure.kind.name()), &procedure.name, &chart))
+    };
+    Figures { figures: run.plan.report.figures.iter().filter_map(one).collect(), ..Figures::default() }
 }
 
 fn one(run: &Run<'_>, figure: Figure) -> Option<Result<Drawn, OutputError>> {
