@@ -97,7 +97,8 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
                 Some(Meaning::Block(block)) if checker.scope.blocks[block].procedure.is_some() => block,
                 None if checker.may_be_lost(owner) => return None,
                 _ => {
-                    let known: Vec<&str> = checker.scope.procedures().filter_map(|(_, block)| block.name).map(|n| &*n.node).collect();
+                    let known: Vec<&str> =
+                        checker.scope.procedures().filter_map(|(_, block)| block.name).map(|n| &*n.node).collect();
                     return checker.fail(names::unknown_procedure(owner, base.span, &known));
                 }
             };

@@ -3,7 +3,7 @@
 use super::checker::{Checker, Place, Typed};
 use super::faults::{types, values, whole};
 use crate::formula::Formula;
-use crate::plan::{Interval, Limits};
+use crate::plan::{Interval, Limits, Procedure, ProcedureKind};
 use crate::quantity::Dimension;
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
@@ -159,5 +159,21 @@ pub fn hold_targets(checker: &mut Checker, limits: &CheckedLimits) {
                 checker.faults.push(fault);
             }
         }
+    }
+}
+
+/// Ends of cycles (m), known before the run, against the limits.
+pub fn hold_cycles(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], limits: &CheckedLimits) {
+    let (Some(at), interval) = (limits.displacement_at, limits.limits.displacement) else { return };
+    for (block, procedure) in procedures {
+        let Some(Procedure { kind: ProcedureKind::Cycle(cycle), .. }) = procedure else { continue };
+        let Some(about) = cycle.about.constant() else { continue };
+        let amplitudes = cycle.levels.iter().filter_map(|level| level.amplitude.constant());
+        let mut ends = amplitudes.flat_map(|amplitude| cycle.sides.ends().iter().map(move |end| about + end * amplitude));
+        let Some(beyond) = ends.find(|end| !interval.contains(*end)) else { continue };
+        let given = checker.given(*block, "amplitudes").or_else(|| checker.given(*block, "protocol"));
+        let Some((_, entry)) = given else { continue };
+        let (field, span) = (entry.key.node.as_str(), entry.value.span);
+        checker.faults.push(whole::beyond_limits(field, beyond, Dimension::LENGTH, span, interval, at));
     }
 }

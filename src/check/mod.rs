@@ -5,6 +5,7 @@ mod calendar;
 mod call;
 mod checker;
 mod choice;
+mod cycle;
 mod damping_sweep;
 mod data;
 mod device;
@@ -130,6 +131,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     procedures::hold_specimen(checker, &procedures);
     if let Some(limits) = &limits {
         limits::hold_targets(checker, limits);
+        limits::hold_cycles(checker, &procedures, limits);
     }
     for (block, procedure) in &procedures {
         if let Some(Procedure { kind: ProcedureKind::Impact(impact), .. }) = procedure {

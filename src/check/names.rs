@@ -1,7 +1,7 @@
 //! What a name means where it stands: a sibling field, then a `let`, a `param`, a block; and what is read from a block,
 //! `pendulum.energy`, or from a procedure that ran, `k0.stiffness.u`.
 
-use super::checker::{Checker, Node, Place, Reads, Typed};
+use super::checker::{Checker, Node, Place, Reads, Shape, Typed};
 use super::faults::{names as fault, types, values};
 use super::scope::Meaning;
 use super::{specimen, striker};
@@ -98,7 +98,9 @@ impl<'a> Checker<'a> {
         let declared = &self.scope.blocks[block];
         if let (Some(result), Some(procedure)) = (declared.kind.result(&name.node), declared.procedure) {
             let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
-            return self.reads_allowed(Typed::number(formula, result.dimension, span), span, place);
+            let shape = if result.list { Shape::List } else { Shape::Number };
+            let typed = Typed { shape, ..Typed::number(formula, result.dimension, span) };
+            return self.reads_allowed(typed, span, place);
         }
         if let Some(export) = declared.kind.export(&name.node) {
             let value = match declared.kind.kind {

@@ -2,8 +2,8 @@
 
 use super::checker::Checker;
 use super::faults::{names, whole as fault};
-use super::{damping_sweep, impact, inspect, move_block, stiffness_ramp};
-use crate::plan::{Procedure, ProcedureKind};
+use super::{cycle, damping_sweep, impact, inspect, move_block, stiffness_ramp};
+use crate::plan::Procedure;
 use crate::schema::{self, Kind};
 use crate::source::Span;
 
@@ -19,6 +19,7 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
         Kind::StiffnessRamp => stiffness_ramp::stiffness_ramp(checker, block),
         Kind::DampingSweep => damping_sweep::damping_sweep(checker, block),
         Kind::Impact => impact::impact(checker, block),
+        Kind::Cycle => cycle::cycle(checker, block),
         Kind::Move => move_block::move_block(checker, block),
         _ => inspect::inspect(checker, block),
     };
@@ -27,17 +28,11 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
 
 /// One rig holds one specimen: every procedure must test the one that the first of them tests.
 pub fn hold_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
-    let tested = |kind: &ProcedureKind| match kind {
-        ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
-        ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
-        ProcedureKind::Impact(impact) => Some(impact.specimen),
-        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
-    };
     let mut on_rig: Option<(usize, Span)> = None;
     for (block, procedure) in procedures {
         // Without the first one's specimen nothing can be said of those after it.
         let Some(procedure) = procedure else { return };
-        let Some(specimen) = tested(&procedure.kind) else { continue };
+        let Some(specimen) = procedure.kind.specimen() else { continue };
         let head = checker.scope.blocks[*block].block.head;
         let span = checker.given(*block, "specimen").map_or(head, |(_, entry)| entry.value.span);
         let (first, first_span) = *on_rig.get_or_insert((specimen, span));

@@ -223,6 +223,10 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             calibration.due.is_none(),
         ));
     }
+    if link.readings.resolution == 0.0 {
+        let at = checker.given(block, "resolution").map_or(head, |(_, entry)| entry.value.span);
+        checker.faults.push(fault::resolution_unknown(&rig.plan.name, at));
+    }
     let unpinned = |device: &DeviceLink| device.dialect == Dialect::Native && device.serial_number.is_none();
     let fields = if checker.given(block, "link").is_some() { ["link", "load_cell"] } else { ["actuator", "load_cell"] };
     for (field, device) in fields.into_iter().zip([Some(&link.actuator), link.load_cell.as_ref()]) {

@@ -67,8 +67,8 @@ fn figure(checker: &mut Checker, written: &Expr, procedures: &[Option<Procedure>
             _ => checker.fail(types::figure_wanted(written.span, checker.text(written.span))),
         };
     };
-    let Some(kind) = ALL.into_iter().find(|kind| kind.name() == name.node) else {
-        return checker.fail(names::unknown_figure(&name.node, name.span, ALL.map(FigureKind::name)));
+    let Some(kind) = FigureKind::ALL.into_iter().find(|kind| kind.name() == name.node) else {
+        return checker.fail(names::unknown_figure(&name.node, name.span, FigureKind::ALL.map(FigureKind::name)));
     };
     let [argument] = arguments.as_slice() else {
         return checker.fail(types::figure_wanted(written.span, checker.text(written.span)));
@@ -101,13 +101,3 @@ fn figure(checker: &mut Checker, written: &Expr, procedures: &[Option<Procedure>
     }
     Some(Figure { kind, procedure })
 }
-
-const ALL: [FigureKind; 7] = [
-    FigureKind::Displacement,
-    FigureKind::StrikerVelocity,
-    FigureKind::Velocity,
-    FigureKind::ContactForce,
-    FigureKind::ForceDisplacement,
-    FigureKind::Energy,
-    FigureKind::DampingFit,
-];

@@ -1,10 +1,14 @@
 //! The command line as it is typed. In: words. Out: [`Arguments`], shapes checked, meaning not.
 
+mod evidence;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::diagnostic::excerpt::escape;
+
+pub use evidence::{KeygenArguments, ReportArguments, SignArguments, VerifyArguments};
 
 /// Pseudo-dynamic structural tests, from a plan to a certificate.
 #[derive(Debug, Parser)]
@@ -26,13 +30,12 @@ pub enum Command {
     Resume(ResumeArguments),
     /// Makes the results of a run anew, from its record alone; nothing moves and nothing is overwritten
     Report(ReportArguments),
-    /// Proves that a run's record, targets and files belong together; nothing moves
-    #[command(after_help = "Exit codes: 0 all is proven, 3 something is not.")]
-    Verify {
-        /// The run folder
-        #[arg(value_name = "RUN")]
-        run: PathBuf,
-    },
+    /// Proves that a run's record, targets and files belong together, and who signed them; nothing moves
+    Verify(VerifyArguments),
+    /// Signs a run folder that verifies
+    Sign(SignArguments),
+    /// Makes a pair of keys to sign with
+    Keygen(KeygenArguments),
     /// Shows everything wrong with plans; nothing moves
     Check(CheckArguments),
     /// Writes plans in the canonical layout
@@ -235,16 +238,6 @@ pub struct ResumeArguments {
     /// Answers routine questions with yes
     #[arg(long)]
     pub yes: bool,
-}
-
-#[derive(Debug, Args)]
-pub struct ReportArguments {
-    /// The run folder
-    #[arg(value_name = "RUN")]
-    pub run: PathBuf,
-    /// Where the results go, a new or empty folder [default: the run folder, if it has none]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -9,7 +9,7 @@ use super::exit::Exit;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
-use crate::plan::{Interval, Link, Plan, ProcedureKind, VirtualLink};
+use crate::plan::{Interval, Link, Plan, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::{digits, join, readable, significant, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
@@ -28,12 +28,7 @@ pub enum Explained<'a> {
 impl<'a> Explained<'a> {
     /// Runs the plan dry, where the specimen that it tests has a behaviour or none is tested.
     pub fn of(plan: &'a Plan) -> Self {
-        let tested = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
-            ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
-            ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
-            ProcedureKind::Impact(impact) => Some(impact.specimen),
-            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
-        });
+        let tested = plan.procedures.iter().find_map(|procedure| procedure.kind.specimen());
         match tested.or(Some(0)).and_then(|place| plan.specimens.get(place)) {
             Some(specimen) if specimen.behaviour.is_none() => Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name },
             _ => Self::Dry(Box::new(DryRun::of(plan))),

@@ -1,12 +1,14 @@
 //! The program around the pipeline: arguments → settings → one file a command → exit code. The only folder that
 //! reads files, the terminal and the environment, and that writes anything.
 
+mod amend;
 mod args;
 mod bless;
 mod check;
 mod columns;
 mod conclude;
 mod dry_rig;
+mod evidence;
 mod exit;
 mod explain;
 mod explain_plan;
@@ -26,6 +28,7 @@ mod run;
 mod run_folder;
 mod screen;
 mod settings;
+mod sign;
 mod verify;
 mod watch;
 
@@ -54,7 +57,9 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
         args::Command::Run(arguments) => run::run(arguments, settings),
         args::Command::Resume(arguments) => resume::resume(arguments, settings),
         args::Command::Report(arguments) => report::report(arguments, settings),
-        args::Command::Verify { run } => verify::verify(run, settings),
+        args::Command::Verify(arguments) => verify::verify(arguments, settings),
+        args::Command::Sign(arguments) => sign::sign(arguments, settings),
+        args::Command::Keygen(arguments) => sign::keygen(arguments, settings),
         args::Command::Check(arguments) => check::check(arguments, settings),
         args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),
         args::Command::Explain { code } => explain::explain(code.as_deref(), settings),

@@ -1,45 +1,66 @@
 //! `psd report RUN`: the results anew, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
-//! for byte, into a folder that has none. It opens no rig and changes no record.
+//! for byte, into a folder that has none; with an amendment, a report of its own beside the one it takes the place of. It
+//! opens no rig, changes no record and overwrites nothing.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::amend::amend;
 use super::args::ReportArguments;
-use super::conclude::conclude_into;
+use super::conclude::write_results;
+use super::evidence::{AMENDMENT, AmendmentFile, Folder, PlayedBack};
 use super::exit::{Exit, Failure};
 use super::loader::plain;
-use super::output::give;
-use super::record_file;
+use super::output::{give, tell};
+use super::record_file::{self, JOURNAL};
 use super::run_folder::RunFolder;
 use super::settings::Settings;
-use crate::record::Outcome;
-use crate::run::tape::{self, CUT_OFF, Recorded, Replayed};
+use crate::output::{self, Run};
 
 /// Makes the results of one run.
 pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
-    let run = &arguments.run;
-    let read = record_file::read(run)?;
-    let Replayed { mut record, mismatch } = tape::replay(&read.plan, read.played);
-    if let Outcome::Faulted { reason } | Outcome::Aborted { reason } = &mut record.outcome
-        && reason.contains(CUT_OFF)
-    {
-        *reason = format!("INCOMPLETE: {reason}");
+    if arguments.amend {
+        return amend(arguments, settings);
     }
-    let recorded = Recorded { record, mismatch, fault: None, sealed: None };
+    let run = &arguments.run;
+    let kept = Folder::read(run)?;
+    let amendment = kept.bytes(AMENDMENT).map(AmendmentFile::read).transpose();
+    let amendment = amendment.map_err(|fault| Failure::file(run.join(AMENDMENT), fault))?;
+    let played = PlayedBack::of(record_file::read(run)?, amendment.as_ref()).map_err(|fault| Failure::file(run, fault))?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,
     };
-    let (exit, _) = conclude_into(run, &folder, &read.plan, &read.provenance, &recorded, settings)?;
+    let beside = kept.files.get(AMENDMENT).map(|held| (AMENDMENT.to_owned(), held.digest.clone()));
+    let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
+    let exit = conclude_played(&folder, &played, &beside, settings)?;
     give(&format!("{}\n", folder.display()))?;
     Ok(exit)
 }
 
+/// Tells the verdict of a record played back, and writes its results.
+pub fn conclude_played(
+    folder: &Path,
+    played: &PlayedBack,
+    beside: &[(String, String)],
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let PlayedBack { plan, provenance, record, assessment, mismatch, steps } = played;
+    if steps.is_none() {
+        tell(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color));
+    }
+    write_results(folder, &played.results()?, beside)?;
+    let exit = Exit::from(assessment.verdict);
+    let Some(mismatch) = mismatch else { return Ok(exit) };
+    tell(&format!("  the record does not fit the plan: {mismatch}\n"));
+    Ok(exit.max(Exit::Fault))
+}
+
 /// The run folder itself, if nothing but the record lies in it.
-fn without_results(run: &Path) -> Result<std::path::PathBuf, Failure> {
+fn without_results(run: &Path) -> Result<PathBuf, Failure> {
     let failed = |error: std::io::Error| Failure::file(run, plain(&error));
     for entry in std::fs::read_dir(run).map_err(failed)? {
         let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
-        if !name.starts_with("journal.") && !name.starts_with("before-resume-") {
+        if !name.starts_with(JOURNAL) && !name.starts_with("before-resume-") && name != AMENDMENT {
             return Err(
                 Failure::file(run, format!("has results already, such as `{name}`")).help("name a new folder with `--out`")
             );

@@ -1,147 +1,41 @@
 //! `psd verify RUN`: the record is whole and in order; the run, done again from the recorded readings, asks for the very
-//! same targets; and every file of the folder is the one its manifest names. Moves nothing, writes nothing.
+//! same targets and gives the very same results; every file of the folder is the one its manifest names; and who has
+//! signed it. Moves nothing, writes nothing.
 
-use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::{Component, Path};
+use std::path::Path;
 
+use super::args::VerifyArguments;
+use super::evidence::{Finding, Folder, Rebuilt, examine, keys};
 use super::exit::{Exit, Failure};
-use super::loader::plain;
 use super::output::give;
-use super::provenance::sha256;
-use super::record_file::{self, JOURNAL};
+use super::record_file::{JOURNAL, journal_of};
 use super::settings::Settings;
-use crate::diagnostic::excerpt::escape;
-use crate::record::Outcome;
-use crate::record::journal::EntryKind;
-use crate::run::tape;
-
-/// The largest file of a run folder that is read, bytes.
-const LISTED_BYTES: u64 = 1 << 30;
-
-/// What one part of the proof says.
-struct Finding {
-    part: &'static str,
-    fault: Option<String>,
-    told: String,
-}
-
-impl Finding {
-    fn sound(part: &'static str, told: String) -> Self {
-        Self { part, fault: None, told }
-    }
-
-    fn wrong(part: &'static str, fault: String) -> Self {
-        Self { part, told: fault.clone(), fault: Some(fault) }
-    }
-}
+use crate::diagnostic::excerpt::one_line;
 
 /// Proves what can be proven of a run folder.
-pub fn verify(run: &Path, settings: Settings) -> Result<Exit, Failure> {
-    let mut findings = Vec::new();
-    match record_file::read(run) {
-        Err(Failure::File { path, reason, help }) if !path.exists() => return Err(Failure::File { path, reason, help }),
-        Err(failure) => findings.push(Finding::wrong("record", failure.to_string())),
-        Ok(read) => record(read, &mut findings),
+pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {
+    let folder = Folder::read(&arguments.run)?;
+    if !folder.files.contains_key(JOURNAL) {
+        return Err(Failure::file(journal_of(&arguments.run), "no such file").help("a run folder is told by its record"));
     }
-    findings.push(files(run)?);
+    let keys = arguments.key.iter().map(|path| keys::public(path)).collect::<Result<Vec<_>, _>>()?;
+    let findings = examine(&folder, &Rebuilt::of(&folder), &keys);
     let mut text = String::new();
     for finding in &findings {
-        let word = if finding.fault.is_some() { settings.paint_bad("WRONG") } else { "ok".to_owned() };
-        let _ = writeln!(text, "  {:<9}{word}  {}", finding.part, escape(&finding.told));
+        let word = if finding.sound { "ok".to_owned() } else { settings.paint_bad("WRONG") };
+        let _ = writeln!(text, "  {:<11}  {word}  {}", finding.part, one_line(&finding.told));
     }
     give(&text)?;
-    Ok(if findings.iter().any(|finding| finding.fault.is_some()) { Exit::Fault } else { Exit::Met })
+    Ok(if findings.iter().all(|finding| finding.sound) { Exit::Met } else { Exit::Fault })
 }
 
-fn record(read: record_file::ReadRecord, findings: &mut Vec<Finding>) {
-    let record_file::ReadRecord { recovered, played, plan, provenance } = read;
-    let count = |kind| recovered.lines.iter().filter(|line| line.kind == kind).count();
-    let (targets, steps) = (count(EntryKind::Intent), count(EntryKind::Step));
-    let torn = recovered.torn.as_ref().map_or(String::new(), |torn| format!(", {} bytes torn at its end", torn.end - torn.start));
-    let whole = format!("run {}, {} records{torn}, head {}", provenance.run_id, recovered.lines.len(), recovered.head());
-    findings.push(Finding::sound("record", whole));
-    let ended = played.ended;
-    let build = played.header.build.clone();
-    let replayed = tape::replay(&plan, played);
-    let built = if build == record_file::BUILD { "" } else { " by another build of psd" };
-    findings.push(match (replayed.mismatch, &replayed.record.outcome) {
-        (Some(mismatch), _) => Finding::wrong("targets", mismatch.to_string()),
-        (None, Outcome::Completed) if ended => {
-            Finding::sound("targets", format!("all {targets} came out again bit for bit, and {steps} steps{built}"))
+/// Nobody signs or amends what does not verify.
+pub fn refuse_unproven(run: &Path, findings: &[Finding]) -> Result<(), Failure> {
+    match findings.iter().find(|finding| !finding.sound) {
+        Some(finding) => {
+            Err(Failure::file(run, format!("does not verify: {}: {}", finding.part, finding.told)).help("see `psd verify`"))
         }
-        (None, Outcome::Completed) => Finding::wrong("targets", "the run came to its end, and the record has none".to_owned()),
-        (None, _) if ended => Finding::wrong("targets", "the record has an end that the run does not come to".to_owned()),
-        (None, Outcome::Aborted { reason } | Outcome::Faulted { reason }) => {
-            Finding::sound("targets", format!("all {targets} came out again bit for bit; INCOMPLETE: {reason}{built}"))
-        }
-    });
-}
-
-/// A file that a manifest names: a regular one inside the folder, through no link. Manifests may come from anybody.
-fn listed(run: &Path, name: &str) -> std::io::Result<Vec<u8>> {
-    let refused = |reason: &str| std::io::Error::new(std::io::ErrorKind::InvalidInput, reason);
-    let mut path = run.to_owned();
-    let mut metadata = None;
-    for part in Path::new(name).components() {
-        let Component::Normal(part) = part else { return Err(refused("lies outside the folder")) };
-        path.push(part);
-        metadata = Some(std::fs::symlink_metadata(&path)?);
-        if metadata.as_ref().is_some_and(std::fs::Metadata::is_symlink) {
-            return Err(refused("is a link"));
-        }
-    }
-    match metadata {
-        Some(metadata) if metadata.is_file() && metadata.len() <= LISTED_BYTES => std::fs::read(path),
-        Some(metadata) if metadata.is_file() => Err(refused("is larger than any run's")),
-        _ => Err(refused("is no file")),
-    }
-}
-
-/// Every file of the folder against its manifest.
-fn files(run: &Path) -> Result<Finding, Failure> {
-    let path = run.join("manifest.sha256");
-    let manifest = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return Ok(Finding::sound("files", "no results yet: there is no manifest".to_owned()));
-        }
-        Err(error) => return Err(Failure::file(path, plain(&error))),
-    };
-    let mut named = BTreeSet::from(["manifest.sha256".to_owned()]);
-    for line in manifest.lines() {
-        let Some((hash, name)) = line.split_once("  ") else {
-            return Ok(Finding::wrong("files", "the manifest is no list of digests".to_owned()));
-        };
-        named.insert(name.to_owned());
-        match listed(run, name) {
-            Ok(bytes) if sha256(&bytes) == hash => {}
-            Ok(_) => return Ok(Finding::wrong("files", format!("`{name}` is not the one of the manifest"))),
-            Err(error) => return Ok(Finding::wrong("files", format!("`{name}`: {}", plain(&error)))),
-        }
-    }
-    if !named.contains(JOURNAL) {
-        return Ok(Finding::wrong("files", "the manifest does not name the record".to_owned()));
-    }
-    Ok(Finding::sound("files", format!("all {} are those of the manifest", named.len() - 1)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_manifest_leads_nowhere_outside_its_folder() {
-        let root = tempfile::tempdir().unwrap();
-        let run = root.path().join("run");
-        std::fs::create_dir(&run).unwrap();
-        std::fs::write(root.path().join("secret"), "x").unwrap();
-        std::fs::write(run.join("own"), "x").unwrap();
-        std::os::unix::fs::symlink(root.path(), run.join("link")).unwrap();
-        assert_eq!(listed(&run, "own").unwrap(), b"x");
-        let absolute = root.path().join("secret").display().to_string();
-        for name in ["../secret", "link/secret", "link", "", ".", absolute.as_str()] {
-            assert!(listed(&run, name).is_err(), "{name}");
-        }
+        None => Ok(()),
     }
 }

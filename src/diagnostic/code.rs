@@ -93,6 +93,8 @@ codes! {
     E614 FieldWithoutUse Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
+    E646 RateWithoutSpeed Error;
+    E647 NoUseWithRate Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -103,6 +105,7 @@ codes! {
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
     W710 WideTolerance Warning;
+    W711 ResolutionUnknown Warning;
 }
 
 impl std::fmt::Display for Code {

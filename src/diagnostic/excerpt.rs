@@ -181,6 +181,12 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
+/// [`escape`] for what must stay on its line: newlines become `\u{a}`.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    escape(text).replace('\n', "\\u{a}")
+}
+
 fn push_escaped(text: &mut String, character: char, keep_tab: bool) {
     let steers = character.is_control()
         || matches!(character, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{e0000}'..='\u{e007f}');

@@ -43,7 +43,11 @@ fn figure(was: &FigureData, is: &FigureData, tolerances: &Tolerances, found: &mu
     let axis = |unit: &str, pick: fn(&(f64, f64)) -> f64| {
         let dimension = unit::parse(unit).map_or(Dimension::NUMBER, |unit| unit.dimension);
         let points = was.curves.iter().chain(&is.curves).flat_map(FigureCurve::points);
-        Axis { dimension, rule: tolerances.axis(&was.procedure, dimension), scale: number::scale(points.map(|point| pick(&point))) }
+        Axis {
+            dimension,
+            rule: tolerances.axis(&was.procedure, dimension),
+            scale: number::scale(points.map(|point| pick(&point))),
+        }
     };
     let (x, y) = (axis(&was.x.unit, |point| point.0), axis(&was.y.unit, |point| point.1));
     if was.curves.len() != is.curves.len() {
@@ -140,8 +144,14 @@ mod tests {
         let was = figures(&line(10.0), "force, K = 3.1 kN/m");
         assert_eq!(findings(&was, &figures(&line(10.0 + 9e-9), "force, K = 3.2 kN/m")), Vec::<String>::new());
         // The peak is no point that a thinned curve would keep by its place.
-        assert_eq!(findings(&was, &figures(&line(10.0 + 11e-9), "force, K = 3.1 kN/m")), ["figure hit_force, force, K = 3.1 kN/m: y"]);
-        assert_eq!(findings(&was, &figures(&line(10.0), "power, K = 3.1 kN/m")), ["figure hit_force, force, K = 3.1 kN/m: words"]);
+        assert_eq!(
+            findings(&was, &figures(&line(10.0 + 11e-9), "force, K = 3.1 kN/m")),
+            ["figure hit_force, force, K = 3.1 kN/m: y"]
+        );
+        assert_eq!(
+            findings(&was, &figures(&line(10.0), "power, K = 3.1 kN/m")),
+            ["figure hit_force, force, K = 3.1 kN/m: words"]
+        );
         assert_eq!(findings(&was, &figures(&line(10.0)[1..], "force, K = 3.1 kN/m")), ["figure hit_force, force, K = 3.1 kN/m"]);
         assert_eq!(findings(&was, &Truth::default()), ["figures.json"]);
     }

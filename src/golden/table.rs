@@ -164,7 +164,10 @@ mod tests {
         assert_eq!(findings(&OLD.replace("free,1,", "free,1.0000009,")), []);
         let found = findings(&OLD.replace("free,1,", "free,1.0000011,").replace("free,-3", "free,-3.5"));
         let [Finding { name, change: Change::Moved(moved), .. }] = found.as_slice() else { panic!("{found:?}") };
-        assert_eq!((name.as_str(), moved.dimension, moved.was, moved.is), ("hit.restoring_force_n", Dimension::FORCE, Some(-3.0), Some(-3.5)));
+        assert_eq!(
+            (name.as_str(), moved.dimension, moved.was, moved.is),
+            ("hit.restoring_force_n", Dimension::FORCE, Some(-3.0), Some(-3.5))
+        );
         assert_eq!((moved.count, moved.scale), (Some(Count { moved: 2, of: 3 }), 1000.0));
         assert_eq!(moved.first, Some(Place { row: 0, step: Some(0), time: Some(0.0) }));
         assert_eq!(moved.largest, Some(Place { row: 2, step: Some(2), time: Some(0.2) }));
@@ -173,17 +176,18 @@ mod tests {
     #[test]
     fn words_rows_columns_and_empty_cells_count() {
         let change = |new: &str| findings(new).into_iter().map(|finding| (finding.name, finding.change)).collect::<Vec<_>>();
-        let [(name, Change::Text { was, is, first: Some((place, count)) })] = &change(&OLD.replace("contact", "limit"))[..] else {
+        let [(name, Change::Text { was, is, first: Some((place, count)) })] = &change(&OLD.replace("contact", "limit"))[..]
+        else {
             panic!("one text")
         };
         assert_eq!((name.as_str(), was.as_str(), is.as_str(), place.step), ("hit.state", "contact", "limit", Some(1)));
         assert_eq!(*count, Count { moved: 1, of: 3 });
         let rows = Change::Length { of: "rows", was: 3, is: 4 };
         assert_eq!(change(&format!("{OLD}3,0.3,free,0,1\n")), [("table of hit".to_owned(), rows)]);
-        assert_eq!(change(&OLD.replace("tangent", "other")), [
-            ("hit.tangent".to_owned(), Change::Gone),
-            ("hit.other".to_owned(), Change::New)
-        ]);
+        assert_eq!(
+            change(&OLD.replace("tangent", "other")),
+            [("hit.tangent".to_owned(), Change::Gone), ("hit.other".to_owned(), Change::New)]
+        );
         let [(_, Change::Moved(moved))] = &change(&OLD.replace("free,1,", "free,1,7"))[..] else { panic!("one number came") };
         assert_eq!((moved.was, moved.is), (None, Some(7.0)));
     }

@@ -24,9 +24,9 @@ impl Words {
         let (change, by, detail) = match &finding.change {
             Change::Moved(moved) => (pair(moved), by(moved), detail(moved)),
             Change::Text { was, is, first } => {
-                let detail = first.as_ref().map_or_else(String::new, |(at, count)| {
-                    format!("first at {}; {}", place(*at), of(*count, "rows"))
-                });
+                let detail = first
+                    .as_ref()
+                    .map_or_else(String::new, |(at, count)| format!("first at {}; {}", place(*at), of(*count, "rows")));
                 (texts(was, is), String::new(), detail)
             }
             Change::Gone => ("blessed, and not there any more".to_owned(), String::new(), String::new()),
@@ -94,7 +94,9 @@ fn detail(moved: &Moved) -> String {
             parts.push(format!("largest at {}, first at {}", place(largest), place(first)));
         }
     }
-    parts.extend(moved.count.map(|count| of(count, if moved.first.is_some_and(|at| at.step.is_some()) { "rows" } else { "points" })));
+    parts.extend(
+        moved.count.map(|count| of(count, if moved.first.is_some_and(|at| at.step.is_some()) { "rows" } else { "points" })),
+    );
     parts.push(format!("tolerance {}", tolerance(moved)));
     parts.join("; ")
 }
@@ -106,7 +108,11 @@ fn tolerance(moved: &Moved) -> String {
         return readable(moved.rule.absolute, moved.dimension);
     }
     let share = moved.rule.relative;
-    let share = if share >= 1e-5 { format!("{} %", trimmed(&significant(100.0 * share, 3))) } else { minus(&trimmed(&format!("{share:.2e}"))) };
+    let share = if share >= 1e-5 {
+        format!("{} %", trimmed(&significant(100.0 * share, 3)))
+    } else {
+        minus(&trimmed(&format!("{share:.2e}")))
+    };
     if moved.count.is_some() {
         format!("{share} of the largest, {}", readable(moved.scale, moved.dimension))
     } else {

@@ -2,13 +2,17 @@
 
 pub mod beam;
 pub mod contact;
+pub mod cyclic;
 pub mod damping;
 pub mod energy;
+pub mod frame;
 pub mod identification;
 pub mod impact;
 pub mod integrator;
 pub mod law;
+pub mod method;
 pub mod specimen;
 pub mod summary;
+pub mod tangent;
 
 pub use integrator::critical_time_step;

@@ -1,6 +1,7 @@
 //! Pure functions of (plan, record, assessment): tables, figures, summary, certificate, console text. They return
 //! bytes; only `cli` writes files. Knows no clock, no file, no environment: the same run gives the same bytes.
 
+mod amendment;
 mod certificate;
 pub mod console;
 mod deviations;
@@ -17,6 +18,8 @@ use crate::plan::{Format, Plan};
 use crate::record::Record;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
+
+pub use amendment::{Amendment, Amends, Change};
 
 /// Everything an output is made from.
 #[derive(Clone, Copy)]
@@ -39,9 +42,17 @@ pub struct Provenance {
     pub date: Option<String>,
     /// Of a run on a real rig.
     pub real: Option<RealRun>,
+    /// Of a report that takes the place of another.
+    pub amends: Option<Amends>,
 }
 
 impl Provenance {
+    /// The id of the report: that of its run, but of an amendment its own.
+    #[must_use]
+    pub fn report_id(&self) -> &str {
+        self.amends.as_ref().map_or(&self.run_id, |amends| &amends.report_id)
+    }
+
     /// Who stood by, as the record says.
     #[must_use]
     pub fn operator(&self) -> Option<&str> {

@@ -48,6 +48,35 @@ pub struct Summary {
     pub parameters: Ordered<ParameterSummary>,
     /// What departed from the plan as written.
     pub deviations: Vec<String>,
+    /// Only of a report that takes the place of another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub amends: Option<AmendsSummary>,
+}
+
+/// What makes a report an amendment.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct AmendsSummary {
+    /// Id of this report.
+    pub report_id: String,
+    /// Every amendment up to this report, in order.
+    pub amendments: Vec<AmendmentSummary>,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct AmendmentSummary {
+    /// Id of the report that it takes the place of.
+    pub replaces: String,
+    pub by: String,
+    pub reason: String,
+    pub changes: Vec<ChangeSummary>,
+}
+
+/// A particular of the plan that is told otherwise; empty: not given.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ChangeSummary {
+    pub field: &'static str,
+    pub was: String,
+    pub is: String,
 }
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]

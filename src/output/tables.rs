@@ -1,6 +1,8 @@
 //! Tables: one row a step, SI, the column names of the language. In: the record. Out: CSV with shortest round-trip
 //! numbers and Parquet (zstd), both from one Polars frame. Knows nothing of units for people.
 
+mod cyclic;
+
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
 
 use super::{OutputError, OutputFile, Run, wants};
@@ -13,16 +15,25 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let mut files = Vec::new();
     for procedure in &run.record.procedures {
         let failed = |error: PolarsError| OutputError::Table { procedure: procedure.name.clone(), reason: error.to_string() };
-        let Some(mut frame) = frame(procedure).map_err(failed)? else { continue };
-        if wants(run.plan, Format::Csv) {
-            files.push(OutputFile { path: format!("tables/{}.csv", procedure.name), bytes: csv(&mut frame).map_err(failed)? });
-        }
-        if wants(run.plan, Format::Parquet) {
-            let bytes = parquet(&mut frame).map_err(failed)?;
-            files.push(OutputFile { path: format!("tables/{}.parquet", procedure.name), bytes });
+        let Some(frame) = frame(procedure).map_err(failed)? else { continue };
+        written(run, &procedure.name, frame, &mut files).map_err(failed)?;
+        if let History::Cycle(history) = &procedure.history {
+            let cycles = cyclic::cycles(history).map_err(failed)?;
+            written(run, &format!("{}_cycles", procedure.name), cycles, &mut files).map_err(failed)?;
         }
     }
     Ok(files)
+}
+
+/// One table in the formats the plan asks for.
+fn written(run: &Run<'_>, name: &str, mut frame: DataFrame, files: &mut Vec<OutputFile>) -> Result<(), PolarsError> {
+    if wants(run.plan, Format::Csv) {
+        files.push(OutputFile { path: format!("tables/{name}.csv"), bytes: csv(&mut frame)? });
+    }
+    if wants(run.plan, Format::Parquet) {
+        files.push(OutputFile { path: format!("tables/{name}.parquet"), bytes: parquet(&mut frame)? });
+    }
+    Ok(())
 }
 
 /// The targets of a client that drove the rig, and what was read there.
@@ -59,6 +70,7 @@ fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> 
         History::Move(steps) => (steps.len(), ramp(steps)),
         History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
         History::Impact(history) => (history.steps.len(), impact(&history.steps)),
+        History::Cycle(history) => (history.steps.len(), cyclic::steps(&history.steps)),
         History::Inspect => return Ok(None),
     };
     DataFrame::new(height, columns).map(Some)

@@ -1,13 +1,17 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod cycle;
 mod golden;
+mod integrator;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
+pub use integrator::Integrator;
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -177,6 +181,7 @@ pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
     DampingSweep(DampingSweep),
     Impact(Impact),
+    Cycle(Cycle),
     Move(Move),
     /// A person looks at the specimen.
     Inspect {
@@ -192,8 +197,21 @@ impl ProcedureKind {
             Self::StiffnessRamp(_) => "stiffness ramp",
             Self::DampingSweep(_) => "damping sweep",
             Self::Impact(_) => "impact",
+            Self::Cycle(_) => "cycle",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
+        }
+    }
+
+    /// What is tested, as an index into `Plan::specimens`; None of what only moves or looks.
+    #[must_use]
+    pub const fn specimen(&self) -> Option<usize> {
+        match self {
+            Self::StiffnessRamp(ramp) => Some(ramp.specimen),
+            Self::DampingSweep(sweep) => Some(sweep.specimen),
+            Self::Impact(impact) => Some(impact.specimen),
+            Self::Cycle(cycle) => Some(cycle.specimen),
+            Self::Move(_) | Self::Inspect { .. } => None,
         }
     }
 }
@@ -369,9 +387,29 @@ pub enum FigureKind {
     ForceDisplacement,
     Energy,
     DampingFit,
+    /// Largest forces against the displacements of them, amplitude by amplitude.
+    Backbone,
+    /// Energy of each cycle.
+    CycleEnergy,
+    /// Secant stiffness of each cycle.
+    StiffnessDegradation,
 }
 
 impl FigureKind {
+    /// Every figure there is, in the order of the reference.
+    pub const ALL: [Self; 10] = [
+        Self::Displacement,
+        Self::StrikerVelocity,
+        Self::Velocity,
+        Self::ContactForce,
+        Self::ForceDisplacement,
+        Self::Energy,
+        Self::DampingFit,
+        Self::Backbone,
+        Self::CycleEnergy,
+        Self::StiffnessDegradation,
+    ];
+
     /// Name in `figures = [...]` and in file names.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -383,6 +421,9 @@ impl FigureKind {
             Self::ForceDisplacement => "force_displacement",
             Self::Energy => "energy",
             Self::DampingFit => "damping_fit",
+            Self::Backbone => "backbone",
+            Self::CycleEnergy => "cycle_energy",
+            Self::StiffnessDegradation => "stiffness_degradation",
         }
     }
 
@@ -400,6 +441,7 @@ impl FigureKind {
                 Self::ForceDisplacement,
                 Self::Energy,
             ],
+            ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }

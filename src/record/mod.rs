@@ -1,6 +1,7 @@
 //! The record of a run: everything that happened, typed, SI. `run` writes it; verdict, tables, figures and
 //! certificates are functions of it.
 
+mod cycle;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ use crate::mechanics::energy::Energies;
 pub use crate::mechanics::identification::LineFit;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
+pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -91,6 +93,7 @@ pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),
     Impact(ImpactHistory),
+    Cycle(CycleHistory),
     Move(Vec<RampStep>),
     Inspect,
 }

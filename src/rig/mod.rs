@@ -84,6 +84,14 @@ pub struct Tally {
     pub reread: u64,
 }
 
+impl Tally {
+    /// Both counts together.
+    #[must_use]
+    pub const fn plus(self, other: Self) -> Self {
+        Self { resent: self.resent + other.resent, ignored: self.ignored + other.ignored, reread: self.reread + other.reread }
+    }
+}
+
 impl std::fmt::Display for Tally {
     /// Only what is not zero.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -7,7 +7,7 @@ use super::settling::{Unsettled, settling_time};
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::{Behaviour, Plan, ProcedureKind, Settle, Specimen, VirtualLink};
+use crate::plan::{Behaviour, Plan, Settle, Specimen, VirtualLink};
 
 /// Speed of a move for which none is asked, m/s: that of a slow quasi-static test.
 pub const OWN_SPEED: f64 = 1e-3;
@@ -72,12 +72,7 @@ impl VirtualRig {
     /// The specimen that stands on the plan's rig: the one that the first procedure names, else the first.
     #[must_use]
     pub fn specimen_of(plan: &Plan) -> Option<&Specimen> {
-        let named = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
-            ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
-            ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
-            ProcedureKind::Impact(impact) => Some(impact.specimen),
-            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
-        });
+        let named = plan.procedures.iter().find_map(|procedure| procedure.kind.specimen());
         plan.specimens.get(named.unwrap_or(0))
     }
 

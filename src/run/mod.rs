@@ -1,5 +1,8 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
+mod cycle;
+#[cfg(test)]
+mod cycle_tests;
 mod damping_sweep;
 pub mod driven;
 mod gate;
@@ -14,6 +17,7 @@ mod request;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
+mod samples;
 mod session;
 mod stiffness_ramp;
 mod stop;
@@ -191,6 +195,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
+        ProcedureKind::Cycle(cycling) => cycle::perform(cycling, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),
     }

@@ -220,6 +220,7 @@ fn steps(kind: &ProcedureKind) -> Option<u64> {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
             Some(ratio.ceil() as u64)
         }
+        ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
     }

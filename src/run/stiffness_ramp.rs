@@ -5,6 +5,7 @@
 use super::Performed;
 use super::inputs::Inputs;
 use super::results::{largest, measured, result};
+use super::samples::{mean, scatter};
 use super::session::Session;
 use super::stop::Stop;
 use crate::mechanics::identification::{fit_line, loop_energy};
@@ -126,19 +127,4 @@ const fn point(step: &RampStep) -> Point {
 pub(super) fn secant(from: Point, to: Point) -> Option<f64> {
     let motion = to.0 - from.0;
     (motion != 0.0).then(|| (to.1 - from.1) / motion)
-}
-
-#[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len();
-    values.sum::<f64>() / count as f64
-}
-
-/// Standard deviation of the samples; 0 for one.
-#[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
-fn scatter(values: impl ExactSizeIterator<Item = f64>, mean: f64) -> f64 {
-    match values.len() {
-        0 | 1 => 0.0,
-        count => (values.map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1) as f64).sqrt(),
-    }
 }

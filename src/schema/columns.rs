@@ -35,8 +35,7 @@ const RAMP: &[Column] = &[
     TANGENT_STIFFNESS,
 ];
 
-const SWEEP: &[Column] =
-    &[STEP, WALL_TIME, VELOCITY, DISPLACEMENT, RESTORING_FORCE, column("damping_force_n", Dimension::FORCE)];
+const SWEEP: &[Column] = &[STEP, WALL_TIME, VELOCITY, DISPLACEMENT, RESTORING_FORCE, column("damping_force_n", Dimension::FORCE)];
 
 const IMPACT: &[Column] = &[
     STEP,
@@ -61,13 +60,35 @@ const IMPACT: &[Column] = &[
     column("energy_error_j", Dimension::ENERGY),
 ];
 
-/// The numeric columns of a procedure's table, in its order; none where it has no table.
+/// Of its readings, and of its whole cycles.
+const CYCLE: &[Column] = &[
+    STEP,
+    WALL_TIME,
+    column("cycle", Dimension::NUMBER),
+    column("amplitude_m", Dimension::LENGTH),
+    COMMAND,
+    DISPLACEMENT,
+    RESTORING_FORCE,
+    column("force_scatter_n", Dimension::FORCE),
+    column("relaxation_n", Dimension::FORCE),
+    column("restoring_energy_j", Dimension::ENERGY),
+    column("repeat", Dimension::NUMBER),
+    column("measured_amplitude_m", Dimension::LENGTH),
+    column("energy_j", Dimension::ENERGY),
+    column("equivalent_damping_ratio", Dimension::NUMBER),
+    column("secant_stiffness_n_per_m", Dimension::STIFFNESS),
+    column("max_force_n", Dimension::FORCE),
+    column("min_force_n", Dimension::FORCE),
+];
+
+/// The numeric columns of a procedure's tables, in their order; none where it has none.
 #[must_use]
 pub const fn columns(kind: Kind) -> &'static [Column] {
     match kind {
         Kind::StiffnessRamp | Kind::Move => RAMP,
         Kind::DampingSweep => SWEEP,
         Kind::Impact => IMPACT,
+        Kind::Cycle => CYCLE,
         _ => &[],
     }
 }

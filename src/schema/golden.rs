@@ -17,7 +17,8 @@ const NEAR_RESULT: &[Variant] = &[Variant::with(
 const NEAR_COLUMN: &[Variant] = &[Variant::with(
     "near",
     &[
-        Field::of_type("column", FieldType::ColumnName, "the column, of one procedure or of all").required("hit.restoring_force_n"),
+        Field::of_type("column", FieldType::ColumnName, "the column, of one procedure or of all")
+            .required("hit.restoring_force_n"),
         WITHIN,
     ],
     "a tolerance of its own",

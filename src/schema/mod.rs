@@ -2,6 +2,7 @@
 //! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
 
 mod columns;
+mod cyclic;
 mod declarations;
 mod devices;
 mod functions;
@@ -31,13 +32,13 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::STIFFNESS_RAMP,
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
+    &cyclic::CYCLE,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
     &golden::GOLDEN,
     &later::GROUND,
     &later::SHAKE,
-    &later::CYCLE,
     &later::STUDY,
 ];
 

@@ -13,6 +13,7 @@ pub enum Kind {
     StiffnessRamp,
     DampingSweep,
     Impact,
+    Cycle,
     Move,
     Inspect,
     Report,
@@ -174,6 +175,8 @@ pub struct ResultKind {
     pub measured: bool,
     /// Whether it counts something: a whole number.
     pub count: bool,
+    /// Whether it is several numbers of one dimension, read as a list: `max(fatigue.energies)`.
+    pub list: bool,
     pub doc: &'static str,
 }
 
@@ -379,7 +382,7 @@ impl Variant {
 
 impl ResultKind {
     pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: false, count: false, doc }
+        Self { name, dimension, measured: false, count: false, list: false, doc }
     }
 
     pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
@@ -388,5 +391,10 @@ impl ResultKind {
 
     pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {
         Self { count: true, ..Self::new(name, Dimension::NUMBER, doc) }
+    }
+
+    /// Several numbers of one dimension.
+    pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self { list: true, ..Self::new(name, dimension, doc) }
     }
 }

@@ -4,7 +4,7 @@
 use super::firmware::{Grbl, Hx711, Indicator, Instron, Mark10, Mark10Gauge, Modbus, Native, NativeSettings, Nees, Scpi};
 use super::script::Script;
 use super::{Bench, BenchSettings, Firmware, Log, Stand};
-use crate::plan::{DeviceLink, Dialect, Interval, Plan, ProcedureKind, RealLink, Specimen};
+use crate::plan::{DeviceLink, Dialect, Interval, Plan, RealLink, Specimen};
 
 /// How a simulated controller says that it is one.
 const SIMULATED: &str = "PSD-SIM";
@@ -60,12 +60,7 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
 
 /// The specimen that the first procedure names.
 fn specimen(plan: &Plan) -> Option<&Specimen> {
-    let named = plan.procedures.iter().find_map(|procedure| match &procedure.kind {
-        ProcedureKind::StiffnessRamp(ramp) => Some(ramp.specimen),
-        ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
-        ProcedureKind::Impact(impact) => Some(impact.specimen),
-        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => None,
-    });
+    let named = plan.procedures.iter().find_map(|procedure| procedure.kind.specimen());
     plan.specimens.get(named.unwrap_or(0))
 }
 

@@ -43,7 +43,7 @@ const IMPURE: &[&str] = &[
 const KNOWS: &[(&[&str], &[&str])] = &[
     (&["pest", "pest_derive"], &["syntax"]),
     (&["polars", "plotters", "png", "maud"], &["output"]),
-    (&["clap", "indicatif", "signal_hook", "ratatui"], &["cli"]),
+    (&["clap", "indicatif", "signal_hook", "ratatui", "minisign", "rpassword"], &["cli"]),
     (&["serialport"], &["rig", "simulator", "cli"]),
     (&["miette"], &["diagnostic"]),
     (&["rand", "rand_pcg", "rand_distr"], &["rig", "simulator"]),

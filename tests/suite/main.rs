@@ -5,6 +5,7 @@ mod cli_rig;
 mod cli_screen;
 mod dialects;
 mod docs;
+mod evidence;
 mod explain;
 mod house;
 mod lang;

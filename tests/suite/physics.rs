@@ -1,6 +1,7 @@
 //! The numerics against closed forms, an independent event-driven solution and the reference results.
 
 mod contact;
+mod frame;
 mod identification;
 mod reference;
 mod support;

@@ -7,6 +7,7 @@ mod killed;
 mod lost;
 mod needs;
 mod person;
+mod signed;
 mod stage;
 mod terminal;
 mod twice;

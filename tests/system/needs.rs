@@ -18,6 +18,11 @@ pub fn prlimit() -> bool {
     able("prlimit", "set a limit", Command::new("prlimit").args(["--fsize=100000", "true"]))
 }
 
+/// Whether `minisign` is here.
+pub fn minisign() -> bool {
+    able("minisign", "say its version", Command::new("minisign").arg("-v"))
+}
+
 fn able(program: &str, what: &str, proof: &mut Command) -> bool {
     let proven = proof.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
     let missing = match proven {

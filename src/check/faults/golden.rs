@@ -6,9 +6,9 @@ use crate::quantity::Dimension;
 use crate::source::Span;
 
 pub fn result_wanted(span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, "a tolerance is of a result").at(span, format!("`{text}` is no result of a procedure")).help(
-        "name a result, such as `hit.max_displacement`; its uncertainty is held alike",
-    )
+    Diagnostic::new(Code::WrongType, "a tolerance is of a result")
+        .at(span, format!("`{text}` is no result of a procedure"))
+        .help("name a result, such as `hit.max_displacement`; its uncertainty is held alike")
 }
 
 pub fn column_wanted(span: Span, text: &str) -> Diagnostic {
@@ -31,7 +31,9 @@ pub fn near_twice(text: &str, span: Span, first: Span) -> Diagnostic {
 }
 
 pub fn negative(span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::OutOfRange, "a tolerance must be at least 0").at(span, format!("`{text}` is negative")).help("write its size")
+    Diagnostic::new(Code::OutOfRange, "a tolerance must be at least 0")
+        .at(span, format!("`{text}` is negative"))
+        .help("write its size")
 }
 
 pub fn wide(tolerance: f64, span: Span) -> Diagnostic {

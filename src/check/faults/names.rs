@@ -209,7 +209,7 @@ pub fn unknown_variant(field: &str, name: &str, span: Span, variants: &[Variant]
         .help(suggestion(name, known))
 }
 
-pub fn unknown_figure(name: &str, span: Span, known: [&'static str; 7]) -> Diagnostic {
+pub fn unknown_figure(name: &str, span: Span, known: impl IntoIterator<Item = &'static str>) -> Diagnostic {
     Diagnostic::new(Code::UnknownVariant, format!("no figure is called `{name}`"))
         .at(span, "unknown figure")
         .help(suggestion(name, known))

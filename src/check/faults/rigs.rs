@@ -1,4 +1,4 @@
-//! Faults and warnings of real rigs: E606 to E614, W707, W708. In: what was found and where. Out: diagnostics.
+//! Faults and warnings of real rigs: E606 to E614, W707, W708, W711. In: what was found and where. Out: diagnostics.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -206,4 +206,15 @@ pub fn device_not_pinned(field: &str, port: &PortPlan, span: Span) -> Diagnostic
     )
     .at(span, "no `serial_number`")
     .help("write the serial number that must answer, as in `serial_number: \"PSD-0001\"`")
+}
+
+pub fn resolution_unknown(rig: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::ResolutionUnknown,
+        format!(
+            "rig `{rig}` does not say the resolution of its displacement reading: a quiet load cell may be taken for a dead one"
+        ),
+    )
+    .at(at, "0 mm, as far as is known")
+    .help("add to the rig, from the transducer's data sheet\nresolution = 1 um")
 }

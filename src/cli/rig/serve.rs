@@ -5,11 +5,12 @@
 use std::net::{SocketAddr, TcpListener};
 
 use crate::cli::args::{ServeArguments, ServedProtocol};
-use crate::cli::conclude::digest;
+use crate::cli::conclude::write_results;
+use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
-use crate::cli::record_file::{self, Circumstances, JOURNAL, journal_of};
-use crate::cli::run_folder::{RunFolder, write_new};
+use crate::cli::record_file::{self, Circumstances};
+use crate::cli::run_folder::RunFolder;
 use crate::cli::settings::Settings;
 use crate::cli::watch::{Attendance, Watcher};
 use crate::cli::{plan_file, provenance, real_rig};
@@ -128,9 +129,7 @@ fn on_record(
     });
     watcher.finish();
     let table = output::driven(&steps)?;
-    let journal = (JOURNAL.to_owned(), digest(&journal_of(folder.path()))?);
-    let manifest = output::manifest_with(std::slice::from_ref(&table), &[journal]);
-    [&table, &manifest].into_iter().try_for_each(|file| write_new(folder.path(), file))?;
+    write_results(folder.path(), &[table], &Folder::read(folder.path())?.kept())?;
     tell(&format!("  {}\n", folder.path().display()));
     served.map_err(|error| listening(arguments, &error))?;
     told?;

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::super::{Run, deviations, number, summary};
+use super::super::{Run, amendment, deviations, number, summary};
 use super::{marks, title};
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
@@ -15,9 +15,11 @@ pub(super) fn title_and_verdict(run: &Run<'_>) -> Markup {
         header.title {
             div {
                 p.kind { "Report of a pseudo-dynamic test" }
+                @if let Some(replaced) = replaced(run) { p.kind { strong { "Amendment to report " (replaced) } } }
                 h1 { (title(run)) }
             }
             div.run {
+                @if run.provenance.amends.is_some() { "report " span.id { (run.provenance.report_id()) } br; }
                 "run " span.id { (run.provenance.run_id) } br;
                 @if let Some(date) = &run.provenance.date { (date) } @else { "date not given" }
             }
@@ -28,6 +30,30 @@ pub(super) fn title_and_verdict(run: &Run<'_>) -> Markup {
             @if let Outcome::Aborted { reason } | Outcome::Faulted { reason } = &run.record.outcome { " Reason: " (reason) "." }
         }
         (marks::boxed(run))
+        (amendments(run))
+    }
+}
+
+/// The report that this one takes the place of.
+fn replaced<'a>(run: &Run<'a>) -> Option<&'a str> {
+    let amends = run.provenance.amends.as_ref()?;
+    amends.amendments.last().map(|amendment| amendment.replaces.as_str())
+}
+
+/// Why there is another report of the same run, and what it says otherwise.
+fn amendments(run: &Run<'_>) -> Markup {
+    let told = amendment::told(run);
+    html! {
+        @if !told.is_empty() {
+            section {
+                h2 { "Amendment" }
+                ul { @for told in &told { li { (told) } } }
+                p.note {
+                    "The record of the run is the same, and so is every measured and computed number. The report named above is "
+                    "kept and no longer valid."
+                }
+            }
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 mod appendix;
 mod conditions;
 mod contact_log;
+mod cycles;
 mod equipment;
 mod head;
 mod marks;

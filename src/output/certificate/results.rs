@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 use super::super::figures::Drawn;
 use super::super::{Run, number};
-use super::{contact_log, pairs, words};
+use super::{contact_log, cycles, pairs, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -22,7 +22,8 @@ pub(super) fn procedures(run: &Run<'_>) -> Markup {
             @for (index, procedure) in run.record.procedures.iter().enumerate() {
                 h3 { (procedure.name) " " span.soft { "· " (procedure.kind) @if !procedure.complete { " · not complete" } } }
                 (inputs(procedure))
-                @if !procedure.results.is_empty() { (table(&procedure.results)) }
+                @if !procedure.results.is_empty() { (table(procedure)) }
+                @if let History::Cycle(history) = &procedure.history { (cycles::table(history)) }
                 @if let History::Impact(history) = &procedure.history {
                     (force_note(run, index, procedure, history))
                     (contact_log::table(history))
@@ -48,7 +49,11 @@ fn inputs(procedure: &ProcedureRecord) -> Markup {
     html! { @if !texts.is_empty() { p.note { "Run with: " (texts.join("; ")) "." } } }
 }
 
-fn table(results: &[NamedResult]) -> Markup {
+/// Lists whose numbers stand in a table of their own are not printed twice.
+fn table(procedure: &ProcedureRecord) -> Markup {
+    let tabled = matches!(procedure.history, History::Cycle(_));
+    let results =
+        procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_)))).collect::<Vec<_>>();
     html! {
         table.results {
             thead { tr { th { "Result" } th.number { "Value ± u" } th { "In the plan" } } }
@@ -76,7 +81,8 @@ fn value(result: &NamedResult) -> Markup {
         }
         ResultValue::Number { value: None, .. } => html! { span.missing { "none in this run" } },
         ResultValue::List(values) => {
-            let texts: Vec<String> = values.iter().map(|value| number::text(*value, result.dimension)).collect();
+            let text = |value: &f64| if value.is_finite() { number::text(*value, result.dimension) } else { "none".to_owned() };
+            let texts: Vec<String> = values.iter().map(text).collect();
             html! { (texts.join(", ")) }
         }
     }

@@ -171,7 +171,8 @@ mod tests {
             references: vec![("limit".to_owned(), 1.0)],
             bands: Vec::new(),
         };
-        let figures = Figures { figures: vec![figure.clone(), FigureData { curves: Vec::new(), ..figure }], ..Figures::default() };
+        let figures =
+            Figures { figures: vec![figure.clone(), FigureData { curves: Vec::new(), ..figure }], ..Figures::default() };
         let back: Figures = serde_json::from_str(&figures.to_json()).unwrap();
         assert_eq!(back.to_json(), figures.to_json());
         assert_eq!((back.figures[0].curves[0].points[0].1, back.figures[1].curves.len()), (1.0 / 3.0, 0));

@@ -4,6 +4,7 @@
 mod axis;
 mod canvas;
 mod chart;
+mod cyclic;
 mod data;
 mod draw;
 mod identification;
@@ -87,6 +88,20 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares line."),
         ),
+        (History::Cycle(history), _) if history.cycles.is_empty() => return None,
+        (History::Cycle(history), FigureKind::ForceDisplacement) => (
+            cyclic::loops(history),
+            format!("{name}: restoring force against displacement; the area of a loop is the energy of its cycle."),
+        ),
+        (History::Cycle(history), FigureKind::Backbone) => {
+            (cyclic::backbone(history), format!("{name}: backbone, the force at the ends of the cycles, amplitude by amplitude."))
+        }
+        (History::Cycle(history), FigureKind::CycleEnergy) => {
+            (cyclic::energy(history), format!("{name}: energy of each cycle, and of all cycles so far."))
+        }
+        (History::Cycle(history), FigureKind::StiffnessDegradation) => {
+            (cyclic::stiffness(history), format!("{name}: secant stiffness of each cycle."))
+        }
         (History::Sweep(history), FigureKind::DampingFit) if history.steps.iter().any(|step| step.steady) => (
             identification::damping_fit(history),
             format!(

@@ -1,9 +1,9 @@
 //! Fills a [`Summary`] from a run. Knows the record; the format itself is one file up.
 
-use super::super::{Run, deviations, standing};
+use super::super::{Amends, Change, Run, deviations, standing};
 use super::{
-    ConditionSummary, EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity,
-    RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary, Value,
+    AmendmentSummary, AmendsSummary, ChangeSummary, ConditionSummary, EventSummary, Ordered, OutcomeSummary, ParameterSummary,
+    PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary, Value,
 };
 use crate::formula::{Estimate, ResultValue};
 use crate::quantity::Dimension;
@@ -71,8 +71,20 @@ impl Summary {
                     .collect(),
             ),
             deviations: deviations::of(run),
+            amends: provenance.amends.as_ref().map(amends),
         }
     }
+}
+
+fn amends(amends: &Amends) -> AmendsSummary {
+    let change = |change: &Change| ChangeSummary { field: change.field, was: change.was.clone(), is: change.is.clone() };
+    let amendments = amends.amendments.iter().map(|amendment| AmendmentSummary {
+        replaces: amendment.replaces.clone(),
+        by: amendment.by.clone(),
+        reason: amendment.reason.clone(),
+        changes: amendment.changes.iter().map(change).collect(),
+    });
+    AmendsSummary { report_id: amends.report_id.clone(), amendments: amendments.collect() }
 }
 
 /// The word of an event kind in the summary and the certificate.

@@ -162,7 +162,7 @@ pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
     let mut lines: Vec<Line> = played.lines.iter().cloned().collect();
     while let Some(last) = lines.last() {
         match last.kind {
-            EntryKind::Fault | EntryKind::Tally => {}
+            EntryKind::Fault => {}
             EntryKind::Event => {
                 let event: Event = body(last)?;
                 if event.kind == EventKind::Hold && event.text == UNLOADING {

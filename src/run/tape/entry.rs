@@ -194,6 +194,8 @@ pub enum Call {
     Pause,
     Read,
     Traverse,
+    /// No call on the rig: the record itself could not be kept, whatever was asked for next.
+    Record,
 }
 
 /// AMEND: plan or program are no longer those of the header, or of the amendment before.

@@ -72,14 +72,17 @@ pub fn record_driven(
 pub fn replay(plan: &Plan, played: Played) -> Replayed {
     let served = played.header.served.is_some();
     let state = State::replaying(played);
+    let mut steps = None;
     let Recorded { record, mismatch, .. } = if served {
         perform(None, &mut Unwatched, state, |rig, observer, state| {
-            driven::drive(plan, rig, observer, &mut |specimen| state::ask_again(state, specimen)).record
+            let driven = driven::drive(plan, rig, observer, &mut |specimen| state::ask_again(state, specimen));
+            steps = Some(driven.steps);
+            driven.record
         })
     } else {
         perform(None, &mut Unwatched, state, |rig, observer, _| run(plan, rig, observer))
     };
-    Replayed { record, mismatch }
+    Replayed { record, mismatch, steps }
 }
 
 /// Plays a record that is to be gone on with, without a rig: before anything is opened it is known that the plan asks for
@@ -89,7 +92,7 @@ pub fn replay(plan: &Plan, played: Played) -> Replayed {
 /// The plan and the record part ways, or the run would only end again.
 pub fn rehearse(plan: &Plan, played: &Played) -> Result<(), Refusal> {
     let lines = decide::without_the_end(played)?.into();
-    let Replayed { record, mismatch } = replay(plan, Played { lines, ..played.clone() });
+    let Replayed { record, mismatch, .. } = replay(plan, Played { lines, ..played.clone() });
     if let Some(mismatch) = mismatch {
         return Err(mismatch.into());
     }
@@ -129,6 +132,8 @@ pub struct Recorded {
 pub struct Replayed {
     pub record: Record,
     pub mismatch: Option<Mismatch>,
+    /// What a client that drove the rig asked for and felt; None: the plan's procedures drove it.
+    pub steps: Option<Vec<DrivenStep>>,
 }
 
 fn perform(

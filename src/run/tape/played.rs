@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use super::entry::{AmendBody, Doubt, Header, PlanBody, ResumeBody, RigBody};
 use crate::record::journal::{EntryKind, Line, Recovered};
 use crate::record::{Event, EventKind};
+use crate::rig::Tally;
 
 /// What a journal says of its run.
 #[derive(Clone, Debug)]
@@ -30,6 +31,8 @@ pub struct Played {
     pub time: f64,
     /// Whether the run came to its own end.
     pub ended: bool,
+    /// What was mended on the lines of the rig up to the last record, also where the record no longer counts.
+    pub tally: Tally,
 }
 
 /// The file is whole, but is no record of a run.
@@ -68,6 +71,7 @@ impl Played {
             doubt: None,
             time: 0.0,
             ended: recovered.ended,
+            tally: Tally::default(),
         };
         for line in lines {
             played.take(line)?;
@@ -112,13 +116,13 @@ impl Played {
                 self.doubt = Some(resume.doubt);
             }
             EntryKind::Recover => self.interrupted(EventKind::Resume, "a torn end of the record was put aside".to_owned()),
+            EntryKind::Tally => self.tally = body(line)?,
             EntryKind::Header | EntryKind::End => {}
             EntryKind::Intent
             | EntryKind::Sample
             | EntryKind::Stroke
             | EntryKind::Step
             | EntryKind::Operator
-            | EntryKind::Tally
             | EntryKind::Event
             | EntryKind::Fault => {
                 self.doubt = None;

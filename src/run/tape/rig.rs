@@ -47,6 +47,12 @@ impl<'rig> TapedRig<'rig> {
         Ok(rig)
     }
 
+    /// Puts on record what was mended on the lines since the record last said so.
+    fn count(&self) -> Result<(), RigFault> {
+        let Some(rig) = self.live.as_deref() else { return Ok(()) };
+        self.state.borrow_mut().count(rig.tally())
+    }
+
     /// Rig time of the record, s.
     fn now(&self) -> f64 {
         let state = self.state.borrow();
@@ -230,6 +236,7 @@ impl Rig for TapedRig<'_> {
         let offset = self.offset.unwrap_or(0.0);
         let checked = read.and_then(|reading| finite(Reading { time: reading.time + offset, ..reading }));
         let reading = checked.or_else(|fault| self.failed(Call::Read, fault))?;
+        self.count()?;
         append_sample(&mut self.state.borrow_mut(), &reading)?;
         if failpoint::on(Guarding::SampleDurable) {
             self.state.borrow_mut().promise()?;
@@ -274,6 +281,7 @@ impl Rig for TapedRig<'_> {
                 Err(refusal)
             }
             Ok(()) => {
+                self.count()?;
                 let mut state = self.state.borrow_mut();
                 let stroke = StrokeBody { t: state.time, samples: taken };
                 state.append(EntryKind::Stroke, &stroke)?;
@@ -312,21 +320,11 @@ impl Rig for TapedRig<'_> {
     }
 
     fn tally(&self) -> Tally {
-        let mut state = self.state.borrow_mut();
-        if state.playing() {
-            if state.next_kind() != Some(EntryKind::Tally) {
-                return Tally::default();
-            }
-            let tally = state.peek(EntryKind::Tally, "what was mended").unwrap_or_default();
-            state.consume();
-            return tally;
-        }
-        let tally = self.live.as_deref().map_or_else(Tally::default, Rig::tally);
-        if tally != Tally::default() {
+        if !self.state.borrow().playing() {
             // Of a record that cannot be kept the run knows already.
-            let _ = state.append(EntryKind::Tally, &tally);
+            let _ = self.count();
         }
-        tally
+        self.state.borrow().mended()
     }
 }
 

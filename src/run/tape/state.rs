@@ -8,11 +8,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
-use super::entry::{Doubt, FaultBody, IntentBody, OperatorBody, RigBody};
+use super::entry::{Call, Doubt, FaultBody, IntentBody, OperatorBody, RigBody};
 use super::played::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
-use crate::rig::RigFault;
+use crate::rig::{RigFault, Tally};
 use crate::run::Request;
 use crate::run::driven::Specimen;
 
@@ -31,6 +31,9 @@ pub(super) struct State {
     /// The record says that the run came to its end: what it called for last, and nothing followed, was done.
     ended: bool,
     interruptions: Vec<Event>,
+    /// What was mended before the rig that is driven now was opened, and what the record says of it all so far.
+    mended_before: Tally,
+    mended: Tally,
     mismatch: Option<Mismatch>,
     fault: Option<JournalFault>,
     wall: Wall,
@@ -50,6 +53,8 @@ impl State {
             rig: played.rig,
             ended: played.ended,
             interruptions: played.interruptions,
+            mended_before: played.tally,
+            mended: played.tally,
             ..Self::empty()
         }
     }
@@ -69,6 +74,8 @@ impl State {
             targets: 0,
             ended: false,
             interruptions: Vec::new(),
+            mended_before: Tally::default(),
+            mended: Tally::default(),
             mismatch: None,
             fault: None,
             wall: Box::new(|| None),
@@ -110,6 +117,9 @@ impl State {
 
     /// The next record, left where it is.
     pub(super) fn peek<T: DeserializeOwned>(&mut self, kind: EntryKind, called: &str) -> Result<T, RigFault> {
+        if let (None, Some(fault)) = (&self.mismatch, self.last_words()) {
+            return Err(fault);
+        }
         let found = match (&self.mismatch, self.lines.front()) {
             (None, Some(line)) if line.kind == kind => body(line),
             (Some(mismatch), _) => return Err(RigFault::Device(mismatch.to_string())),
@@ -136,7 +146,7 @@ impl State {
     }
 
     /// The next record says that this call failed.
-    pub(super) fn played_fault(&mut self, call: super::Call) -> Option<RigFault> {
+    pub(super) fn played_fault(&mut self, call: Call) -> Option<RigFault> {
         if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Fault) {
             return None;
         }
@@ -146,8 +156,15 @@ impl State {
                 Some(fault.fault)
             }
             Ok(_) => None,
+            // Also the last words of a record that could not be kept.
             Err(fault) => Some(fault),
         }
+    }
+
+    /// What a record that could not be kept says last. It ends the run whatever is called for, and stays.
+    fn last_words(&self) -> Option<RigFault> {
+        let line = self.lines.front().filter(|line| line.kind == EntryKind::Fault)?;
+        body::<FaultBody>(line).ok().filter(|fault| fault.call == Call::Record).map(|fault| fault.fault)
     }
 
     /// The target that came of what the client has just proposed: the first before its next proposal. None: nothing did.
@@ -193,6 +210,22 @@ impl State {
         self.differs(Mismatch { seq, called, found })
     }
 
+    /// What was mended on the lines of the rig so far, in all parts of the run.
+    pub(super) const fn mended(&self) -> Tally {
+        self.mended
+    }
+
+    /// Records what was mended so far, where the rig that is driven now counts more than the record says. It is said as
+    /// it happens: a run that is killed says nothing at its end.
+    pub(super) fn count(&mut self, now: Tally) -> Result<(), RigFault> {
+        let mended = self.mended_before.plus(now);
+        if mended == self.mended {
+            return Ok(());
+        }
+        self.mended = mended;
+        self.append(EntryKind::Tally, &mended)
+    }
+
     /// Appends a record; a fault is kept, and is final.
     pub(super) fn append(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), RigFault> {
         self.healthy()?;
@@ -221,7 +254,7 @@ impl State {
     fn broken(&mut self, fault: JournalFault) -> RigFault {
         let told = unkept(&fault);
         if let Some(journal) = &mut self.journal {
-            let words = FaultBody { t: self.time, call: super::Call::Execute, fault: told.clone(), wall: (self.wall)() };
+            let words = FaultBody { t: self.time, call: Call::Record, fault: told.clone(), wall: (self.wall)() };
             // The disk is sick already: what can be said is said, and no more is asked of it.
             let _ = journal.last_words(EntryKind::Fault, &words);
         }

@@ -8,17 +8,17 @@ use std::rc::Rc;
 
 use super::*;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
-use crate::record::History;
 use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
+use crate::record::{EventKind, History};
 use crate::rig::failpoint::{Guarding, without};
-use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, VirtualRig};
+use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, VirtualRig};
 use crate::run::testing::{elastic_plan, impact, ramp, result_of};
 use crate::run::{Inspection, StepReport};
 
-/// The same rig for program after program: it remembers its moves, as a real one does.
+/// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
 #[derive(Clone)]
-struct Standing(Rc<RefCell<Stand>>);
+struct Standing(Rc<RefCell<Stand>>, u64);
 
 struct Stand {
     rig: VirtualRig,
@@ -31,7 +31,7 @@ struct Stand {
 impl Standing {
     fn new(plan: &Plan) -> Self {
         let last = LastMove { id: 0, target: 0.0 };
-        Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })))
+        Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })), 0)
     }
 }
 
@@ -62,6 +62,7 @@ impl Rig for Standing {
         self.0.borrow_mut().rig.pause(seconds)
     }
     fn read(&mut self) -> Result<Reading, RigFault> {
+        self.1 += 1;
         self.0.borrow_mut().rig.read()
     }
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
@@ -80,6 +81,9 @@ impl Rig for Standing {
     }
     fn last_move(&self) -> Option<LastMove> {
         Some(self.0.borrow().last)
+    }
+    fn tally(&self) -> Tally {
+        Tally { reread: self.1 / 20, ..Tally::default() }
     }
 }
 
@@ -224,6 +228,11 @@ fn measured(record: &Record) -> String {
                 }
             }
             History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
+            History::Cycle(history) => {
+                for step in &history.steps {
+                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
+                }
+            }
             History::Inspect => {}
         }
     }
@@ -327,6 +336,9 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
     assert_eq!(resumed.mismatch, None, "call {call}");
     assert_eq!(resumed.record.outcome, Outcome::Completed, "call {call}: {:?}", resumed.record.events);
     assert_eq!(measured(&resumed.record), expected, "call {call}");
+    let mended = resumed.record.events.iter().find(|event| event.kind == EventKind::Mended).map(|event| event.text.clone());
+    let both = Some(before.tally.plus(rig.tally())).filter(|tally| *tally != Tally::default());
+    assert_eq!(mended, both.map(|tally| tally.to_string()), "call {call}: what was mended before counts too");
     let carried_out = rig.0.borrow().carried_out.clone();
     if matches!(decision.doubt, Doubt::Stroke { .. }) {
         assert_eq!(carried_out.len(), once.len() + 1, "call {call}: only back to where the stroke began");
@@ -446,6 +458,7 @@ fn a_disk_that_fails_holds_the_rig_and_nothing_more_is_sent() {
         let carried_out = rig.0.borrow().carried_out.len();
         let known = recover(&disk.written()).unwrap().lines.iter().filter(|line| line.kind == EntryKind::Intent).count();
         assert!(carried_out <= known && carried_out < healthy, "{carried_out} of {known}");
+        assert_eq!(replay(&plan, played(&disk.written()).1).mismatch, None, "sync {failed_sync}: its last words end it again");
         stopped += 1;
     }
     assert_eq!(stopped, 54);

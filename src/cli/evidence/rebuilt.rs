@@ -1,0 +1,149 @@
+//! What a record gives when it is played back: record, verdict, every file of the results. In: the journal of a run
+//! folder, and the amendment beside it. Out: the results, and what the playing back itself proves.
+
+use super::amending::{AMENDMENT, AmendmentFile, amended};
+use super::check::Finding;
+use super::folder::Folder;
+use crate::cli::conclude::made_of;
+use crate::cli::provenance::sha256;
+use crate::cli::record_file::{self, BUILD, JOURNAL, ReadRecord};
+use crate::output::{OutputError, OutputFile, Provenance};
+use crate::plan::Plan;
+use crate::record::journal::EntryKind;
+use crate::record::{Outcome, Record};
+use crate::run::driven::DrivenStep;
+use crate::run::tape::{self, CUT_OFF, Mismatch, Replayed};
+use crate::verdict::{self, Assessment};
+
+/// A run, done again from its record alone.
+pub struct PlayedBack {
+    pub plan: Plan,
+    pub provenance: Provenance,
+    pub record: Record,
+    pub assessment: Assessment,
+    pub mismatch: Option<Mismatch>,
+    /// Of a rig that a client drove.
+    pub steps: Option<Vec<DrivenStep>>,
+}
+
+impl PlayedBack {
+    /// Plays a record back, and amends what it gives.
+    pub fn of(read: ReadRecord, amendment: Option<&AmendmentFile>) -> Result<Self, String> {
+        let ReadRecord { mut plan, mut provenance, played, .. } = read;
+        let Replayed { mut record, mismatch, steps } = tape::replay(&plan, played);
+        if let Outcome::Faulted { reason } | Outcome::Aborted { reason } = &mut record.outcome
+            && reason.contains(CUT_OFF)
+        {
+            *reason = format!("INCOMPLETE: {reason}");
+        }
+        let assessment = verdict::assess(&plan, &record);
+        if let Some(file) = amendment {
+            amended(&mut plan, &mut provenance, file)?;
+        }
+        Ok(Self { plan, provenance, record, assessment, mismatch, steps })
+    }
+
+    /// Every file of the results; not the manifest.
+    pub fn results(&self) -> Result<Vec<OutputFile>, OutputError> {
+        made_of(&self.plan, &self.record, &self.assessment, &self.provenance, self.steps.as_deref())
+    }
+}
+
+/// What a record proves, and what the folder must hold.
+#[derive(Clone, Debug)]
+pub struct Rebuilt {
+    /// Of the record itself, and of its targets.
+    pub findings: Vec<Finding>,
+    /// None where the record gives nothing.
+    pub report: Option<Report>,
+}
+
+/// What a report says of itself, and its files.
+#[derive(Clone, Debug)]
+pub struct Report {
+    pub run_id: String,
+    pub id: String,
+    /// Who signs it, as the plan says.
+    pub roles: Vec<String>,
+    /// Path and SHA-256 of every file of the results, in hex; not the manifest.
+    pub files: Vec<(String, String)>,
+    /// Which program made the run, where it was another.
+    pub other_build: Option<String>,
+    /// The record came to its end.
+    pub ended: bool,
+}
+
+impl Rebuilt {
+    /// Plays the record of a folder back.
+    pub fn of(folder: &Folder) -> Self {
+        let nothing = |part, fault: String| Self { findings: vec![Finding::wrong(part, fault)], report: None };
+        let Some(bytes) = folder.bytes(JOURNAL) else { return nothing("record", format!("`{JOURNAL}` is missing")) };
+        let read = match record_file::from_bytes(JOURNAL.as_ref(), bytes) {
+            Ok(read) => read,
+            Err(failure) => return nothing("record", failure.to_string()),
+        };
+        let amendment = match folder.bytes(AMENDMENT).map(AmendmentFile::read).transpose() {
+            Ok(amendment) => amendment,
+            Err(fault) => return nothing("amendment", fault),
+        };
+        Self::played(read, amendment.as_ref())
+    }
+
+    fn played(read: ReadRecord, amendment: Option<&AmendmentFile>) -> Self {
+        let count = |kind| read.recovered.lines.iter().filter(|line| line.kind == kind).count();
+        let (targets, steps) = (count(EntryKind::Intent), count(EntryKind::Step));
+        let torn = read.recovered.torn.as_ref();
+        let torn = torn.map_or(String::new(), |torn| format!(", {} bytes torn at its end", torn.end - torn.start));
+        let (records, head) = (read.recovered.lines.len(), read.recovered.head());
+        let mut findings =
+            vec![Finding::sound("record", format!("run {}, {records} records{torn}, head {head}", read.provenance.run_id))];
+        let ended = read.played.ended;
+        let header = &read.played.header;
+        let other_build = (header.build != BUILD).then(|| format!("psd {} build {}", header.psd, header.build));
+        let played = match PlayedBack::of(read, amendment) {
+            Ok(played) => played,
+            Err(fault) => return Self { findings: vec![Finding::wrong("amendment", fault)], report: None },
+        };
+        let built = if other_build.is_some() { " by another build of psd" } else { "" };
+        let again = || format!("all {targets} came out again bit for bit");
+        findings.push(match (&played.mismatch, &played.record.outcome) {
+            (Some(mismatch), _) => Finding::wrong("targets", mismatch.to_string()),
+            (None, Outcome::Completed) if ended => Finding::sound("targets", format!("{}, and {steps} steps{built}", again())),
+            (None, Outcome::Completed) => {
+                Finding::wrong("targets", "the run came to its end, and the record has none".to_owned())
+            }
+            (None, _) if ended => Finding::wrong("targets", "the record has an end that the run does not come to".to_owned()),
+            (None, Outcome::Aborted { reason } | Outcome::Faulted { reason }) => {
+                let told = if reason.contains("INCOMPLETE") { reason.clone() } else { format!("INCOMPLETE: {reason}") };
+                Finding::sound("targets", format!("{}; {told}{built}", again()))
+            }
+        });
+        if played.mismatch.is_some() {
+            return Self { findings, report: None };
+        }
+        let Some(amends) = &played.provenance.amends else { return Self::with_results(findings, &played, other_build, ended) };
+        if let Some(last) = amends.amendments.last() {
+            findings.push(Finding::sound("amendment", format!("report {} amends report {}", amends.report_id, last.replaces)));
+        }
+        Self::with_results(findings, &played, other_build, ended)
+    }
+
+    fn with_results(mut findings: Vec<Finding>, played: &PlayedBack, other_build: Option<String>, ended: bool) -> Self {
+        let files = match played.results() {
+            Ok(files) => files.into_iter().map(|file| (file.path, sha256(&file.bytes))).collect(),
+            Err(error) => {
+                findings.push(Finding::wrong("results", error.to_string()));
+                return Self { findings, report: None };
+            }
+        };
+        let report = Report {
+            run_id: played.provenance.run_id.clone(),
+            id: played.provenance.report_id().to_owned(),
+            roles: played.plan.report.sign.clone(),
+            files,
+            other_build,
+            ended,
+        };
+        Self { findings, report: Some(report) }
+    }
+}

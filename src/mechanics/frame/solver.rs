@@ -1,0 +1,257 @@
+//! A frame on a rig, step by step: targets out, readings in. In: matrices, an integrator, loads. Out: the motion and its
+//! energy. It commands no rig: whoever does asks for the next targets and gives back what was measured there.
+
+use thiserror::Error;
+
+use super::FrameMatrices;
+use super::band::SymmetricBand;
+use super::energy::{End, FrameEnergies};
+use super::factor::{BandFactor, NotPositiveDefinite};
+use super::schemes::{Course, Instant, Schemes};
+use super::storeys::storeys_of;
+use super::tangents::{StoreyTangents, Tangents};
+use crate::plan::Integrator;
+
+/// All a run starts from; the frame is at rest.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameInput<'a> {
+    pub matrices: &'a FrameMatrices,
+    /// `K_I` of α-OS and of the I-modification, N/m: the initial stiffness, or one above it.
+    pub operator_stiffness: &'a SymmetricBand,
+    pub integrator: Integrator,
+    /// Whether the recursion takes r* = `r_m` − `K_I`(`d_m` − d̃) in place of the reading.
+    pub i_modification: bool,
+    /// Of the tangent form.
+    pub tangents: Tangents,
+    /// Δt, s
+    pub time_step: f64,
+    /// m
+    pub initial_displacement: &'a [f64],
+    /// Read once before the first step, N.
+    pub initial_restoring_force: &'a [f64],
+    /// F(0), N
+    pub initial_load: &'a [f64],
+    /// Standard deviation of a load cell, N.
+    pub force_noise: f64,
+    /// Of a displacement reading, m.
+    pub resolution: f64,
+}
+
+/// Why a frame cannot be stepped.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum FrameError {
+    #[error("a frame has at least one degree of freedom")]
+    Empty,
+    #[error("{what} is of order {found}, not {expected}")]
+    Order { what: &'static str, found: usize, expected: usize },
+    #[error("the mass matrix is {0}")]
+    Mass(NotPositiveDefinite),
+    #[error("mass, damping and stiffness over a step are {0}")]
+    Step(NotPositiveDefinite),
+    #[error("storeys are followed by their own tangents only where the stiffness is that of a shear building")]
+    NoStoreys,
+    #[error("a step of {0} s is none")]
+    TimeStep(f64),
+}
+
+/// The end of a step; step 0 is the start. One entry a degree of freedom.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameState {
+    pub step: u64,
+    /// s
+    pub time: f64,
+    /// Computed X, m.
+    pub displacement: Vec<f64>,
+    /// Imposed on the specimen, m: X itself, but under α-OS the place it was foretold at.
+    pub target: Vec<f64>,
+    /// m
+    pub measured_displacement: Vec<f64>,
+    /// m/s
+    pub velocity: Vec<f64>,
+    /// m/s²
+    pub acceleration: Vec<f64>,
+    /// Measured, N.
+    pub restoring_force: Vec<f64>,
+    /// What the recursion takes for the force at X, N: the reading, but for what the I-modification and α-OS correct.
+    pub force_at_computed: Vec<f64>,
+    /// F at the end of the step, N.
+    pub load: Vec<f64>,
+    /// `k_t` of each storey for the step to come, N/m; empty where no storeys are followed.
+    pub storey_stiffness: Vec<f64>,
+    pub energies: FrameEnergies,
+}
+
+/// The run on a rig: `predict`, command, read, `complete`.
+#[derive(Clone, Debug)]
+pub struct FrameSolver {
+    schemes: Schemes,
+    tangents: Option<StoreyTangents>,
+    modification: Option<SymmetricBand>,
+    state: FrameState,
+    /// The step under way; it becomes the state.
+    next: Course,
+    load_end: Vec<f64>,
+    predicted: bool,
+    /// The force the recursion takes, N.
+    felt: Vec<f64>,
+}
+
+impl FrameSolver {
+    /// M Ẍ₀ = F₀ − R₀.
+    ///
+    /// # Errors
+    /// If vectors and matrices are not of one order, or no acceleration follows from them.
+    pub fn new(input: &FrameInput) -> Result<Self, FrameError> {
+        let matrices = input.matrices;
+        let order = matrices.order();
+        check(input, order)?;
+        let zero = || vec![0.0; order];
+        let mut acceleration = zero();
+        for ((to, load), force) in acceleration.iter_mut().zip(input.initial_load).zip(input.initial_restoring_force) {
+            *to = load - force;
+        }
+        BandFactor::new(&matrices.mass).map_err(FrameError::Mass)?.solve_in_place(&mut acceleration);
+        let (displacement, force) = (input.initial_displacement, input.initial_restoring_force);
+        let tangents = match (input.integrator, input.tangents) {
+            (Integrator::Tangent, Tangents::Storeys { largest_ratio }) => {
+                let storeys = storeys_of(&matrices.stiffness).ok_or(FrameError::NoStoreys)?;
+                let spread = (input.force_noise, input.resolution);
+                Some(StoreyTangents::new(storeys, largest_ratio, spread, displacement, force))
+            }
+            _ => None,
+        };
+        let operator = if input.integrator == Integrator::Tangent { &matrices.stiffness } else { input.operator_stiffness };
+        let schemes = Schemes::new(matrices, operator, input.integrator, input.time_step).map_err(FrameError::Step)?;
+        Ok(Self {
+            schemes,
+            modification: input.i_modification.then(|| input.operator_stiffness.clone()),
+            state: FrameState {
+                step: 0,
+                time: 0.0,
+                displacement: displacement.to_vec(),
+                target: displacement.to_vec(),
+                measured_displacement: displacement.to_vec(),
+                velocity: zero(),
+                acceleration,
+                restoring_force: force.to_vec(),
+                force_at_computed: force.to_vec(),
+                load: input.initial_load.to_vec(),
+                storey_stiffness: tangents.as_ref().map(|followed| followed.stiffnesses().to_vec()).unwrap_or_default(),
+                energies: FrameEnergies::default(),
+            },
+            tangents,
+            next: Course { displacement: zero(), velocity: zero(), acceleration: zero(), force: zero() },
+            load_end: zero(),
+            predicted: false,
+            felt: zero(),
+        })
+    }
+
+    /// Displacements to command in this step, m, under the loads at its end (N). Asked again before `complete`, they are
+    /// the same whatever the loads.
+    pub fn predict(&mut self, load_end: &[f64]) -> &[f64] {
+        if !self.predicted {
+            self.predicted = true;
+            self.load_end.copy_from_slice(load_end);
+            let from = self.state.instant();
+            if self.schemes.integrator == Integrator::Tangent {
+                self.schemes.foretell(from, &self.load_end, &mut self.next);
+            } else {
+                self.schemes.impose(from, &mut self.next);
+            }
+            self.state.target.copy_from_slice(&self.next.displacement);
+        }
+        &self.state.target
+    }
+
+    /// Ends the step with what was measured at the targets. Without a prediction before it, under the loads of its start.
+    pub fn complete(&mut self, measured_displacement: &[f64], restoring_force: &[f64]) -> &FrameState {
+        if !self.predicted {
+            let load = self.state.load.clone();
+            self.predict(&load);
+        }
+        self.predicted = false;
+        self.felt.copy_from_slice(restoring_force);
+        if let Some(stiffness) = &self.modification {
+            let away = measured_displacement.iter().zip(&self.state.target).map(|(measured, target)| measured - target);
+            let away: Vec<f64> = away.collect();
+            stiffness.mul_add(-1.0, &away, &mut self.felt);
+        }
+        if self.schemes.integrator == Integrator::Tangent {
+            self.next.force.copy_from_slice(&self.felt);
+        } else {
+            self.schemes.correct(self.state.instant(), &self.load_end, &self.felt, &mut self.next);
+        }
+        if let Some(tangents) = &mut self.tangents
+            && tangents.take(measured_displacement, restoring_force)
+        {
+            // A storey's tangent is not negative, so that M̂ has a factor as M has; if rounding ever denied it, the last
+            // one serves on.
+            let _ = self.schemes.set_storeys(tangents.stiffnesses());
+            self.state.storey_stiffness.copy_from_slice(tangents.stiffnesses());
+        }
+        self.accept(measured_displacement, restoring_force);
+        &self.state
+    }
+
+    fn accept(&mut self, measured_displacement: &[f64], restoring_force: &[f64]) {
+        let Self { schemes, state, next, load_end, .. } = self;
+        let time_step = schemes.time_step;
+        let from = End {
+            displacement: &state.displacement,
+            velocity: &state.velocity,
+            restoring_force: &state.force_at_computed,
+            load: &state.load,
+        };
+        let to = End { displacement: &next.displacement, velocity: &next.velocity, restoring_force: &next.force, load: load_end };
+        let (matrices, mean, product) = schemes.scratch();
+        state.energies = state.energies.advance(matrices, time_step, from, to, (mean, product));
+        std::mem::swap(&mut state.displacement, &mut next.displacement);
+        std::mem::swap(&mut state.velocity, &mut next.velocity);
+        std::mem::swap(&mut state.acceleration, &mut next.acceleration);
+        std::mem::swap(&mut state.force_at_computed, &mut next.force);
+        std::mem::swap(&mut state.load, load_end);
+        state.measured_displacement.copy_from_slice(measured_displacement);
+        state.restoring_force.copy_from_slice(restoring_force);
+        state.step += 1;
+        #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
+        let time = state.step as f64 * time_step;
+        state.time = time;
+    }
+
+    #[must_use]
+    pub const fn state(&self) -> &FrameState {
+        &self.state
+    }
+}
+
+impl FrameState {
+    fn instant(&self) -> Instant<'_> {
+        Instant {
+            displacement: &self.displacement,
+            velocity: &self.velocity,
+            acceleration: &self.acceleration,
+            force: &self.force_at_computed,
+            load: &self.load,
+        }
+    }
+}
+
+fn check(input: &FrameInput, order: usize) -> Result<(), FrameError> {
+    if order == 0 {
+        return Err(FrameError::Empty);
+    }
+    if !(input.time_step > 0.0 && input.time_step.is_finite()) {
+        return Err(FrameError::TimeStep(input.time_step));
+    }
+    let orders = [
+        ("damping", input.matrices.damping.order()),
+        ("stiffness", input.matrices.stiffness.order()),
+        ("the operator's stiffness", input.operator_stiffness.order()),
+        ("the initial displacement", input.initial_displacement.len()),
+        ("the initial restoring force", input.initial_restoring_force.len()),
+        ("the initial load", input.initial_load.len()),
+    ];
+    let other = orders.into_iter().find(|(_, found)| *found != order);
+    other.map_or(Ok(()), |(what, found)| Err(FrameError::Order { what, found, expected: order }))
+}

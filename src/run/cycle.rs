@@ -1,0 +1,230 @@
+//! `cycle`: cycles of displacement about one place, amplitude by amplitude. In: amplitudes, sides, how they are read. Out:
+//! every reading, and energy, stiffness and damping of each whole cycle. Step and pause by default; with a rate the
+//! actuator goes from end to end without stopping.
+
+use super::Performed;
+use super::inputs::Inputs;
+use super::results::result;
+use super::samples::{mean, scatter};
+use super::session::{Session, first};
+use super::stop::Stop;
+use crate::formula::ResultValue;
+use crate::mechanics::cyclic::{loop_of, work};
+use crate::plan::{Cycle, CycleInspection, MOST_TARGETS};
+use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::record::{CycleHistory, CycleStep, History, NamedResult, WholeCycle};
+
+pub(super) fn perform(plan: &Cycle, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let mut cycling = Cycling { history: CycleHistory::default(), amplitude: 0.0, cycle: 0 };
+    let stop = cycling.run(plan, inputs, session).err();
+    let results = results(&cycling.history);
+    Performed { history: History::Cycle(cycling.history), results, stop }
+}
+
+/// How one way is gone.
+#[derive(Clone, Copy)]
+struct Manner {
+    /// Readings at each target.
+    samples: u32,
+    /// s
+    pause: f64,
+    /// m/s
+    speed: Option<f64>,
+    /// Hz, and the speed (m/s) it is read at.
+    moving: Option<(f64, f64)>,
+    /// m from the middle to the end of a quarter has so many targets.
+    points: u32,
+}
+
+struct Cycling {
+    history: CycleHistory,
+    /// Asked for, m.
+    amplitude: f64,
+    cycle: u64,
+}
+
+impl Cycling {
+    fn run(&mut self, plan: &Cycle, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Result<(), Stop> {
+        let amplitudes = plan.levels.iter().map(|level| level.amplitude.clone()).collect::<Vec<_>>();
+        let amplitudes = inputs.list("amplitudes", &amplitudes)?;
+        if let Some(value) = amplitudes.iter().copied().find(|amplitude| !(*amplitude > 0.0 && amplitude.is_finite())) {
+            return Err(Stop::BadInput { field: "amplitudes", value, wanted: "greater than 0".into() });
+        }
+        let about = inputs.number("about", &plan.about, Dimension::LENGTH)?;
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let speed = inputs.speed(plan.speed.as_ref())?;
+        let rate = plan.rate.as_ref().map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY)).transpose()?;
+        let manner = Manner { samples: plan.samples.max(1), pause, speed, moving: rate.zip(speed), points: plan.points.max(1) };
+        session.go_to(about, speed)?;
+        self.target(about, manner, session)?;
+        let mut looks = Looks::default();
+        for (level, amplitude) in plan.levels.iter().zip(amplitudes) {
+            self.amplitude = amplitude;
+            for repeat in 1..=level.cycles {
+                self.cycle += 1;
+                let from = self.history.steps.len() - 1;
+                for end in plan.sides.ends() {
+                    self.way(about + end * amplitude, manner, session)?;
+                }
+                self.whole(from, repeat);
+            }
+            let of_level = self.history.cycles.iter().rev().take_while(|cycle| cycle.amplitude == amplitude);
+            let largest = of_level.map(|cycle| cycle.found.max_force.max(-cycle.found.min_force)).fold(0.0, f64::max);
+            // After the last amplitude nothing follows that a look could stop.
+            let more = self.history.cycles.len() as u64 != plan.cycles();
+            if let Some(reason) = looks.after(&plan.inspect, amplitude, largest).filter(|_| more) {
+                session.inspect(&reason)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// From where the piston is to `to` (m).
+    fn way(&mut self, to: f64, manner: Manner, session: &mut Session<'_>) -> Result<(), Stop> {
+        let from = session.commanded();
+        if let Some((rate, speed)) = manner.moving {
+            self.moving(from, to, rate, speed, session)?;
+            session.guard.pause(manner.pause)?;
+            return Ok(());
+        }
+        // Quarters of the way from the middle to an end; half a billionth for the rounding of the amplitude.
+        let quarters = ((to - from).abs() / self.amplitude - 5e-10).ceil().max(1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "one or two")]
+        let targets = quarters as u32 * manner.points;
+        for target in 1..=targets {
+            let share = f64::from(target) / f64::from(targets);
+            let place = if target == targets { to } else { from + (to - from) * share };
+            session.go_to(place, manner.speed)?;
+            self.target(place, manner, session)?;
+        }
+        Ok(())
+    }
+
+    /// Reads where the piston stands: once for the relaxation, then the samples after the pause.
+    fn target(&mut self, command: f64, manner: Manner, session: &mut Session<'_>) -> Result<(), Stop> {
+        let (_, settled_force) = session.read()?;
+        session.guard.pause(manner.pause)?;
+        let readings = (0..manner.samples).map(|_| session.read()).collect::<Result<Vec<_>, _>>()?;
+        let displacement = mean(readings.iter().map(|(x, _)| *x));
+        let restoring_force = mean(readings.iter().map(|(_, r)| *r));
+        let force_scatter = scatter(readings.iter().map(|(_, r)| *r), restoring_force);
+        let relaxation = settled_force - restoring_force;
+        self.take(command, (displacement, restoring_force), force_scatter, relaxation, session.guard.time(), session)
+    }
+
+    /// To `to` without a stop, read on the way.
+    fn moving(&mut self, from: f64, to: f64, rate: f64, speed: f64, session: &mut Session<'_>) -> Result<(), Stop> {
+        let wanted = ((to - from).abs() / speed * rate).round().max(1.0);
+        if wanted > MOST_TARGETS {
+            let wanted_words = format!("at most {MOST_TARGETS} readings a way").into();
+            return Err(Stop::BadInput { field: "rate", value: wanted, wanted: wanted_words });
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_TARGETS")]
+        let samples = wanted as usize;
+        let traversed = session.guard.traverse(&[to], speed.copysign(to - from), samples);
+        for (sample, reading) in (1_u32..).zip(&traversed.readings) {
+            #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
+            let share = f64::from(sample) / samples as f64;
+            self.take(from + (to - from) * share, first(reading), 0.0, 0.0, reading.time, session)?;
+        }
+        traversed.fault.map_or(Ok(()), |fault| Err(fault.into()))
+    }
+
+    fn take(
+        &mut self,
+        command: f64,
+        (displacement, restoring_force): (f64, f64),
+        force_scatter: f64,
+        relaxation: f64,
+        wall_time: f64,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let steps = &mut self.history.steps;
+        let energy = steps.last().map_or(0.0, |before| {
+            before.energy + work((before.displacement, before.restoring_force), (displacement, restoring_force))
+        });
+        let step = steps.len() as u64 + 1;
+        steps.push(CycleStep {
+            step,
+            wall_time,
+            cycle: self.cycle,
+            amplitude: self.amplitude,
+            command,
+            displacement,
+            restoring_force,
+            force_scatter,
+            relaxation,
+            energy,
+        });
+        session.measured(step, wall_time, displacement, restoring_force)
+    }
+
+    /// The cycle whose first point is step `from`, now that it is whole.
+    fn whole(&mut self, from: usize, repeat: u32) {
+        let points: Vec<(f64, f64)> =
+            self.history.steps[from..].iter().map(|step| (step.displacement, step.restoring_force)).collect();
+        let Some(found) = loop_of(&points) else { return };
+        let ends = points.iter().fold([points[0]; 2], |[left, right], point| {
+            [if point.0 < left.0 { *point } else { left }, if point.0 > right.0 { *point } else { right }]
+        });
+        self.history.cycles.push(WholeCycle { cycle: self.cycle, amplitude: self.amplitude, repeat, found, ends });
+    }
+}
+
+/// When a person is to look.
+#[derive(Default)]
+struct Looks {
+    levels: u32,
+    /// N, since the last look that a fall called for.
+    largest: f64,
+}
+
+impl Looks {
+    fn after(&mut self, inspect: &[CycleInspection], amplitude: f64, force: f64) -> Option<String> {
+        self.levels += 1;
+        let shown = readable(amplitude, Dimension::LENGTH);
+        let mut reason = None;
+        for trigger in inspect {
+            let due = match *trigger {
+                CycleInspection::Every(levels) => {
+                    (levels > 0 && self.levels.is_multiple_of(levels)).then(|| format!("inspection after the cycles to {shown}"))
+                }
+                CycleInspection::ForceDrop(fraction) => {
+                    let dropped = force < (1.0 - fraction) * self.largest;
+                    self.largest = if dropped { force } else { self.largest.max(force) };
+                    dropped.then(|| format!("the largest force of the cycles to {shown} fell by {} % or more", fraction * 100.0))
+                }
+            };
+            reason = reason.or(due);
+        }
+        reason
+    }
+}
+
+/// In the order of the reference.
+fn results(history: &CycleHistory) -> Vec<NamedResult> {
+    let cycles = &history.cycles;
+    let forces = || history.steps.iter().map(|step| step.restoring_force);
+    let list = |name, dimension, read: fn(&WholeCycle) -> f64| NamedResult {
+        name,
+        value: ResultValue::List(cycles.iter().map(read).collect()),
+        dimension,
+    };
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
+    let count = cycles.len() as f64;
+    let total = (!cycles.is_empty()).then(|| cycles.iter().map(|cycle| cycle.found.energy).sum());
+    vec![
+        result("dissipated_energy", Dimension::ENERGY, total),
+        result("max_force", Dimension::FORCE, forces().reduce(f64::max)),
+        result("min_force", Dimension::FORCE, forces().reduce(f64::min)),
+        result("equivalent_damping_ratio", Dimension::NUMBER, cycles.last().and_then(|cycle| cycle.found.damping_ratio)),
+        result("stiffness", Dimension::STIFFNESS, cycles.first().and_then(|cycle| cycle.found.stiffness)),
+        result("last_stiffness", Dimension::STIFFNESS, cycles.last().and_then(|cycle| cycle.found.stiffness)),
+        result("cycles", Dimension::NUMBER, Some(count)),
+        list("amplitudes", Dimension::LENGTH, |cycle| cycle.found.amplitude),
+        list("energies", Dimension::ENERGY, |cycle| cycle.found.energy),
+        list("damping_ratios", Dimension::NUMBER, |cycle| cycle.found.damping_ratio.unwrap_or(f64::NAN)),
+        list("stiffnesses", Dimension::STIFFNESS, |cycle| cycle.found.stiffness.unwrap_or(f64::NAN)),
+    ]
+}

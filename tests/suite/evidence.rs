@@ -1,0 +1,238 @@
+//! Evidence as it is made and checked from a shell: keys, signatures, proof of a whole folder, amendments, and a report
+//! that is the same wherever it is made.
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+const PLAN: &str = r#"plan "Evidence" {
+  customer = "Somebody Ltd"
+  date     = "2026-05-31"
+}
+
+specimen beam {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 327.65 N/m)
+}
+
+striker hammer {
+  mass     = 10 kg
+  velocity = 1 m/s
+}
+
+impact hit {
+  striker   = hammer
+  time_step = 10 ms
+  duration  = 50 ms
+}
+
+require "stays in travel" hit.max_displacement < 0.16 m
+
+report {
+  figures = [displacement(hit)]
+  sign    = ["Test engineer", "Quality"]
+}
+"#;
+
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    /// A bench with a run in `run`.
+    fn new() -> Self {
+        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        fs::write(bench.path("plan.psd"), PLAN).unwrap();
+        bench.ends(0, &["run", "plan.psd", "--out", "run"]);
+        bench
+    }
+
+    fn path(&self, path: &str) -> PathBuf {
+        self.folder.path().join(path)
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
+        command.args(arguments).current_dir(self.folder.path()).stdin(Stdio::null());
+        command
+    }
+
+    /// Everything the program said.
+    #[track_caller]
+    fn ends(&self, code: i32, arguments: &[&str]) -> String {
+        let Output { status, stdout, stderr } = self.command(arguments).output().unwrap();
+        let said = String::from_utf8(stdout).unwrap() + &String::from_utf8(stderr).unwrap();
+        assert_eq!(status.code(), Some(code), "{arguments:?}\n{said}");
+        said
+    }
+
+    /// Every file of a folder but its manifest, and their names.
+    fn files(&self, folder: &str) -> Vec<(String, Vec<u8>)> {
+        let mut found = Vec::new();
+        let mut open = vec![self.path(folder)];
+        while let Some(next) = open.pop() {
+            for entry in fs::read_dir(next).unwrap().map(Result::unwrap) {
+                if entry.path().is_dir() {
+                    open.push(entry.path());
+                } else {
+                    let name = entry.path().strip_prefix(self.path(folder)).unwrap().display().to_string();
+                    found.push((name, fs::read(entry.path()).unwrap()));
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+}
+
+#[test]
+fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
+    let bench = Bench::new();
+    bench.ends(0, &["keygen", "mine", "--no-password"]);
+    assert!(bench.ends(0, &["keygen", "yours", "--no-password"]).contains("has no password"));
+    assert_eq!(fs::metadata(bench.path("mine")).unwrap().permissions().mode() & 0o777, 0o600);
+    assert!(bench.ends(3, &["keygen", "mine", "--no-password"]).contains("mine"), "no key is overwritten");
+
+    assert!(bench.ends(0, &["verify", "run"]).contains("unsigned"));
+    bench.ends(3, &["verify", "run", "--key", "mine.pub"]);
+    assert!(bench.ends(2, &["sign", "run", "--key", "mine"]).contains("`Test engineer`, `Quality`"));
+    assert!(bench.ends(2, &["sign", "run", "--key", "mine", "--role", "Cook"]).contains("nobody signs as"));
+    let signed = bench.ends(0, &["sign", "run", "--key", "mine", "--role", "Quality", "--name", "A. Engineer"]);
+    assert!(signed.contains("run/manifest.sha256.quality.minisig"), "{signed}");
+    assert!(bench.ends(3, &["sign", "run", "--key", "yours", "--role", "Quality"]).contains("never overwritten"));
+    bench.ends(0, &["sign", "run", "--key", "yours", "--role", "Test engineer"]);
+
+    let said = bench.ends(0, &["verify", "run", "--key", "mine.pub", "--key", "yours.pub"]);
+    assert!(said.contains("good by A. Engineer, Quality, key") && said.contains("of `yours.pub`"), "{said}");
+    bench.ends(0, &["verify", "run"]);
+    let said = bench.ends(3, &["verify", "run", "--key", "mine.pub"]);
+    assert!(said.contains("none of those named"), "{said}");
+    fs::remove_file(bench.path("run/manifest.sha256.quality.minisig")).unwrap();
+    bench.ends(3, &["verify", "run", "--key", "mine.pub", "--key", "yours.pub"]);
+}
+
+#[test]
+fn a_key_has_its_password_and_never_lies_in_the_folder() {
+    let bench = Bench::new();
+    fs::write(bench.path("password"), "correct horse\n").unwrap();
+    fs::write(bench.path("wrong"), "battery staple\n").unwrap();
+    bench.ends(0, &["keygen", "key", "--password-file", "password"]);
+    let sign = |more: &[&str], code| bench.ends(code, &[&["sign", "run", "--role", "Quality"], more].concat());
+    assert!(sign(&["--key", "key"], 2).contains("--password-file"), "nobody can be asked here");
+    assert!(sign(&["--key", "key", "--password-file", "wrong"], 3).contains("Wrong password"));
+    sign(&["--key", "key", "--password-file", "password"], 0);
+
+    assert!(bench.ends(3, &["keygen", "run/key", "--no-password"]).contains("must not lie in the run folder"));
+    assert!(bench.ends(3, &["keygen", "run/tables/key", "--no-password"]).contains("must not lie in the run folder"));
+    fs::rename(bench.path("key"), bench.path("run/key")).unwrap();
+    assert!(sign(&["--key", "run/key", "--password-file", "password"], 3).contains("must not lie in the run folder"));
+}
+
+#[test]
+fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
+    let bench = Bench::new();
+    bench.ends(0, &["keygen", "key", "--no-password"]);
+    for (file, part) in [
+        ("summary.json", "results"),
+        ("tables/hit.csv", "results"),
+        ("figures/hit_displacement.png", "figures"),
+        ("certificate.html", "certificate"),
+        ("plan/plan.psd", "plan"),
+        ("manifest.sha256", "manifest"),
+        ("journal.psdj", "record"),
+    ] {
+        let path = bench.path("run").join(file);
+        let own = fs::read(&path).unwrap();
+        let mut changed = own.clone();
+        changed[own.len() / 2] ^= 1;
+        fs::write(&path, changed).unwrap();
+        let said = bench.ends(3, &["verify", "run"]);
+        let wrong: Vec<&str> = said.lines().filter(|line| line.contains("WRONG")).collect();
+        assert!(wrong.iter().any(|line| line.trim().starts_with(part)), "{file}:\n{said}");
+        if file == "tables/hit.csv" {
+            let said = bench.ends(3, &["sign", "run", "--key", "key", "--role", "Quality"]);
+            assert!(said.contains("does not verify"), "{said}");
+            let amend = ["report", "run", "--amend", "--by", "A", "--reason", "r", "--set-particular", "customer=B"];
+            assert!(bench.ends(3, &amend).contains("does not verify"));
+        }
+        fs::write(&path, own).unwrap();
+    }
+    fs::write(bench.path("run/more.txt"), "").unwrap();
+    assert!(bench.ends(3, &["verify", "run"]).contains("`more.txt` is not in the manifest"));
+    fs::remove_file(bench.path("run/more.txt")).unwrap();
+    fs::remove_file(bench.path("run/manifest.sha256")).unwrap();
+    assert!(bench.ends(3, &["verify", "run"]).contains("there are results and no manifest"));
+}
+
+#[test]
+fn a_report_is_the_same_at_any_place_and_time() {
+    let bench = Bench::new();
+    let own = bench.files("run");
+    fs::create_dir(bench.path("elsewhere")).unwrap();
+    let run = bench.path("run").canonicalize().unwrap();
+    for (at, (zone, language)) in
+        [("Pacific/Kiritimati", "de_DE.UTF-8"), ("America/St_Johns", "C"), ("", "tr_TR")].iter().enumerate()
+    {
+        let out = format!("again-{at}");
+        let mut command = bench.command(&["report", run.to_str().unwrap(), "--out", &format!("../{out}")]);
+        command.current_dir(bench.path("elsewhere")).env("TZ", zone).env("LANG", language).env("LC_ALL", language);
+        let ended = command.env("HOME", "/nonexistent").env("COLUMNS", "40").output().unwrap();
+        assert_eq!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stderr));
+        let mut again = bench.files(&out);
+        again.push(("journal.psdj".to_owned(), fs::read(bench.path("run/journal.psdj")).unwrap()));
+        again.sort();
+        assert!(again == own, "{zone} {language}");
+    }
+}
+
+#[test]
+fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
+    let bench = Bench::new();
+    let before = bench.files("run");
+    let amend = |run: &str, particular: &str, code| {
+        let with =
+            ["report", run, "--amend", "--by", "B. Editor", "--reason", "the name was wrong", "--set-particular", particular];
+        bench.ends(code, &with)
+    };
+    let said = amend("run", "customer=Somebody & Sons", 0);
+    assert!(said.contains("run-amended-1") && said.contains("takes the place of report"), "{said}");
+    assert!(bench.files("run") == before, "the report that is replaced stays as it is");
+    let page = fs::read_to_string(bench.path("run-amended-1/certificate.html")).unwrap();
+    for told in ["Amendment to report", "B. Editor", "the name was wrong", "Somebody &amp; Sons", "Somebody Ltd"] {
+        assert!(page.contains(told), "{told}");
+    }
+    let json = |path: &str| -> serde_json::Value { serde_json::from_slice(&fs::read(bench.path(path)).unwrap()).unwrap() };
+    let (own, amended) = (json("run/summary.json"), json("run-amended-1/summary.json"));
+    assert_eq!(amended["amends"]["amendments"][0]["replaces"], own["run_id"]);
+    assert_ne!(amended["amends"]["report_id"], own["run_id"]);
+    assert!(own.get("amends").is_none() && own["procedures"] == amended["procedures"] && own["run_id"] == amended["run_id"]);
+    for same in ["journal.psdj", "tables/hit.csv", "tables/hit.parquet", "figures/hit_displacement.png", "plan/plan.psd"] {
+        assert!(fs::read(bench.path("run").join(same)).unwrap() == fs::read(bench.path("run-amended-1").join(same)).unwrap());
+    }
+    assert!(bench.ends(0, &["verify", "run-amended-1"]).contains("amendment"));
+
+    // An amendment may be amended; the chain of reports is told.
+    amend("run-amended-1", "customer=", 0);
+    let last = json("run-amended-2/summary.json");
+    assert_eq!(last["amends"]["amendments"][1]["replaces"], amended["amends"]["report_id"]);
+    bench.ends(0, &["verify", "run-amended-2"]);
+    bench.ends(0, &["keygen", "key", "--no-password"]);
+    bench.ends(0, &["sign", "run-amended-2", "--key", "key", "--role", "Quality"]);
+    bench.ends(0, &["verify", "run-amended-2", "--key", "key.pub"]);
+    let signature = fs::read(bench.path("run-amended-2/manifest.sha256.quality.minisig")).unwrap();
+    fs::write(bench.path("run/manifest.sha256.quality.minisig"), signature).unwrap();
+    bench.ends(3, &["verify", "run", "--key", "key.pub"]);
+
+    // What was measured, and when, is no particular.
+    for (particular, told) in
+        [("date=2020-01-01", "on record"), ("custumer=X", "did you mean `customer`?"), ("title=X", "no particular")]
+    {
+        let said = amend("run-amended-1", particular, 2);
+        assert!(said.contains(told), "{said}");
+    }
+    let file = bench.path("run-amended-1/amendment.json");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text.replace("the name was wrong", "no reason")).unwrap();
+    bench.ends(3, &["verify", "run-amended-1"]);
+}
