@@ -266,7 +266,7 @@ pub struct FmtArguments {
 }
 
 /// What the command line says of the plan.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct PlanSettings {
     /// The rig to use; a real rig moves only when named
     #[arg(long, value_name = "NAME")]

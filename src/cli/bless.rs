@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::exit::Failure;
 use super::loader::plain;
 use super::run_folder::write_new;
-use crate::golden::{DIAGNOSTICS, FIGURES, Finding, SUMMARY, Tolerances, Truth, compare};
+use crate::golden::{Blessed, DIAGNOSTICS, FIGURES, SUMMARY, Tolerances, Truth, compare};
 use crate::output::OutputFile;
 
 /// Where a plan's blessed results are kept.
@@ -14,19 +14,6 @@ use crate::output::OutputFile;
 pub struct BlessedFolder {
     reports: PathBuf,
     name: String,
-}
-
-/// What became of blessed results.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Blessing {
-    /// There were none.
-    New,
-    /// What is different from those before; nothing, where all was written anew.
-    Changed(Vec<Finding>),
-    /// Near enough: nothing was written.
-    Unchanged,
-    /// Why they were left as they are.
-    Refused(&'static str),
 }
 
 impl BlessedFolder {
@@ -69,23 +56,23 @@ impl BlessedFolder {
 
     /// Blesses the files of a run. Where every number is near enough and no file came or went, nothing is written, unless
     /// all is to be written anew.
-    pub fn bless(&self, files: &[OutputFile], tolerances: &Tolerances, anew: bool) -> Result<Blessing, Failure> {
+    pub fn bless(&self, files: &[OutputFile], tolerances: &Tolerances, anew: bool) -> Result<Blessed, Failure> {
         let (old, new) = (self.truth()?, truth_of(files));
         if old.text(SUMMARY).is_some() && new.is_of_faults() {
-            return Ok(Blessing::Refused("the plan had results and now fails to check; remove the folder to bless that"));
+            return Ok(Blessed::Refused("the plan had results and now fails to check; remove the folder to bless that"));
         }
         if old.is_empty() {
             self.replace(files)?;
-            return Ok(Blessing::New);
+            return Ok(Blessed::New);
         }
         let found = compare(&old, &new, tolerances);
         let mut kept: Vec<String> = files.iter().map(|file| file.path.clone()).filter(|path| is_kept(path)).collect();
         kept.sort();
         if found.is_empty() && !anew && kept == names(&self.path())? {
-            return Ok(Blessing::Unchanged);
+            return Ok(Blessed::Unchanged);
         }
         self.replace(files)?;
-        Ok(Blessing::Changed(found))
+        Ok(Blessed::Changed(found))
     }
 
     /// Puts the files that are kept in place of those that were. The old ones go only when the new ones are written.
@@ -180,7 +167,7 @@ mod tests {
         let blessed = BlessedFolder::of(&root.path().join("plans/beam.psd")).unwrap();
         let files = [file("summary.json"), file("tables/hit.csv"), file("tables/hit.parquet"), file("plan/beam.psd")];
         let bless = |anew| blessed.bless(&files, &Tolerances::default(), anew).unwrap();
-        assert!(matches!(bless(false), Blessing::Changed(found) if !found.is_empty()));
+        assert!(matches!(bless(false), Blessed::Changed(found) if !found.is_empty()));
         let read = |path: &str| std::fs::read_to_string(root.path().join("reports").join(path)).ok();
         assert_eq!(read("beam/summary.json").as_deref(), Some("{}"));
         assert_eq!(read("beam/tables/hit.csv").as_deref(), Some("{}"));
@@ -190,10 +177,10 @@ mod tests {
             (None, None, None)
         );
         assert_eq!(std::fs::read_dir(root.path().join("reports")).unwrap().count(), 2);
-        assert_eq!((bless(false), bless(true)), (Blessing::Unchanged, Blessing::Changed(Vec::new())));
+        assert_eq!((bless(false), bless(true)), (Blessed::Unchanged, Blessed::Changed(Vec::new())));
         let faults = [file(DIAGNOSTICS)];
-        assert!(matches!(blessed.bless(&faults, &Tolerances::default(), true).unwrap(), Blessing::Refused(_)));
+        assert!(matches!(blessed.bless(&faults, &Tolerances::default(), true).unwrap(), Blessed::Refused(_)));
         std::fs::remove_dir_all(blessed.path()).unwrap();
-        assert_eq!(blessed.bless(&faults, &Tolerances::default(), false).unwrap(), Blessing::New);
+        assert_eq!(blessed.bless(&faults, &Tolerances::default(), false).unwrap(), Blessed::New);
     }
 }

@@ -29,6 +29,7 @@ mod run_folder;
 mod screen;
 mod settings;
 mod sign;
+mod trial;
 mod verify;
 mod watch;
 

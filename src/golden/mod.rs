@@ -1,18 +1,26 @@
 //! A run against blessed results. In: the truth of both, as the text of their files, and the tolerances of the plan. Out:
 //! [`Finding`]s, what differs and by how much. Knows no file, no terminal and no picture.
 
+pub mod console;
 mod figures;
 mod finding;
+pub mod json;
+mod junit;
 mod number;
 mod summary;
 mod table;
+mod tap;
+mod tested;
 mod tolerance;
 mod words;
 
 use std::collections::BTreeMap;
 
 pub use finding::{Change, Count, Finding, Moved, Part, Place};
+pub use junit::junit;
 pub use table::{Cells, Table};
+pub use tap::tap;
+pub use tested::{Blessed, Outcome, Report, Tested};
 pub use tolerance::{FLOOR, Rule, Tolerances};
 pub use words::Words;
 
