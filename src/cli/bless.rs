@@ -38,10 +38,6 @@ impl BlessedFolder {
         self.reports.join(&self.name)
     }
 
-    pub fn reports(&self) -> &Path {
-        &self.reports
-    }
-
     /// What is compared of the blessed results; empty where there are none.
     pub fn truth(&self) -> Result<Truth, Failure> {
         let folder = self.path();

@@ -29,6 +29,7 @@ mod run_folder;
 mod screen;
 mod settings;
 mod sign;
+mod test;
 mod trial;
 mod verify;
 mod watch;
@@ -61,6 +62,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
         args::Command::Verify(arguments) => verify::verify(arguments, settings),
         args::Command::Sign(arguments) => sign::sign(arguments, settings),
         args::Command::Keygen(arguments) => sign::keygen(arguments, settings),
+        args::Command::Test(arguments) => test::test(arguments, settings),
         args::Command::Check(arguments) => check::check(arguments, settings),
         args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),
         args::Command::Explain { code } => explain::explain(code.as_deref(), settings),

@@ -64,7 +64,11 @@ pub fn closing(report: &Report) -> String {
         let _ = writeln!(text, "unused   {folder}  no plan has this name");
     }
     let (good, all) = (report.good(), report.tested.len());
-    let blessed = report.tested.iter().filter(|tested| matches!(tested.outcome, Outcome::Blessed(Blessed::New | Blessed::Changed(_)))).count();
+    let blessed = report
+        .tested
+        .iter()
+        .filter(|tested| matches!(tested.outcome, Outcome::Blessed(Blessed::New | Blessed::Changed(_))))
+        .count();
     let plans = if all == 1 { "plan" } else { "plans" };
     let _ = match (all - good, blessed) {
         (0, 0) => writeln!(text, "{all} {plans} as blessed"),

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 
 pub use finding::{Change, Count, Finding, Moved, Part, Place};
 pub use junit::junit;
-pub use table::{Cells, Table};
+pub use table::{Cells, Table, dimension as column_dimension};
 pub use tap::tap;
 pub use tested::{Blessed, Outcome, Report, Tested};
 pub use tolerance::{FLOOR, Rule, Tolerances};

@@ -139,7 +139,8 @@ fn words(was: &Table, is: &Table, column: &str) -> Option<Change> {
 }
 
 /// What a column measures: one name means one thing in every table.
-pub(super) fn dimension(column: &str) -> Dimension {
+#[must_use]
+pub fn dimension(column: &str) -> Dimension {
     let kinds = schema::BLOCKS.iter().map(|block| block.kind).filter(|kind| *kind != Kind::Later);
     let known = kinds.flat_map(schema::columns).find(|known| known.name == column);
     known.map_or(Dimension::NUMBER, |known| known.dimension)

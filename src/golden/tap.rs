@@ -51,7 +51,8 @@ mod tests {
     #[test]
     fn a_failure_carries_its_differences_and_a_name_steers_nothing() {
         let tested = |name: &str, outcome| Tested { name: name.to_owned(), outcome };
-        let found = vec![Finding::text(Part::Verdict, "verdict", "pass", "fail"), Finding::new(Part::Table, "table of k0", Change::Gone)];
+        let found =
+            vec![Finding::text(Part::Verdict, "verdict", "pass", "fail"), Finding::new(Part::Table, "table of k0", Change::Gone)];
         let report = Report {
             tested: vec![
                 tested("plans/a", Outcome::Same { verdict: Some("pass") }),

@@ -13,10 +13,14 @@ pub struct Tested {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// As blessed. The verdict; None of a plan that fails to check, as it should.
-    Same { verdict: Option<&'static str> },
+    Same {
+        verdict: Option<&'static str>,
+    },
     Differs(Vec<Finding>),
     /// There is nothing to hold it against.
-    NotBlessed { folder: String },
+    NotBlessed {
+        folder: String,
+    },
     /// It could not be run or compared.
     Failed(String),
     /// Another failed before it, and the first failure ends the test.
