@@ -8,6 +8,7 @@ use psd::mechanics::contact::ContactLaw;
 use psd::mechanics::impact::{Columns, ImpactInput, ImpactSolver, simulate};
 use psd::mechanics::law::ImpulseContact;
 use psd::mechanics::specimen::{Elastic, RestoringForce};
+use psd::plan::Integrator;
 
 const STEPS: u64 = 100_000;
 const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
@@ -27,6 +28,9 @@ fn example_1() -> ImpactInput {
         time_step: 1e-6,
         max_tangent_ratio: 2.0,
         law: ContactLaw::Rigid,
+        integrator: Integrator::Tangent,
+        operator_stiffness: SPECIMEN.stiffness,
+        i_modification: false,
         force_noise: 0.0,
         resolution: 0.0,
     })

@@ -16,6 +16,8 @@ pub struct Chosen<'a> {
     pub variant: &'static Variant,
     /// What stands for each argument of the variant, in the schema's order.
     arguments: Vec<Option<&'a Expr>>,
+    /// What stands after the last of them, where it takes several.
+    rest: Vec<&'a Expr>,
 }
 
 impl<'a> Checker<'a> {
@@ -61,8 +63,8 @@ impl<'a> Checker<'a> {
         if !variant.available {
             return self.fail(fault::variant_of_later_version(field, variant, span, variants));
         }
-        let placed = self.place_arguments(variant, arguments, written.span)?;
-        Some(Chosen { variant, arguments: placed })
+        let (placed, rest) = self.place_arguments(variant, arguments, written.span)?;
+        Some(Chosen { variant, arguments: placed, rest })
     }
 
     fn place_arguments(
@@ -70,10 +72,16 @@ impl<'a> Checker<'a> {
         variant: &'static Variant,
         arguments: &'a [Argument],
         span: Span,
-    ) -> Option<Vec<Option<&'a Expr>>> {
+    ) -> Option<(Vec<Option<&'a Expr>>, Vec<&'a Expr>)> {
         let mut placed: Vec<Option<&'a Expr>> = vec![None; variant.arguments.len()];
+        let mut rest = Vec::new();
+        let takes_many = variant.arguments.last().is_some_and(|last| matches!(last.ty, FieldType::Inners));
         let mut faulty = false;
         for (index, argument) in arguments.iter().enumerate() {
+            if takes_many && argument.name.is_none() && index >= placed.len() {
+                rest.push(&argument.value);
+                continue;
+            }
             let position = match &argument.name {
                 None => Some(index).filter(|index| *index < placed.len()),
                 Some(name) => variant.arguments.iter().position(|field| field.name == name.node),
@@ -99,7 +107,7 @@ impl<'a> Checker<'a> {
                 faulty = true;
             }
         }
-        (!faulty).then_some(placed)
+        (!faulty).then_some((placed, rest))
     }
 
     /// An argument that is a number: what was written, else its default. None where it is faulty or stands nowhere.
@@ -142,6 +150,17 @@ impl<'a> Checker<'a> {
         self.chosen(field.name, variants, written?)
     }
 
+    /// An argument that is a list of numbers known before the run, and where it stands.
+    pub fn list_argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Vec<f64>> {
+        let (field, written) = chosen.find(name)?;
+        let written = written?;
+        let values: Option<Vec<f64>> = self.typed_field(field, written, place)?.parts().iter().map(Formula::constant).collect();
+        if values.is_none() {
+            self.faults.push(values::needs_the_run(written.span, self.text(written.span)));
+        }
+        values
+    }
+
     /// An argument that is a text, and where it stands; `Some(None)` where it is left out, None where it is no text.
     #[expect(clippy::option_option, reason = "left out and faulty are different things here")]
     pub fn text_argument(&mut self, chosen: &Chosen<'a>, name: &str) -> Option<Option<(String, Span)>> {
@@ -180,6 +199,16 @@ impl<'a> Chosen<'a> {
     /// Where an argument was written.
     pub fn span(&self, name: &str) -> Option<Span> {
         self.find(name)?.1.map(|written| written.span)
+    }
+
+    /// What was written for an argument that takes several: after each other, or as a list.
+    pub fn several(&self, name: &str) -> Vec<&'a Expr> {
+        let first = self.find(name).and_then(|(_, written)| written);
+        let items = first.into_iter().flat_map(|written| match &written.kind {
+            ExprKind::List { items, unit: None } => items.iter().collect(),
+            _ => vec![written],
+        });
+        items.chain(self.rest.iter().copied()).collect()
     }
 
     /// The argument of the schema, and what was written for it.

@@ -4,7 +4,7 @@ use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::values;
 use super::fields::whole;
-use super::specimen;
+use super::{integrator, specimen};
 use crate::formula::{Formula, Operator};
 use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Until};
 use crate::schema::Kind;
@@ -25,7 +25,9 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     };
     let damping = checker.quantity(block, "damping");
     let contact = contact(checker, block);
-    checker.word(block, "integrator", "tangent");
+    let integrator = integrator::integrator(checker, block);
+    let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
+    let i_modification = checker.word(block, "i_modification", "false").map(|word| word == "true");
     let time_step = match checker.given(block, "time_step") {
         Some(_) => checker.quantity(block, "time_step"),
         None => Some(twentieth_of_critical()),
@@ -42,6 +44,9 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         stiffness: stiffness?,
         damping: damping?,
         contact: contact?,
+        integrator: integrator?,
+        allow_unstable: allow_unstable?,
+        i_modification: i_modification?,
         time_step: time_step?,
         duration: duration?,
         until: if until? == "duration" { Until::Duration } else { Until::StrikerStop },
@@ -56,6 +61,7 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         let steps = (duration / time_step).ceil();
         return checker.fail(values::too_many("steps", steps, MOST_STEPS, at, "shorten `duration` or take a longer `time_step`"));
     }
+    integrator::meets_the_contact(checker, block, impact.integrator, &impact.contact)?;
     Some(ProcedureKind::Impact(impact))
 }
 

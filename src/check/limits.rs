@@ -72,6 +72,8 @@ impl<'a> Checker<'a> {
         let increment = self.bounds(block, "increment");
         let tracking_error = self.bounds(block, "tracking_error");
         let energy_error = self.bounds(block, "energy_error");
+        let tracking_energy_error = self.bounds(block, "tracking_energy_error");
+        let nrms_error = self.bounds(block, "nrms_error");
         Some(Limits {
             displacement: displacement?,
             force: force?,
@@ -79,6 +81,8 @@ impl<'a> Checker<'a> {
             increment: increment?,
             tracking_error: tracking_error?,
             energy_error: energy_error?,
+            tracking_energy_error: tracking_energy_error?,
+            nrms_error: nrms_error?,
         })
     }
 
@@ -117,7 +121,7 @@ impl<'a> Checker<'a> {
 }
 
 /// Each limit by the name of its field.
-fn by_field(limits: &Limits) -> [(&'static str, Interval); 6] {
+fn by_field(limits: &Limits) -> [(&'static str, Interval); 8] {
     [
         ("displacement", limits.displacement),
         ("force", limits.force),
@@ -125,6 +129,8 @@ fn by_field(limits: &Limits) -> [(&'static str, Interval); 6] {
         ("increment", limits.increment),
         ("tracking_error", limits.tracking_error),
         ("energy_error", limits.energy_error),
+        ("tracking_energy_error", limits.tracking_energy_error),
+        ("nrms_error", limits.nrms_error),
     ]
 }
 
@@ -136,6 +142,8 @@ fn intersection(one: &Limits, other: &Limits) -> Limits {
         increment: one.increment.intersection(other.increment),
         tracking_error: one.tracking_error.intersection(other.tracking_error),
         energy_error: one.energy_error.intersection(other.energy_error),
+        tracking_energy_error: one.tracking_energy_error.intersection(other.tracking_energy_error),
+        nrms_error: one.nrms_error.intersection(other.nrms_error),
     }
 }
 

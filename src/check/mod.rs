@@ -1,6 +1,7 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod behaviour;
 mod calendar;
 mod call;
 mod checker;
@@ -17,6 +18,7 @@ mod golden;
 mod impact;
 mod imports;
 mod inspect;
+mod integrator;
 mod limits;
 mod literal;
 mod move_block;
@@ -32,6 +34,7 @@ mod scope;
 mod specimen;
 mod stiffness_ramp;
 mod striker;
+mod table_file;
 #[cfg(test)]
 mod tests;
 mod warnings;
@@ -137,6 +140,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(Procedure { kind: ProcedureKind::Impact(impact), .. }) = procedure {
             let striker = strikers.get(impact.striker).and_then(Option::as_ref);
             warnings::impact(checker, *block, impact, striker);
+            integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
         }
     }
     let requirements = checker.requirements();
@@ -148,6 +152,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
         if let Some(rig) = &rig {
             real_rig::warn(checker, rig);
+        }
+        if let Some(limits) = &limits {
+            specimen::warn_of_short_tables(checker, &specimens, limits);
         }
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
     }

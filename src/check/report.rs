@@ -8,7 +8,7 @@ use crate::plan::{Figure, FigureKind, Format, Procedure, Report};
 use crate::schema::Kind;
 use crate::syntax::ast::{Expr, ExprKind};
 
-const EVERY_FORMAT: [Format; 3] = [Format::Html, Format::Csv, Format::Parquet];
+const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
 
 /// `procedures` holds those without a fault, by their place in the plan.
 pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option<Report> {
@@ -36,6 +36,7 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
 fn format(name: &str) -> Format {
     match name {
         "html" => Format::Html,
+        "pdf" => Format::Pdf,
         "csv" => Format::Csv,
         _ => Format::Parquet,
     }

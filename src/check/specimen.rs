@@ -1,10 +1,11 @@
 //! `specimen NAME { … }`: equivalent mass and behaviour.
 
-use super::checker::{Checker, Place};
-use super::choice::Chosen;
-use super::faults::names as fault;
-use crate::plan::{Behaviour, Ends, Specimen};
-use crate::schema::FieldType;
+use super::behaviour::{self, Written};
+use super::checker::Checker;
+use super::faults::{names as fault, specimens};
+use super::limits::CheckedLimits;
+use crate::plan::{Behaviour, Interval, Mechanism, Specimen};
+use crate::schema::{FieldType, Kind};
 use crate::source::Span;
 
 /// A specimen whose entries are all right; None where a fault was reported.
@@ -52,65 +53,70 @@ fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
     Some(density * area * length / 2.0)
 }
 
-/// The value of `beam.mass` or `beam.stiffness`; None where the specimen has a fault that is reported in its place.
+/// q·A·L, kg.
+fn own_mass(checker: &mut Checker, block: usize) -> Option<f64> {
+    let (density, area, length) =
+        (checker.constant(block, "density")?, checker.constant(block, "area")?, checker.constant(block, "length")?);
+    Some(density * area * length)
+}
+
+/// The value of `beam.mass`, `beam.stiffness` or another; None where the specimen has a fault that is reported in its place.
 pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -> Option<f64> {
-    match name {
-        "mass" => mass(checker, block),
-        // Known only of a behaviour; that a virtual specimen lacks it is said already.
-        _ if checker.real_rig.is_some() && checker.given(block, "behaviour").is_none() => {
-            let declared = &checker.scope.blocks[block];
-            checker.fail(fault::stiffness_without_behaviour(declared.name, asked_at))
-        }
-        _ => behaviour(checker, block, asked_at).map(|behaviour| behaviour.initial_stiffness()),
+    let declared = &checker.scope.blocks[block];
+    if name == "mass" {
+        return mass(checker, block);
     }
+    // Known only of a behaviour; that a virtual specimen lacks it is said already.
+    if checker.real_rig.is_some() && checker.given(block, "behaviour").is_none() {
+        return checker.fail(fault::property_without_behaviour(declared.name, name, asked_at));
+    }
+    let behaviour = behaviour(checker, block, asked_at)?;
+    let (value, reason) = match (name, &behaviour) {
+        ("stiffness", _) => (behaviour.initial_stiffness(), ""),
+        ("capacity", _) => (behaviour.capacity(), "its force has no bound"),
+        (_, Behaviour::Portal(portal)) => {
+            let mechanism = Mechanism::ALL.into_iter().find(|mechanism| name.starts_with(mechanism.name()))?;
+            (portal.collapse_load(mechanism), "its loads do no work on that mechanism")
+        }
+        _ => (f64::INFINITY, "it is no `portal`"),
+    };
+    if value.is_finite() { Some(value) } else { checker.fail(specimens::no_such_property(declared.name, name, reason, asked_at)) }
 }
 
 /// The behaviour; a fault in it is reported once, however often it is asked for.
 pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<Behaviour> {
     let known = checker.faults.len();
-    let behaviour = checker.within_entry(block, "behaviour", asked_at, |checker, written, place| {
+    let stated = ["density", "area", "length"].into_iter().all(|field| checker.given(block, field).is_some());
+    let own_mass = stated.then(|| own_mass(checker, block)).flatten();
+    let behaviour = checker.within_entry(block, "behaviour", asked_at, |checker, expr, place| {
         let FieldType::Choice(variants) = checker.scope.blocks[block].kind.field("behaviour")?.ty else { return None };
-        let chosen = checker.chosen("behaviour", variants, written)?;
-        match chosen.variant.name {
-            "elastic" => Some(Behaviour::Elastic { stiffness: checker.constant_argument(&chosen, "stiffness", place)? }),
-            "bilinear" => {
-                let stiffness = checker.constant_argument(&chosen, "stiffness", place);
-                let yield_force = checker.constant_argument(&chosen, "yield_force", place);
-                let hardening = checker.constant_argument(&chosen, "hardening", place);
-                Some(Behaviour::Bilinear { stiffness: stiffness?, yield_force: yield_force?, hardening: hardening? })
-            }
-            _ => beam(checker, &chosen, place),
-        }
+        behaviour::behaviour(checker, &Written { field: "behaviour", variants, expr, place, own_mass })
     });
     checker.drop_repeated(known);
     behaviour
 }
 
-/// Midspan or tip stiffness of a beam: cantilever 3EI/L³, simply supported 48EI/L³, built in 192EI/L³, partly built in
-/// (192EI/L³)(r+2)/(r+8) with r = `k_θ`·L/EI at each end.
-fn beam<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<Behaviour> {
-    let length = checker.constant_argument(chosen, "length", place);
-    let youngs_modulus = checker.constant_argument(chosen, "youngs_modulus", place);
-    let second_moment = checker.constant_argument(chosen, "second_moment", place);
-    let (field, written) = chosen.find("ends")?;
-    let FieldType::Choice(variants) = field.ty else { return None };
-    let ends = checker.chosen("ends", variants, written?)?;
-    let ends = match ends.variant.name {
-        "cantilever" => Ends::Cantilever,
-        "simply_supported" => Ends::SimplySupported,
-        "built_in" => Ends::BuiltIn,
-        _ => Ends::PartlyBuiltIn { rotational_stiffness: checker.constant_argument(&ends, "rotational_stiffness", place)? },
-    };
-    let (length, youngs_modulus, second_moment) = (length?, youngs_modulus?, second_moment?);
-    let bending = youngs_modulus * second_moment / length.powi(3);
-    let stiffness = match ends {
-        Ends::Cantilever => 3.0 * bending,
-        Ends::SimplySupported => 48.0 * bending,
-        Ends::BuiltIn => 192.0 * bending,
-        Ends::PartlyBuiltIn { rotational_stiffness } => {
-            let r = rotational_stiffness * length / (youngs_modulus * second_moment);
-            192.0 * bending * (r + 2.0) / (r + 8.0)
+/// Warns where the limits let a specimen go beyond the points of its table.
+pub fn warn_of_short_tables(checker: &mut Checker, specimens: &[Option<Specimen>], limits: &CheckedLimits) {
+    let Some(limit_at) = limits.displacement_at else { return };
+    let blocks: Vec<usize> = checker.scope.of_kind(Kind::Specimen).map(|(index, _)| index).collect();
+    for (block, specimen) in blocks.into_iter().zip(specimens) {
+        let Some(behaviour) = specimen.as_ref().and_then(|specimen| specimen.behaviour.as_ref()) else { continue };
+        let mut named = Vec::new();
+        if let Some((_, entry)) = checker.given(block, "behaviour") {
+            behaviour::tables_named(&entry.value, &mut named);
         }
-    };
-    Some(Behaviour::Beam { stiffness, length, youngs_modulus, second_moment, ends })
+        // Behind a spring or beside one the specimen's displacement is not the table's.
+        let table = match behaviour {
+            Behaviour::Rate { of, .. } => of,
+            other => other,
+        };
+        let (Behaviour::Table(table), [named_at]) = (table, named.as_slice()) else { continue };
+        let (Some([low, _]), Some([high, _])) = (table.points.first(), table.points.last()) else { continue };
+        let reach = Interval { low: *low, high: *high };
+        let allowed = limits.limits.displacement;
+        if allowed.low < reach.low || allowed.high > reach.high {
+            checker.faults.push(specimens::table_too_short(&table.file, reach, allowed, *named_at, limit_at));
+        }
+    }
 }

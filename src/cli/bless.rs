@@ -23,7 +23,8 @@ impl BlessedFolder {
         match place.parent().and_then(Path::parent) {
             Some(above) => {
                 // As the person would write it, where that is the same place.
-                let typed = plan.parent().and_then(Path::parent).filter(|typed| typed.canonicalize().is_ok_and(|place| place == above));
+                let typed =
+                    plan.parent().and_then(Path::parent).filter(|typed| typed.canonicalize().is_ok_and(|place| place == above));
                 let here = plan.parent().is_some_and(|folder| folder.parent() == Some(Path::new("")));
                 let here = here && Path::new(".").canonicalize().is_ok_and(|place| place == above);
                 Self::within(&if here { PathBuf::new() } else { typed.unwrap_or(above).to_owned() }.join("reports"), &place)

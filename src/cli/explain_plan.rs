@@ -9,9 +9,10 @@ use super::exit::Exit;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
+use crate::output::behaviour;
 use crate::plan::{Interval, Link, Plan, VirtualLink};
 use crate::quantity::Dimension;
-use crate::quantity::display::{digits, join, readable, significant, unit};
+use crate::quantity::display::{digits, join, readable, significant, stated, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
 use crate::verdict::{self, Assessment};
 
@@ -98,6 +99,13 @@ impl<'a> DryRun<'a> {
                 let _ = writeln!(text, "{}\n{}", settings.paint_heading(heading), columns(&rows));
             }
         };
+        for specimen in &self.plan.specimens {
+            if let Some(behaviour) = &specimen.behaviour {
+                let rows = behaviour::rows(behaviour, &stated);
+                let rows = rows.into_iter().map(|(label, text)| vec![label.to_owned(), escape(&text)]).collect();
+                section(&format!("Specimen {}", specimen.name), rows);
+            }
+        }
         section("What moves", self.motions());
         for procedure in &self.record.procedures {
             if let History::Impact(history) = &procedure.history
@@ -172,7 +180,9 @@ impl<'a> DryRun<'a> {
             ("speed", limits.speed, Dimension::VELOCITY, size(|reach| reach.speed)),
             ("increment", limits.increment, Dimension::LENGTH, size(|reach| reach.increment)),
             ("tracking error", limits.tracking_error, Dimension::LENGTH, size(|reach| reach.tracking_error)),
-            ("energy error", limits.energy_error, Dimension::NUMBER, self.energy_error()),
+            ("energy error", limits.energy_error, Dimension::NUMBER, self.largest("energy_error")),
+            ("tracking energy error", limits.tracking_energy_error, Dimension::NUMBER, self.largest("tracking_energy_error")),
+            ("NRMS tracking error", limits.nrms_error, Dimension::NUMBER, self.largest("nrms_error")),
         ];
         let mut rows = vec![row(["limit", "allowed", "reached", "margin"])];
         for (name, allowed, dimension, reached) in all {
@@ -189,8 +199,9 @@ impl<'a> DryRun<'a> {
         if rows.len() == 1 { vec![row(["none: only a virtual rig may run this plan"])] } else { rows }
     }
 
-    fn energy_error(&self) -> Option<Interval> {
-        let errors = self.record.procedures.iter().filter_map(|procedure| match procedure.result("energy_error")?.value {
+    /// Largest size of a result over all procedures that have it.
+    fn largest(&self, result: &str) -> Option<Interval> {
+        let errors = self.record.procedures.iter().filter_map(|procedure| match procedure.result(result)?.value {
             ResultValue::Number { value, .. } => value.map(f64::abs),
             ResultValue::List(_) => None,
         });
@@ -233,7 +244,7 @@ fn impact(history: &ImpactHistory) -> Vec<Vec<String>> {
             &format!("{}, {} {judged}", readable(history.time_step, Dimension::TIME), significant(ratio, 3)),
         ]),
         row(["virtual time", &format!("{} in {} steps", readable(ends, Dimension::TIME), history.steps.len().saturating_sub(1))]),
-        row(["peak displacement", &peak(|step| step.command, Dimension::LENGTH)]),
+        row(["peak displacement", &peak(|step| step.computed, Dimension::LENGTH)]),
         row(["peak restoring force", &peak(|step| step.restoring_force, Dimension::FORCE)]),
         row(["peak contact force", &peak(|step| step.contact_force, Dimension::FORCE)]),
         row(["peak velocity of the structure", &peak(|step| step.velocity, Dimension::VELOCITY)]),
@@ -273,8 +284,8 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Calibration, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
-            Striker, Until,
+            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle,
+            Specimen, Striker, Until,
         };
         let specimen = Specimen {
             name: "beam".to_owned(),
@@ -290,6 +301,9 @@ mod tests {
             stiffness: Constant(327.65),
             damping: Constant(0.0),
             contact: Contact::Rigid,
+            integrator: Integrator::Tangent,
+            allow_unstable: false,
+            i_modification: false,
             time_step: Constant(0.01),
             duration: Constant(1.0),
             until: Until::StrikerStop,

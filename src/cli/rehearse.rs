@@ -10,7 +10,7 @@ use super::output::{give, tell};
 use super::run::{Ran, on_its_rig, summary};
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
-use crate::plan::Plan;
+use crate::plan::{Behaviour, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::rig::VirtualRig;
@@ -44,7 +44,7 @@ pub fn rehearse(plan: &Plan, arguments: &RunArguments, settings: Settings) -> Re
 /// On what it is predicted.
 fn told(plan: &Plan, stand_in: &Plan) -> String {
     let specimen = VirtualRig::specimen_of(stand_in);
-    let stiffness = specimen.and_then(|specimen| specimen.behaviour).map(|behaviour| behaviour.initial_stiffness());
+    let stiffness = specimen.and_then(|specimen| specimen.behaviour.as_ref()).map(Behaviour::initial_stiffness);
     let stiffness = stiffness.map_or_else(|| "unknown".to_owned(), |stiffness| readable(stiffness, Dimension::STIFFNESS));
     let noise = stand_in.rig.link.as_virtual().map_or(0.0, |link| link.noise);
     let noise = readable(noise, Dimension::FORCE);

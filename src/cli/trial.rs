@@ -7,13 +7,15 @@ use std::path::Path;
 use super::args::PlanSettings;
 use super::conclude::made_of;
 use super::exit::Failure;
+use super::record_file::{self, Circumstances};
 use super::{plan_file, provenance};
 use crate::diagnostic::render::{Appearance, render_all};
 use crate::golden::{DIAGNOSTICS, Tolerances};
 use crate::output::{OutputFile, Run, figure_data};
 use crate::plan::Plan;
 use crate::rig::VirtualRig;
-use crate::run::{self, Inspection, Observer, StepReport};
+use crate::run::tape;
+use crate::run::{Inspection, Observer, StepReport};
 use crate::verdict;
 
 /// What a plan gives.
@@ -33,9 +35,12 @@ pub fn of(path: &Path) -> Result<Trial, Failure> {
         return Ok(Trial { files, tolerances: Tolerances::default(), verdict: None });
     };
     let operator = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
-    let record = run::run(plan, &mut VirtualRig::of_plan(plan), &mut Unattended { operator });
-    let assessment = verdict::assess(plan, &record);
     let provenance = provenance::of(plan);
+    let header = record_file::header(plan, &PlanSettings::default(), &provenance, Circumstances::default());
+    let journal = record_file::begin_nowhere(plan, &header)?;
+    let recorded = tape::record(plan, &mut VirtualRig::of_plan(plan), &mut Unattended { operator }, journal, Box::new(|| None));
+    let record = recorded.record;
+    let assessment = verdict::assess(plan, &record);
     let mut files = made_of(plan, &record, &assessment, &provenance, None)?;
     files.push(figure_data(&Run { plan, record: &record, assessment: &assessment, provenance: &provenance }));
     Ok(Trial { files, tolerances: Tolerances::of(plan), verdict: Some(assessment.verdict.name()) })

@@ -93,6 +93,13 @@ codes! {
     E614 FieldWithoutUse Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
+    E630 CornersDoNotFit Error;
+    E631 BadTableFile Error;
+    E632 BehaviourIncomplete Error;
+    E633 UnfitInside Error;
+    E634 NoSuchProperty Error;
+    E642 LawNeedsTangent Error;
+    E643 Unstable Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     // 7: what runs but is unwise
@@ -106,6 +113,7 @@ codes! {
     W708 DeviceNotPinned Warning;
     W710 WideTolerance Warning;
     W711 ResolutionUnknown Warning;
+    W715 TableTooShort Warning;
 }
 
 impl std::fmt::Display for Code {

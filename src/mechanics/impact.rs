@@ -4,11 +4,11 @@
 use super::contact::{ContactLaw, StepState};
 use super::energy::Energies;
 use super::integrator::Motion;
-use super::law::{Advance, AnyContact, Bodies, Law, Start};
+use super::law::{Advance, Bodies, Start};
+use super::scheme::{AnyScheme, Scheme};
 use super::specimen::RestoringForce;
-
-/// A tangent stiffness needs a change of force this many times the load cell's noise.
-const NOISE_MULTIPLE: f64 = 10.0;
+use super::tangent::TangentStiffness;
+use crate::plan::Integrator;
 
 /// All an impact starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,12 @@ pub struct ImpactInput {
     /// c of `K_t within [0, c·K0]`
     pub max_tangent_ratio: f64,
     pub law: ContactLaw,
+    pub integrator: Integrator,
+    /// `K_I` of α-OS and of the I-modification, N/m.
+    pub operator_stiffness: f64,
+    /// Whether the recursion takes r* = `r_m` − `K_I`(`d_m` − d̃) in place of the reading: the force where the specimen was
+    /// to be, as long as it is nearly elastic.
+    pub i_modification: bool,
     /// Standard deviation of the load cell, N.
     pub force_noise: f64,
     /// Of the displacement reading, m.
@@ -57,14 +63,18 @@ pub struct ImpactState {
     pub time: f64,
     /// Computed X, m.
     pub displacement: f64,
+    /// Imposed on the specimen, m: X itself, but under α-OS the place it was foretold at.
+    pub target: f64,
     /// m
     pub measured_displacement: f64,
     /// m/s
     pub velocity: f64,
     /// m/s²
     pub acceleration: f64,
-    /// N
+    /// Measured, N.
     pub restoring_force: f64,
+    /// What the recursion takes for the force at X, N: the reading, but for what the I-modification and α-OS correct.
+    pub force_at_computed: f64,
     /// Mean over the step, N.
     pub contact_force: f64,
     /// m
@@ -80,35 +90,39 @@ pub struct ImpactState {
     pub energies: Energies,
 }
 
-/// The step of one contact law: the code that the interactive solver and the simulation share.
+/// The step of one scheme: the code that the interactive solver and the simulation share.
 #[derive(Clone, Debug)]
-struct Step<L> {
+struct Step<S> {
     bodies: Bodies,
-    law: L,
+    scheme: S,
     input_energy: f64,
-    /// m, the smallest change of measured displacement that gives a stiffness.
-    least_change: f64,
-    largest_tangent: f64,
+    tangent: TangentStiffness,
+    /// `K_I` of the I-modification, N/m; 0 without it.
+    modification: f64,
     state: ImpactState,
 }
 
-impl<L: Law> Step<L> {
-    fn new(input: &ImpactInput, law: L, displacement: f64, restoring_force: f64) -> Self {
+impl<S: Scheme> Step<S> {
+    fn new(input: &ImpactInput, scheme: S, displacement: f64, restoring_force: f64) -> Self {
         let input_energy = input.striker_energy();
+        let first = (displacement, restoring_force);
+        let (noise, resolution) = (input.force_noise, input.resolution);
         Self {
             bodies: input.bodies(),
-            law,
+            scheme,
             input_energy,
-            least_change: input.resolution.max(NOISE_MULTIPLE * input.force_noise / input.stiffness),
-            largest_tangent: input.max_tangent_ratio * input.stiffness,
+            tangent: TangentStiffness::new(input.stiffness, input.max_tangent_ratio, noise, resolution, first),
+            modification: if input.i_modification { input.operator_stiffness } else { 0.0 },
             state: ImpactState {
                 step: 0,
                 time: 0.0,
                 displacement,
+                target: displacement,
                 measured_displacement: displacement,
                 velocity: 0.0,
                 acceleration: -restoring_force / input.mass,
                 restoring_force,
+                force_at_computed: restoring_force,
                 contact_force: 0.0,
                 striker_displacement: displacement - input.gap,
                 striker_velocity: input.striker_velocity,
@@ -120,46 +134,46 @@ impl<L: Law> Step<L> {
         }
     }
 
-    #[inline]
-    fn advance(&mut self) -> Advance {
+    fn start(&self) -> Start {
         let state = &self.state;
-        let start = Start {
+        Start {
             structure: Motion {
                 displacement: state.displacement,
                 velocity: state.velocity,
                 acceleration: state.acceleration,
-                restoring_force: state.restoring_force,
+                restoring_force: state.force_at_computed,
             },
             striker_displacement: state.striker_displacement,
             striker_velocity: state.striker_velocity,
             contact_force: state.contact_force,
             tangent_stiffness: state.tangent_stiffness,
             indentation: state.indentation,
-        };
-        self.law.advance(&self.bodies, &start)
-    }
-
-    /// Eq. (6): the secant of what was measured, or the last one where the change is too small to tell.
-    #[inline]
-    fn tangent(&self, measured_displacement: f64, restoring_force: f64) -> f64 {
-        let change = measured_displacement - self.state.measured_displacement;
-        if change.abs() > self.least_change {
-            ((restoring_force - self.state.restoring_force) / change).clamp(0.0, self.largest_tangent)
-        } else {
-            self.state.tangent_stiffness
         }
     }
 
     #[inline]
-    fn accept(&mut self, advance: &Advance, measured_displacement: f64, restoring_force: f64) {
-        let tangent_stiffness = self.tangent(measured_displacement, restoring_force);
+    fn predict(&mut self) -> S::Prediction {
+        let start = self.start();
+        self.scheme.predict(&self.bodies, &start)
+    }
+
+    #[inline]
+    fn accept(&mut self, prediction: &S::Prediction, measured_displacement: f64, restoring_force: f64) {
+        self.tangent.take(measured_displacement, restoring_force);
+        let target = self.scheme.target(prediction);
+        // r* = r_m − K_I(d_m − d̃). Without it not even a rounding changes.
+        let felt = match self.modification {
+            0.0 => restoring_force,
+            stiffness => restoring_force - stiffness * (measured_displacement - target),
+        };
+        let advance: Advance = self.scheme.complete(&self.bodies, &self.start(), prediction, felt);
         let before = &self.state;
-        let Motion { displacement, velocity, acceleration, .. } = advance.structure;
+        let Motion { displacement, velocity, acceleration, restoring_force: force_at_computed } = advance.structure;
         let moved = displacement - before.displacement;
         let mut energies = Energies {
             striker: 0.5 * self.bodies.striker_mass * advance.striker_velocity * advance.striker_velocity,
             structure: 0.5 * self.bodies.mass * velocity * velocity,
-            restoring: before.energies.restoring + 0.5 * (before.restoring_force + restoring_force) * moved,
+            restoring: before.energies.restoring + 0.5 * (before.force_at_computed + force_at_computed) * moved,
             damping: before.energies.damping + advance.damping_work,
             contact_loss: before.energies.contact_loss + advance.contact_loss,
             indentation: before.energies.indentation + advance.indentation_work,
@@ -174,14 +188,16 @@ impl<L: Law> Step<L> {
             step,
             time,
             displacement,
+            target,
             measured_displacement,
             velocity,
             acceleration,
             restoring_force,
+            force_at_computed,
             contact_force: advance.contact_force,
             striker_displacement: advance.striker_displacement,
             striker_velocity: advance.striker_velocity,
-            tangent_stiffness,
+            tangent_stiffness: self.tangent.value(),
             indentation: advance.indentation,
             state: advance.state,
             energies,
@@ -192,8 +208,8 @@ impl<L: Law> Step<L> {
 /// The impact on a rig: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]
 pub struct ImpactSolver {
-    step: Step<AnyContact>,
-    predicted: Option<Advance>,
+    step: Step<AnyScheme>,
+    predicted: Option<<AnyScheme as Scheme>::Prediction>,
     striker_stopped: bool,
 }
 
@@ -201,21 +217,30 @@ impl ImpactSolver {
     /// R₀ is read once before the first step; M Ẍ₀ = −CẊ₀ − R₀ with the structure at rest.
     #[must_use]
     pub fn new(input: &ImpactInput, initial_displacement: f64, initial_restoring_force: f64) -> Self {
-        let law = AnyContact::new(input.law, &input.bodies(), input.striker_velocity);
-        let step = Step::new(input, law, initial_displacement, initial_restoring_force);
+        let step = Step::new(input, AnyScheme::new(input), initial_displacement, initial_restoring_force);
         Self { step, predicted: None, striker_stopped: false }
     }
 
-    /// Displacement to command for the end of the step, m. Asked again before `complete`, it is the same.
+    /// Displacement to command in this step, m. Asked again before `complete`, it is the same.
     pub fn predict(&mut self) -> f64 {
         let step = &mut self.step;
-        self.predicted.get_or_insert_with(|| step.advance()).structure.displacement
+        let prediction = self.predicted.get_or_insert_with(|| step.predict());
+        step.scheme.target(prediction)
+    }
+
+    /// Velocity that the step is foretold to end with, m/s: exact under `tangent`, ṽ with the acceleration kept under the
+    /// others. A blow changes it.
+    pub fn predicted_velocity(&mut self) -> f64 {
+        let step = &mut self.step;
+        let start = step.start();
+        let prediction = self.predicted.get_or_insert_with(|| step.predict());
+        step.scheme.velocity(&step.bodies, &start, prediction)
     }
 
     /// Ends the step with what was measured at its end.
     pub fn complete(&mut self, measured_displacement: f64, restoring_force: f64) -> &ImpactState {
-        let advance = self.predicted.take().unwrap_or_else(|| self.step.advance());
-        self.step.accept(&advance, measured_displacement, restoring_force);
+        let prediction = self.predicted.take().unwrap_or_else(|| self.step.predict());
+        self.step.accept(&prediction, measured_displacement, restoring_force);
         self.striker_stopped |= self.step.state.striker_velocity <= 0.0;
         &self.step.state
     }
@@ -299,20 +324,21 @@ impl Sink for Columns {
     }
 }
 
-/// An impact on an ideal rig, one law and one specimen compiled together: `steps` steps from rest at X = 0. The law is
-/// the one given, whatever `input.law` says.
-pub fn simulate<L: Law, S: RestoringForce, K: Sink>(
+/// An impact on an ideal rig, one scheme and one specimen compiled together: `steps` steps from rest at X = 0. A law is
+/// a scheme, in tangent form. The scheme is the one given, whatever `input` says.
+pub fn simulate<M: Scheme, S: RestoringForce, K: Sink>(
     input: &ImpactInput,
-    law: L,
+    scheme: M,
     specimen: &mut S,
     steps: u64,
     sink: &mut K,
 ) -> ImpactState {
-    let mut step = Step::new(input, law, 0.0, specimen.move_to(0.0));
+    let mut step = Step::new(input, scheme, 0.0, specimen.move_to(0.0));
     for _ in 0..steps {
-        let advance = step.advance();
-        let restoring_force = specimen.move_to(advance.structure.displacement);
-        step.accept(&advance, advance.structure.displacement, restoring_force);
+        let prediction = step.predict();
+        let target = step.scheme.target(&prediction);
+        let restoring_force = specimen.move_to(target);
+        step.accept(&prediction, target, restoring_force);
         sink.push(&step.state);
     }
     step.state

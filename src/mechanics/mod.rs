@@ -11,7 +11,10 @@ pub mod impact;
 pub mod integrator;
 pub mod law;
 pub mod method;
+pub mod monitor;
+pub mod scheme;
 pub mod specimen;
+pub mod split;
 pub mod summary;
 pub mod tangent;
 

@@ -2,9 +2,11 @@
 //! bytes; only `cli` writes files. Knows no clock, no file, no environment: the same run gives the same bytes.
 
 mod amendment;
+pub mod behaviour;
 mod certificate;
 pub mod console;
 mod deviations;
+mod document;
 mod figures;
 mod manifest;
 mod number;
@@ -87,6 +89,8 @@ pub enum OutputError {
     Table { procedure: String, reason: String },
     #[error("the figure `{figure}` of `{procedure}` could not be drawn: {reason}")]
     Figure { figure: &'static str, procedure: String, reason: String },
+    #[error("the report could not be set on paper: {0}")]
+    Pdf(String),
     #[error("the summary could not be written: {0}")]
     Summary(#[from] serde_json::Error),
 }
@@ -98,12 +102,23 @@ pub enum OutputError {
 pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let figures = figures::all(run)?;
     let mut files = Vec::new();
-    if wants(run.plan, Format::Html) {
-        files.push(OutputFile { path: "certificate.html".to_owned(), bytes: certificate::html(run, &figures).into_bytes() });
+    let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
+    if html || pdf {
+        let report = certificate::document(run, &figures);
+        if html {
+            files.push(OutputFile { path: "certificate.html".to_owned(), bytes: document::html::html(&report).into_bytes() });
+        }
+        if pdf {
+            let bytes = document::pdf::pdf(&report).map_err(OutputError::Pdf)?;
+            files.push(OutputFile { path: "certificate.pdf".to_owned(), bytes });
+        }
     }
     files.push(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() });
     files.extend(tables::all(run)?);
-    files.extend(figures.into_iter().map(|figure| OutputFile { path: figure.path, bytes: figure.png }));
+    for figure in figures {
+        files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
+        files.push(OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() });
+    }
     files.extend(
         run.plan
             .files

@@ -35,18 +35,56 @@ fn kept_together(text: &str) -> String {
 }
 
 fn join(number: &str, unit: &str) -> String {
-    if unit.is_empty() { number.to_owned() } else { format!("{number}\u{a0}{}", display::typeset(unit)) }
+    joined(number, &display::typeset(unit))
+}
+
+/// A number and a unit that is typeset already.
+fn joined(number: &str, unit: &str) -> String {
+    if unit.is_empty() { number.to_owned() } else { format!("{number}\u{a0}{unit}") }
+}
+
+/// The coverage factor of an expanded uncertainty U = k·u: about 95 % of a normal distribution.
+pub(super) const COVERAGE: f64 = 2.0;
+
+/// A number and its uncertainties in one unit, all to the standard uncertainty's second digit.
+pub(super) struct Parts {
+    pub value: String,
+    /// Standard, u.
+    pub standard: Option<String>,
+    /// Expanded, U = 2u.
+    pub expanded: Option<String>,
+    /// As print sets it; empty for a plain number.
+    pub unit: String,
+}
+
+/// A value with its uncertainties, apart for the columns of a table.
+pub(super) fn parts(value: f64, uncertainty: Option<f64>, dimension: Dimension) -> Parts {
+    let (unit, factor) = unit(value, dimension);
+    let set = display::typeset(&unit);
+    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite()).map(|u| u / factor) else {
+        return Parts { value: digits(value, factor, dimension), standard: None, expanded: None, unit: set };
+    };
+    let scaled = value / factor;
+    let (value, [standard, expanded]) = match decimals_of(scaled, uncertainty) {
+        Some(decimals) => (
+            minus(&format!("{scaled:.decimals$}")),
+            [uncertainty, COVERAGE * uncertainty].map(|uncertainty| format!("{uncertainty:.decimals$}")),
+        ),
+        None => (
+            digits(value, factor, dimension),
+            [uncertainty, COVERAGE * uncertainty].map(|uncertainty| minus(&significant(uncertainty, 2))),
+        ),
+    };
+    Parts { value, standard: Some(standard), expanded: Some(expanded), unit: set }
 }
 
 /// A value and its standard uncertainty in one unit, both to the uncertainty's second digit: `300.02 ± 0.15 kN/m`.
 pub(super) fn with_uncertainty(value: f64, uncertainty: Option<f64>, dimension: Dimension) -> String {
-    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite()) else { return text(value, dimension) };
-    let (unit, factor) = unit(value, dimension);
-    let (scaled, scaled_uncertainty) = (value / factor, uncertainty / factor);
-    let Some(decimals) = decimals_of(scaled, scaled_uncertainty) else {
-        return join(&format!("{} ± {}", digits(value, factor, dimension), significant(scaled_uncertainty, 2)), &unit);
-    };
-    join(&minus(&format!("{scaled:.decimals$} ± {scaled_uncertainty:.decimals$}")), &unit)
+    let parts = parts(value, uncertainty, dimension);
+    match parts.standard {
+        Some(standard) => joined(&format!("{} ± {standard}", parts.value), &parts.unit),
+        None => text(value, dimension),
+    }
 }
 
 /// Decimals that show two digits of the uncertainty; None where plain decimals would not be readable.
@@ -59,14 +97,17 @@ fn decimals_of(value: f64, uncertainty: f64) -> Option<usize> {
     (decimals <= 9.0).then(|| decimals.max(0.0) as usize)
 }
 
-/// The value of a condition with its uncertainty, in percent where the plan wrote percent.
+/// The value of a condition with its expanded uncertainty U, in percent where the plan wrote percent.
 pub(super) fn value(condition: &ConditionOutcome) -> Option<String> {
     let value = condition.value?;
-    Some(if in_percent(condition) {
-        with_uncertainty(100.0 * value, condition.uncertainty.map(|u| 100.0 * u), condition.dimension) + "\u{a0}%"
-    } else {
-        with_uncertainty(value, condition.uncertainty, condition.dimension)
-    })
+    let (scale, percent) = if in_percent(condition) { (100.0, "\u{a0}%") } else { (1.0, "") };
+    let parts = parts(scale * value, condition.uncertainty.map(|u| scale * u), condition.dimension);
+    Some(
+        match parts.expanded {
+            Some(expanded) => joined(&format!("{} ± {expanded}", parts.value), &parts.unit),
+            None => text(scale * value, condition.dimension),
+        } + percent,
+    )
 }
 
 /// The bound of a condition as mathematics: `≤ 8.5 mm`, `10 ± 1.5 J`, `< 1 %`.

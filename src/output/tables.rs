@@ -84,6 +84,7 @@ fn impact(steps: &[ImpactStep]) -> Vec<Column> {
         of("wall_time_s", |step| step.wall_time),
         texts("state", steps, |step| step.state.name()),
         of("command_m", |step| step.command),
+        of("computed_m", |step| step.computed),
         of("displacement_m", |step| step.displacement),
         of("velocity_m_per_s", |step| step.velocity),
         of("acceleration_m_per_s2", |step| step.acceleration),
@@ -100,6 +101,8 @@ fn impact(steps: &[ImpactStep]) -> Vec<Column> {
         of("contact_loss_j", |step| step.energies.contact_loss),
         of("indentation_energy_j", |step| step.energies.indentation),
         of("energy_error_j", |step| step.energies.error),
+        of("tracking_energy_error_j", |step| step.tracking.energy_error),
+        of("tracking_indicator_m2", |step| step.tracking.indicator),
     ]
 }
 

@@ -1,17 +1,21 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod behaviour;
 mod cycle;
 mod golden;
 mod integrator;
+mod portal;
 mod rig;
 
 use crate::formula::{Formula, ProcedureId};
 use crate::quantity::Dimension;
 
+pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::Integrator;
+pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
@@ -68,39 +72,6 @@ pub struct Specimen {
     pub coulomb: f64,
 }
 
-/// Restoring force of a virtual specimen against displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Behaviour {
-    /// R = K X; K in N/m.
-    Elastic { stiffness: f64 },
-    /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
-    Bilinear { stiffness: f64, yield_force: f64, hardening: f64 },
-    /// A beam by geometry: already its stiffness (N/m), and what it was made from, for the report.
-    Beam { stiffness: f64, length: f64, youngs_modulus: f64, second_moment: f64, ends: Ends },
-}
-
-/// How the ends of a beam are held (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ends {
-    Cantilever,
-    SimplySupported,
-    BuiltIn,
-    /// Rotational stiffness of each end, N·m/rad.
-    PartlyBuiltIn {
-        rotational_stiffness: f64,
-    },
-}
-
-impl Behaviour {
-    /// Stiffness at no displacement, N/m.
-    #[must_use]
-    pub const fn initial_stiffness(&self) -> f64 {
-        match *self {
-            Self::Elastic { stiffness } | Self::Bilinear { stiffness, .. } | Self::Beam { stiffness, .. } => stiffness,
-        }
-    }
-}
-
 /// A computed body: only the structure is on the rig.
 #[derive(Clone, Debug)]
 pub struct Striker {
@@ -155,6 +126,10 @@ pub struct Limits {
     pub tracking_error: Interval,
     /// |energy error| over the input energy.
     pub energy_error: Interval,
+    /// |energy error of tracking| over the input energy; where it bounds nothing, the default holds.
+    pub tracking_energy_error: Interval,
+    /// Root mean square of the tracking error over that of the command.
+    pub nrms_error: Interval,
 }
 
 impl Limits {
@@ -165,6 +140,8 @@ impl Limits {
         increment: Interval::ALL,
         tracking_error: Interval::ALL,
         energy_error: Interval::ALL,
+        tracking_energy_error: Interval::ALL,
+        nrms_error: Interval::ALL,
     };
 }
 
@@ -264,6 +241,11 @@ pub struct Impact {
     /// C of eqs. 4–5, N·s/m
     pub damping: Formula,
     pub contact: Contact,
+    pub integrator: Integrator,
+    /// Whether it runs beyond the stability limit of its integrator.
+    pub allow_unstable: bool,
+    /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
+    pub i_modification: bool,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// Upper bound of virtual time, s.
@@ -386,6 +368,8 @@ pub enum FigureKind {
     ContactForce,
     ForceDisplacement,
     Energy,
+    /// Command against measurement.
+    Tracking,
     DampingFit,
     /// Largest forces against the displacements of them, amplitude by amplitude.
     Backbone,
@@ -397,13 +381,14 @@ pub enum FigureKind {
 
 impl FigureKind {
     /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Displacement,
         Self::StrikerVelocity,
         Self::Velocity,
         Self::ContactForce,
         Self::ForceDisplacement,
         Self::Energy,
+        Self::Tracking,
         Self::DampingFit,
         Self::Backbone,
         Self::CycleEnergy,
@@ -420,6 +405,7 @@ impl FigureKind {
             Self::ContactForce => "contact_force",
             Self::ForceDisplacement => "force_displacement",
             Self::Energy => "energy",
+            Self::Tracking => "tracking",
             Self::DampingFit => "damping_fit",
             Self::Backbone => "backbone",
             Self::CycleEnergy => "cycle_energy",
@@ -440,6 +426,7 @@ impl FigureKind {
                 Self::ContactForce,
                 Self::ForceDisplacement,
                 Self::Energy,
+                Self::Tracking,
             ],
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
@@ -450,6 +437,7 @@ impl FigureKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Html,
+    Pdf,
     Csv,
     Parquet,
 }

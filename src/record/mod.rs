@@ -10,6 +10,7 @@ use crate::formula::{Estimate, ResultReference, ResultValue, Results};
 pub use crate::mechanics::contact::StepState;
 use crate::mechanics::energy::Energies;
 pub use crate::mechanics::identification::LineFit;
+use crate::mechanics::monitor::Tracking;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
@@ -164,8 +165,10 @@ pub struct ImpactStep {
     /// Rig time, s.
     pub wall_time: f64,
     pub state: StepState,
-    /// Computed displacement X, commanded to the actuator, m.
+    /// Commanded to the actuator, m.
     pub command: f64,
+    /// Computed displacement X, m: the command, but under α-OS what the force read there corrects it to.
+    pub computed: f64,
     /// Measured, m.
     pub displacement: f64,
     pub velocity: f64,
@@ -179,6 +182,8 @@ pub struct ImpactStep {
     /// Permanent, m.
     pub indentation: f64,
     pub energies: Energies,
+    /// What the monitors of tracking show.
+    pub tracking: Tracking,
 }
 
 #[derive(Clone, Debug)]

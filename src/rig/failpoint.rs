@@ -7,6 +7,8 @@ pub enum Guarding {
     TargetLimits,
     ReadingLimits,
     EnergyError,
+    /// What following wrongly does to the energy of a run, and the size of its error.
+    Tracking,
     WireNumber,
     Following,
     Settling,

@@ -4,6 +4,7 @@
 
 use super::failpoint::{Guarding, on};
 use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally};
+use crate::mechanics::monitor;
 use crate::plan::{Interval, Limits};
 
 /// A rig and what nothing may drive it past.
@@ -194,6 +195,32 @@ impl<'rig> Guard<'rig> {
         self.check(LimitedQuantity::EnergyError, self.limits.energy_error, fraction.abs())
     }
 
+    /// Holds the rig if what tracking puts into the test or takes out (a share of its input energy), or the NRMS tracking
+    /// error, lies outside its limit. The first has a limit always.
+    ///
+    /// # Errors
+    /// It does.
+    pub fn check_tracking(&mut self, energy_share: Option<f64>, nrms: f64) -> Result<(), RigFault> {
+        if !on(Guarding::Tracking) {
+            return Ok(());
+        }
+        let energy = self.tracking_energy_limit();
+        if let Some(share) = energy_share {
+            self.check(LimitedQuantity::TrackingEnergyError, energy, share.abs())?;
+        }
+        if self.limits.nrms_error.is_bounded() {
+            self.check(LimitedQuantity::NrmsError, self.limits.nrms_error, nrms)?;
+        }
+        Ok(())
+    }
+
+    /// Share of the input energy up to which tracking may err: the plan's, else the default.
+    #[must_use]
+    pub fn tracking_energy_limit(&self) -> Interval {
+        let limit = self.limits.tracking_energy_error;
+        if limit.is_bounded() { limit } else { Interval { low: 0.0, high: monitor::HOLD } }
+    }
+
     /// Stops all motion and keeps the load. What was proposed is forgotten.
     pub fn hold(&mut self) {
         self.proposed = None;
@@ -321,6 +348,7 @@ mod tests {
         increment: Interval { low: 0.0, high: 0.001 },
         tracking_error: Interval { low: 0.0, high: 1e-4 },
         energy_error: Interval { low: 0.0, high: 0.05 },
+        ..Limits::NONE
     };
 
     fn quantity(fault: RigFault) -> LimitedQuantity {

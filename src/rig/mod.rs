@@ -142,17 +142,19 @@ pub enum LimitedQuantity {
     Increment,
     TrackingError,
     EnergyError,
+    TrackingEnergyError,
+    NrmsError,
 }
 
 impl LimitedQuantity {
-    /// What kind of quantity it is; the energy error is a fraction.
+    /// What kind of quantity it is; errors of energy and the NRMS error are fractions.
     #[must_use]
     pub const fn dimension(self) -> Dimension {
         match self {
             Self::TargetDisplacement | Self::MeasuredDisplacement | Self::Increment | Self::TrackingError => Dimension::LENGTH,
             Self::Force => Dimension::FORCE,
             Self::Speed => Dimension::VELOCITY,
-            Self::EnergyError => Dimension::NUMBER,
+            Self::EnergyError | Self::TrackingEnergyError | Self::NrmsError => Dimension::NUMBER,
         }
     }
 }
@@ -167,6 +169,8 @@ impl std::fmt::Display for LimitedQuantity {
             Self::Increment => "increment",
             Self::TrackingError => "tracking error",
             Self::EnergyError => "energy error",
+            Self::TrackingEnergyError => "tracking energy error",
+            Self::NrmsError => "NRMS tracking error",
         })
     }
 }

@@ -1,5 +1,6 @@
 //! When the virtual rig counts as settled. In: the plan's criterion and how far the piston lags. Out: seconds to wait.
 
+use crate::mechanics::damping::StrengthRate;
 use crate::plan::Settle;
 
 /// What moves after the reference has arrived.
@@ -16,6 +17,18 @@ pub(super) struct Unsettled {
     pub(super) damping: f64,
     /// N/s
     pub(super) drift: f64,
+    /// Restoring force (N) that grows with the speed, and how.
+    pub(super) rate: Option<(f64, StrengthRate)>,
+}
+
+impl Unsettled {
+    /// |dF/dt| less the drift at a lag of `lagging` (m), N/s: with v = e/lag, K v + c v/lag and, of a force R that gains
+    /// (v/v₀)ⁿ, R n (v/v₀)ⁿ/lag.
+    fn force_rate(&self, lagging: f64) -> f64 {
+        let velocity = lagging / self.lag;
+        let steady = self.stiffness * velocity + self.damping * velocity / self.lag;
+        steady + self.rate.map_or(0.0, |(force, rate)| force.abs() * rate.exponent * rate.gain(velocity) / self.lag)
+    }
 }
 
 /// Seconds until displacement and force rate have both stayed inside their bounds for the dwell; None if that does not
@@ -37,6 +50,9 @@ pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
         if unsettled.lag > 0.0 {
             let rate_per_lagging = (unsettled.stiffness + unsettled.damping / unsettled.lag) / unsettled.lag;
             bound = bound.min(left / rate_per_lagging);
+            if unsettled.rate.is_some() {
+                bound = largest_below(bound.min(unsettled.lagging), |lagging| unsettled.force_rate(lagging) <= left);
+            }
         }
     }
     if bound < 0.0 {
@@ -47,12 +63,31 @@ pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
     (total <= settle.timeout).then_some(total)
 }
 
+/// The largest lag up to `most` at which `met` holds, which does so at all smaller ones: by halving, over a range of powers
+/// of two, for an exponent below 1 may need a lag far below the band.
+fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
+    if most <= 0.0 || met(most) {
+        return most;
+    }
+    let (mut low, mut high) = (-1000.0_f64, 0.0_f64);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if met(most * middle.exp2()) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    most * low.exp2()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const SETTLE: Settle = Settle { band: 1e-5, force_rate: 0.0, dwell: 0.3, timeout: 10.0 };
-    const LAGGING: Unsettled = Unsettled { lagging: 1e-3, lag: 0.1, miss: 0.0, stiffness: 1e5, damping: 0.0, drift: 0.0 };
+    const LAGGING: Unsettled =
+        Unsettled { lagging: 1e-3, lag: 0.1, miss: 0.0, stiffness: 1e5, damping: 0.0, drift: 0.0, rate: None };
 
     #[test]
     fn waits_for_the_band_then_for_the_force_rate_and_dwells() {
@@ -69,5 +104,16 @@ mod tests {
         assert_eq!(settling_time(&Settle { timeout: 0.5, ..SETTLE }, &LAGGING), None);
         assert_eq!(settling_time(&Settle { force_rate: 5.0, ..SETTLE }, &Unsettled { drift: 6.0, ..LAGGING }), None);
         assert_eq!(settling_time(&Settle { band: 0.0, ..SETTLE }, &LAGGING), Some(0.0));
+    }
+
+    /// R = 1000 N gains (v/v₀)^½, v₀ = 1 m/s, with no stiffness: dF/dt = R ½ √(e/0.1)/0.1 ≤ 50 N/s at e = 1e-5 m.
+    #[test]
+    fn a_strength_that_grows_with_speed_keeps_the_force_moving_longer() {
+        let rate = Some((1000.0, StrengthRate { reference_velocity: 1.0, exponent: 0.5 }));
+        let unsettled = Unsettled { stiffness: 0.0, rate, ..LAGGING };
+        let settle = Settle { band: 1e-3, force_rate: 50.0, dwell: 0.0, timeout: 60.0 };
+        let wait = settling_time(&settle, &unsettled).expect("it settles");
+        let by_hand = 0.1 * (1e-3_f64 / 1e-5).ln();
+        assert!((wait - by_hand).abs() < 1e-9, "{wait} s is not {by_hand} s");
     }
 }

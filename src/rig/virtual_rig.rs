@@ -39,7 +39,7 @@ impl VirtualRig {
     #[must_use]
     pub fn new(link: VirtualLink, settle: Settle, specimen: Option<&Specimen>, sign: f64) -> Self {
         let nothing = Behaviour::Elastic { stiffness: 0.0 };
-        let behaviour = specimen.and_then(|specimen| specimen.behaviour).unwrap_or(nothing);
+        let behaviour = specimen.and_then(|specimen| specimen.behaviour.clone()).unwrap_or(nothing);
         let (viscous, coulomb) = specimen.map_or((0.0, 0.0), |specimen| (specimen.damping, specimen.coulomb));
         let mut model = SpecimenModel::new(&behaviour);
         let restoring_force = model.move_to(0.0);
@@ -51,7 +51,7 @@ impl VirtualRig {
             actuator: Actuator::new(link.lag, link.tracking),
             cell: LoadCell::new(link.noise, link.force_resolution, link.drift, link.seed),
             specimen: model,
-            damping: CellDamping::new(viscous, coulomb),
+            damping: CellDamping::new(viscous, coulomb).with_rate_of(&behaviour),
             viscous,
             time: 0.0,
             bent: 0.0,
@@ -103,7 +103,7 @@ impl VirtualRig {
     }
 
     fn reading(&mut self) -> Reading {
-        let force = self.restoring_force + self.damping.force(self.actuator.velocity());
+        let force = self.damping.felt(self.restoring_force, self.actuator.velocity());
         Reading {
             time: self.time,
             displacement: vec![self.sign * to_quantum(self.bent, self.link.resolution)],
@@ -159,6 +159,7 @@ impl Rig for VirtualRig {
             stiffness: self.specimen.initial_stiffness(),
             damping: self.viscous,
             drift: self.link.drift,
+            rate: self.damping.rate.map(|rate| (self.restoring_force, rate)),
         };
         if let Some(wait) = settling_time(&self.settle, &unsettled) {
             self.rest(wait);

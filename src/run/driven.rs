@@ -214,6 +214,8 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
             acceleration: nothing,
             force: self.felt.force,
             energy_error: nothing,
+            tracking: None,
+            tracking_energy_error: None,
         });
     }
 

@@ -2,19 +2,23 @@
 //! step: predict, command, settle, pause, read, feed back. In: masses, stiffness, law, time step. Out: every step and
 //! what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
 
+use super::Performed;
 use super::inputs::Inputs;
 use super::results::result;
 use super::session::Session;
 use super::stop::Stop;
-use super::triggers::Triggers;
-use super::{Performed, StepReport};
+use super::strike::Strike;
+use crate::formula::Estimate;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::critical_time_step;
-use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
-use crate::mechanics::summary::{ImpactSummary, SummaryBuilder};
+use crate::mechanics::impact::ImpactInput;
+use crate::mechanics::method::longest_stable_step;
+use crate::mechanics::monitor::Tracking;
+use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until};
 use crate::quantity::Dimension;
-use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
+use crate::quantity::display::stated;
+use crate::record::{EventKind, History, ImpactHistory, NamedResult};
 
 pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let (setting, stop) = match Setting::evaluate(plan, &whole.strikers[plan.striker], inputs, session) {
@@ -23,39 +27,36 @@ pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, sess
     };
     let Some(setting) = setting else {
         let history = ImpactHistory { steps: Vec::new(), time_step: 0.0, critical_time_step: 0.0 };
-        return Performed { results: results(None, &history), history: History::Impact(history), stop };
+        return Performed { results: results(None, None, &history), history: History::Impact(history), stop };
     };
-    let mut strike = Strike { setting, steps: room_for(setting.steps), summary: SummaryBuilder::new(&setting.input) };
+    let mut strike = Strike::new(&setting);
     let stop = strike.run(plan, session).err();
     let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
+    let worst = strike.worst_share;
     if let (Some(summary), None) = (&summary, &stop) {
         remark(summary, plan.until, session);
     }
     let history =
         ImpactHistory { steps: strike.steps, time_step: setting.input.time_step, critical_time_step: setting.critical_time_step };
-    Performed { results: results(summary.as_ref(), &history), history: History::Impact(history), stop }
-}
-
-/// Room for the steps to come, as far as it is cheap: `duration` is often far beyond the end.
-fn room_for(steps: u64) -> Vec<ImpactStep> {
-    Vec::with_capacity(usize::try_from(steps + 1).unwrap_or(usize::MAX).min(100_000))
+    Performed { results: results(summary.as_ref(), worst, &history), history: History::Impact(history), stop }
 }
 
 /// Everything known before the first step.
 #[derive(Clone, Copy)]
-struct Setting {
-    input: ImpactInput,
+pub(super) struct Setting {
+    pub input: ImpactInput,
     /// s
-    critical_time_step: f64,
-    steps: u64,
+    pub critical_time_step: f64,
+    pub steps: u64,
     /// s
-    pause: f64,
+    pub pause: f64,
 }
 
 impl Setting {
     fn evaluate(plan: &Impact, striker: &Striker, inputs: &mut Inputs<'_>, session: &Session<'_>) -> Result<Self, Stop> {
         let mass = inputs.positive("mass", &plan.mass, Dimension::MASS)?;
-        let stiffness = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS)?;
+        let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
+        let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));
         let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
         let law = law(&plan.contact, inputs)?;
         let critical_time_step = critical_time_step(mass, stiffness);
@@ -72,6 +73,7 @@ impl Setting {
                 wanted: format!("long enough for at most {MOST_STEPS} steps").into(),
             });
         }
+        stable(plan, time_step, stiffness / mass)?;
         let noise = session.guard.declared_noise();
         let input = ImpactInput {
             mass,
@@ -83,6 +85,9 @@ impl Setting {
             time_step,
             max_tangent_ratio,
             law,
+            integrator: plan.integrator,
+            operator_stiffness,
+            i_modification: plan.i_modification,
             force_noise: noise.force,
             resolution: noise.resolution,
         };
@@ -90,6 +95,22 @@ impl Setting {
         let steps = steps as u64;
         Ok(Self { input, critical_time_step, steps, pause })
     }
+}
+
+/// `K_I`: the high end of the interval in which the stiffness lies (two standard uncertainties), for α-OS is stable only
+/// as long as the specimen is not stiffer (physics, section 11; never a noisy secant).
+fn high_end(stiffness: Estimate) -> f64 {
+    stiffness.value + 2.0 * stiffness.uncertainty.unwrap_or(0.0)
+}
+
+/// What `check` could not know yet: the stability limit by the stiffness of an earlier procedure.
+fn stable(plan: &Impact, time_step: f64, highest: f64) -> Result<(), Stop> {
+    let limit = longest_stable_step(plan.integrator, highest, 0.0);
+    if time_step <= limit || plan.allow_unstable {
+        return Ok(());
+    }
+    let wanted = format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
+    Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
 }
 
 fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
@@ -121,76 +142,6 @@ const SECONDS_PER_METRE: Dimension = Dimension {
     time: crate::quantity::Exponent::whole(1),
 };
 
-struct Strike {
-    setting: Setting,
-    steps: Vec<ImpactStep>,
-    summary: SummaryBuilder,
-}
-
-impl Strike {
-    fn run(&mut self, plan: &Impact, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Setting { input, steps, pause, .. } = self.setting;
-        let mut triggers = Triggers::new(&plan.inspect);
-        // X starts where the actuator was sent to, and R₀ is read there once, before the first step.
-        let start = session.commanded();
-        let (measured, restoring_force) = session.read()?;
-        let mut solver = ImpactSolver::new(&input, start, restoring_force);
-        self.take(&ImpactState { measured_displacement: measured, ..*solver.state() }, session);
-        for _ in 0..steps {
-            let target = solver.predict();
-            session.guard.move_to(&[target], None)?;
-            session.guard.pause(pause)?;
-            let (measured, restoring_force) = session.read()?;
-            let state = *solver.complete(measured, restoring_force);
-            self.take(&state, session);
-            session.guard.check_energy_error(error_fraction(&state, &input))?;
-            session.step_done(&StepReport {
-                step: state.step,
-                time: state.time,
-                command: target,
-                displacement: measured,
-                velocity: Some(state.velocity),
-                acceleration: Some(state.acceleration),
-                force: restoring_force,
-                energy_error: Some(error_fraction(&state, &input)),
-            })?;
-            if plan.until == Until::StrikerStop && solver.finished() {
-                break;
-            }
-            if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
-                session.inspect(&reason)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn take(&mut self, state: &ImpactState, session: &Session<'_>) {
-        self.summary.push(state);
-        self.steps.push(ImpactStep {
-            step: state.step,
-            time: state.time,
-            wall_time: session.guard.time(),
-            state: state.state,
-            command: state.displacement,
-            displacement: state.measured_displacement,
-            velocity: state.velocity,
-            acceleration: state.acceleration,
-            restoring_force: state.restoring_force,
-            contact_force: state.contact_force,
-            striker_displacement: state.striker_displacement,
-            striker_velocity: state.striker_velocity,
-            tangent_stiffness: state.tangent_stiffness,
-            indentation: state.indentation,
-            energies: state.energies,
-        });
-    }
-}
-
-/// Energy error over the input; of no input, any error is infinite.
-fn error_fraction(state: &ImpactState, input: &ImpactInput) -> f64 {
-    if state.energies.error == 0.0 { 0.0 } else { state.energies.error / input.striker_energy() }
-}
-
 /// What a reader of the results must know of how the run ended.
 fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
     if until == Until::StrikerStop && summary.stop_time.is_none() {
@@ -206,9 +157,12 @@ fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
     }
 }
 
-/// In the order of the reference; every number is missing if not even the start was read.
-fn results(summary: Option<&ImpactSummary>, history: &ImpactHistory) -> Vec<NamedResult> {
+/// In the order of the reference, `worst` the largest share of the input that tracking made of the energy; every number is missing if not even the start was read.
+fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &ImpactHistory) -> Vec<NamedResult> {
     let of = |name, dimension, value: fn(&ImpactSummary) -> f64| result(name, dimension, summary.map(value));
+    let tracked = |name, dimension, value: fn(&Tracking) -> f64| {
+        result(name, dimension, history.steps.last().map(|last| value(&last.tracking)))
+    };
     let known = |value: f64| (value > 0.0).then_some(value);
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let steps = history.steps.last().map(|last| last.step as f64);
@@ -229,6 +183,10 @@ fn results(summary: Option<&ImpactSummary>, history: &ImpactHistory) -> Vec<Name
         of("absorbed_energy", Dimension::ENERGY, |summary| summary.absorbed_energy),
         of("striker_energy", Dimension::ENERGY, |summary| summary.striker_energy),
         of("energy_error", Dimension::NUMBER, |summary| summary.energy_error),
+        result("tracking_energy_error", Dimension::NUMBER, worst),
+        tracked("tracking_indicator", Dimension::AREA, |tracking| tracking.indicator),
+        tracked("nrms_error", Dimension::NUMBER, |tracking| tracking.nrms_error),
+        tracked("peak_error", Dimension::LENGTH, |tracking| tracking.peak_error),
         result("time_step", Dimension::TIME, known(history.time_step)),
         result("critical_time_step", Dimension::TIME, known(history.critical_time_step)),
         result("steps", Dimension::NUMBER, steps),

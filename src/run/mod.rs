@@ -21,6 +21,7 @@ mod samples;
 mod session;
 mod stiffness_ramp;
 mod stop;
+mod strike;
 pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -33,6 +34,7 @@ pub use request::{Parting, Request};
 
 use serde::{Deserialize, Serialize};
 
+use crate::mechanics::monitor::Tracking;
 use crate::plan::{Plan, Procedure, ProcedureKind, SafeState};
 use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
@@ -90,6 +92,10 @@ pub struct StepReport {
     pub force: f64,
     /// Energy error over the input energy; only of procedures that integrate.
     pub energy_error: Option<f64>,
+    /// What the monitors of tracking show; only of procedures that integrate.
+    pub tracking: Option<Tracking>,
+    /// Its energy error over the energy put into the test so far.
+    pub tracking_energy_error: Option<f64>,
 }
 
 /// What the person said.

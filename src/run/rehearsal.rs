@@ -91,13 +91,15 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
     Ok(model)
 }
 
-/// A specimen of the measured stiffness (N/m). One that yields does so at the displacement of the plan.
+/// A specimen of the measured stiffness (N/m): the expected one with every force in that proportion, so that it yields and
+/// breaks at the displacements of the plan.
 fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
-    match specimen.behaviour {
-        Some(Behaviour::Bilinear { stiffness: expected, yield_force, hardening }) if expected > 0.0 => {
-            Behaviour::Bilinear { stiffness, yield_force: yield_force * stiffness / expected, hardening }
-        }
-        _ => Behaviour::Elastic { stiffness },
+    let expected = specimen.behaviour.as_ref().map(|behaviour| (behaviour, behaviour.initial_stiffness()));
+    match expected {
+        // Exactly as measured, which a quotient would not be.
+        None | Some((Behaviour::Elastic { .. } | Behaviour::Beam(_), _)) => Behaviour::Elastic { stiffness },
+        Some((behaviour, expected)) if expected > 0.0 => behaviour.scaled(stiffness / expected),
+        Some(_) => Behaviour::Elastic { stiffness },
     }
 }
 

@@ -174,6 +174,8 @@ impl<'run> Session<'run> {
             acceleration: nothing,
             force,
             energy_error: nothing,
+            tracking: None,
+            tracking_energy_error: None,
         })
     }
 

@@ -2,8 +2,8 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, Impact, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
-    StiffnessRamp, Striker, Until, VirtualLink,
+    Behaviour, Calibration, Contact, Impact, Integrator, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle,
+    Specimen, StiffnessRamp, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -72,6 +72,9 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         stiffness,
         damping: Formula::Constant(0.0),
         contact: Contact::Rigid,
+        integrator: Integrator::Tangent,
+        allow_unstable: false,
+        i_modification: false,
         time_step: Formula::Constant(0.01),
         duration: Formula::Constant(0.5),
         until: Until::StrikerStop,

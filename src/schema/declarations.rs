@@ -1,56 +1,8 @@
 //! What is tested and what strikes it: `specimen` and `striker`.
 
-use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind, Variant};
+use super::behaviours::BEHAVIOURS;
+use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind};
 use crate::quantity::Dimension;
-
-const STIFFNESS: Field =
-    Field::quantity("stiffness", Dimension::STIFFNESS, "force over displacement").required("stiffness: 300 kN/m").above_zero();
-
-const ENDS: &[Variant] = &[
-    Variant::word("cantilever", "one end built in, struck at the free one: 3EI/L³"),
-    Variant::word("simply_supported", "struck at midspan: 48EI/L³"),
-    Variant::word("built_in", "both ends built in, struck at midspan: 192EI/L³"),
-    Variant::with(
-        "partly_built_in",
-        &[Field::quantity("rotational_stiffness", Dimension::ENERGY, "moment over rotation of each end, N*m/rad")
-            .required("rotational_stiffness: 5 kN*m/rad")
-            .at_least_zero()],
-        "between simply supported and built in: (192EI/L³)(r+2)/(r+8)",
-    ),
-];
-
-const BEHAVIOURS: &[Variant] = &[
-    Variant::with("elastic", &[STIFFNESS], "a linear spring"),
-    Variant::with(
-        "bilinear",
-        &[
-            STIFFNESS,
-            Field::quantity("yield_force", Dimension::FORCE, "force at first yield").required("yield_force: 4 kN").above_zero(),
-            Field::quantity("hardening", Dimension::NUMBER, "stiffness past yield over the initial one")
-                .or(0.0, "")
-                .within(0.0, 1.0),
-        ],
-        "elastic–plastic with kinematic hardening",
-    ),
-    Variant::with(
-        "beam",
-        &[
-            Field::quantity("length", Dimension::LENGTH, "span").required("length: 1.4 m").above_zero(),
-            Field::quantity("youngs_modulus", Dimension::PRESSURE, "modulus of elasticity")
-                .required("youngs_modulus: 26 GPa")
-                .above_zero(),
-            Field::quantity("second_moment", Dimension::SECOND_MOMENT, "second moment of area")
-                .required("second_moment: 12e4 mm^4")
-                .above_zero(),
-            Field::choice("ends", ENDS, "how the ends are held").required("ends: simply_supported"),
-        ],
-        "an elastic beam by its geometry",
-    ),
-    Variant::later("bouc_wen", "smooth hysteresis"),
-    Variant::later("degrading", "stiffness that falls with the largest displacement"),
-    Variant::later("table", "measured force–displacement points from a file"),
-    Variant::later("portal", "portal frame by plastic hinges"),
-];
 
 pub(super) const SPECIMEN: BlockKind = BlockKind {
     kind: Kind::Specimen,
@@ -78,6 +30,10 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
     exports: &[
         ResultKind::new("mass", Dimension::MASS, "equivalent mass"),
         ResultKind::new("stiffness", Dimension::STIFFNESS, "stiffness of the behaviour at no displacement"),
+        ResultKind::new("capacity", Dimension::FORCE, "largest force of a behaviour that has one"),
+        ResultKind::new("beam_collapse_load", Dimension::FORCE, "of a portal, W + H of the beam mechanism"),
+        ResultKind::new("sway_collapse_load", Dimension::FORCE, "of a portal, W + H of the sway mechanism"),
+        ResultKind::new("combined_collapse_load", Dimension::FORCE, "of a portal, W + H of the combined mechanism"),
     ],
     results: &[],
     example: "specimen beam {\n  mass = 0.73 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}",

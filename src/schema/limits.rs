@@ -15,6 +15,14 @@ pub(super) const LIMITS: BlockKind = BlockKind {
         Field::bounds("increment", Dimension::LENGTH, false, "largest change of target in one step"),
         Field::bounds("tracking_error", Dimension::LENGTH, false, "measured less target, by size, after settling"),
         Field::bounds("energy_error", Dimension::NUMBER, false, "energy error over the input energy, by size"),
+        Field::bounds(
+            "tracking_energy_error",
+            Dimension::NUMBER,
+            false,
+            "energy that following wrongly puts into the test or takes out, over the input energy, by size",
+        )
+        .or_said("5 %"),
+        Field::bounds("nrms_error", Dimension::NUMBER, false, "tracking error over command, root mean squares of the run"),
     ],
     exports: &[],
     results: &[],

@@ -1,6 +1,7 @@
 //! The vocabulary, as data: every block, field, variant, default, range, result and function of the language, written
 //! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
 
+mod behaviours;
 mod columns;
 mod cyclic;
 mod declarations;
@@ -9,6 +10,7 @@ mod functions;
 mod golden;
 mod later;
 mod limits;
+mod methods;
 mod plan_block;
 mod procedures;
 mod reference;

@@ -1,14 +1,12 @@
 //! What is run: `stiffness ramp`, `damping sweep`, `impact`, `move`, `inspect`.
 
-use super::results;
 use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
+use super::{methods, results};
 use crate::quantity::Dimension;
 
 const SPECIMEN: Field = Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");
 
 const SPEED: Field = Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own");
-
-const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::word("false", "no")];
 
 pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
     kind: Kind::StiffnessRamp,
@@ -22,7 +20,7 @@ pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
         Field::quantity("pause", Dimension::TIME, "wait at each target before the samples").or(0.0, "s").at_least_zero(),
         Field::count("samples", 1.0, 1e5, "readings averaged at each target").or(1.0, ""),
         Field::count("repeats", 1.0, 1e5, "times the ramp is run").or(1.0, ""),
-        Field::choice("return", TRUTH, "whether it also goes back through the same targets").or_said("false"),
+        Field::choice("return", methods::TRUTH, "whether it also goes back through the same targets").or_said("false"),
         SPEED,
     ],
     exports: &[],
@@ -106,16 +104,9 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         ),
         Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5").or(0.0, "N*s/m").at_least_zero(),
         Field::choice("contact", CONTACTS, "contact law").or_said("rigid"),
-        Field::choice(
-            "integrator",
-            &[
-                Variant::word("tangent", "Newmark with the measured tangent stiffness, eqs. 4 to 6"),
-                Variant::later("explicit", "explicit Newmark"),
-                Variant::later("alpha_os", "alpha operator splitting"),
-            ],
-            "time integration",
-        )
-        .or_said("tangent"),
+        methods::INTEGRATOR,
+        methods::ALLOW_UNSTABLE,
+        methods::I_MODIFICATION,
         Field::quantity("time_step", Dimension::TIME, "Δt; may read `critical`, Δt of eq. 7")
             .above_zero()
             .or_said("critical / 20"),

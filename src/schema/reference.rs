@@ -60,7 +60,12 @@ fn write_variants(text: &mut String, variants: &[Variant], depth: usize, written
     let indent = "  ".repeat(depth);
     for variant in variants {
         let names: Vec<&str> = variant.arguments.iter().map(|argument| argument.name).collect();
-        let brackets = if names.is_empty() { String::new() } else { format!("({})", names.join(", ")) };
+        let many = variant.arguments.iter().any(|argument| matches!(argument.ty, FieldType::Inners));
+        let brackets = match (names.is_empty(), many) {
+            (true, _) => String::new(),
+            (false, true) => "(a, b, …)".to_owned(),
+            (false, false) => format!("({})", names.join(", ")),
+        };
         let later = if variant.available { "" } else { " (not in this version)" };
         let _ = writeln!(text, "{indent}- `{}{brackets}`: {}{later}", variant.name, variant.doc);
         let signature = [vec![variant.name], names].concat();
@@ -113,6 +118,8 @@ fn takes(field: &Field) -> String {
     match field.ty {
         FieldType::Text => "a text".to_owned(),
         FieldType::Texts => "a list of texts".to_owned(),
+        FieldType::Inner => "one of this list".to_owned(),
+        FieldType::Inners => "two or more of this list".to_owned(),
         FieldType::Quantity(dimension) => format!("{}{}", measure(dimension), allowed(field.range, dimension)),
         FieldType::Quantities(dimension) => format!("a list or a range with a step: {}", measure(dimension)),
         FieldType::Bounds { dimension, symmetric } => {
@@ -148,6 +155,7 @@ fn measure(dimension: Dimension) -> String {
 /// The range of a value, `, above 0`; a limit of a dimension stands in its SI unit.
 fn allowed(range: Range, dimension: Dimension) -> String {
     let shown = |value: f64| {
+        let value = if dimension == Dimension::NUMBER { (value * 1e4).round() / 1e4 } else { value };
         let number = if value.abs() < 1e7 { value.to_string() } else { significant(value, 2) };
         if value == 0.0 || dimension == Dimension::NUMBER { number } else { format!("{number} {}", si_unit(dimension)) }
     };

@@ -14,9 +14,9 @@ pub(super) const REPORT: BlockKind = BlockKind {
             "formats",
             &[
                 Variant::word("html", "a self-contained certificate"),
+                Variant::word("pdf", "the same certificate on paper"),
                 Variant::word("csv", "tables as text"),
                 Variant::word("parquet", "tables in columns"),
-                Variant::later("pdf", "a certificate on paper"),
             ],
             "what is written",
         )

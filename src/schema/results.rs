@@ -37,6 +37,18 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("absorbed_energy", Dimension::ENERGY, "restoring force integrated up to the largest displacement"),
     ResultKind::new("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
+    ResultKind::new(
+        "tracking_energy_error",
+        Dimension::NUMBER,
+        "energy that following wrongly took out of the test (put in: negative), over the input energy, at its largest",
+    ),
+    ResultKind::new(
+        "tracking_indicator",
+        Dimension::AREA,
+        "area that command against measurement encloses; falling: the actuator lags",
+    ),
+    ResultKind::new("nrms_error", Dimension::NUMBER, "tracking error over command, root mean squares"),
+    ResultKind::new("peak_error", Dimension::LENGTH, "largest measured less commanded displacement, by size"),
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
     ResultKind::new("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
     ResultKind::count("steps", "number of steps"),

@@ -74,6 +74,10 @@ pub enum FieldType {
     Text,
     /// A list of texts.
     Texts,
+    /// One of the variants of the list in which the field stands, that is: a behaviour inside a behaviour.
+    Inner,
+    /// Several of them, written after each other or as a list; the only argument of its variant.
+    Inners,
     /// One number with its unit.
     Quantity(Dimension),
     /// A list, or a range with a step.
@@ -227,6 +231,14 @@ impl Field {
 
     pub(super) const fn texts(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Texts, doc)
+    }
+
+    pub(super) const fn inner(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Inner, doc)
+    }
+
+    pub(super) const fn inners(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Inners, doc)
     }
 
     pub(super) const fn quantity(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {

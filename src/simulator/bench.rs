@@ -85,7 +85,7 @@ impl Bench {
         let restoring_force = specimen.move_to(0.0);
         let generator = Pcg64::seed_from_u64(settings.seed);
         let faults = BenchFaults::none(settings.seed);
-        let damping = CellDamping::new(settings.damping, 0.0);
+        let damping = CellDamping::new(settings.damping, 0.0).with_rate_of(&settings.behaviour);
         Self {
             settings,
             specimen,
@@ -214,7 +214,7 @@ impl Bench {
         self.readings += 1;
         let way = if self.moving() { (self.target - self.position).signum() } else { 0.0 };
         let noise = Normal::new(0.0, self.settings.noise).map_or(0.0, |normal| normal.sample(&mut self.generator));
-        let felt = self.restoring_force + self.damping.force(self.speed * way) + noise;
+        let felt = self.damping.felt(self.restoring_force, self.speed * way) + noise;
         self.faults.read_force(felt, self.time)
     }
 

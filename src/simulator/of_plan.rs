@@ -43,7 +43,7 @@ pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u
 
 fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
     let specimen = specimen(plan).ok_or(NoStandIn::NoBehaviour)?;
-    let behaviour = specimen.behaviour.ok_or(NoStandIn::NoBehaviour)?;
+    let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
     let settings = BenchSettings {
         behaviour,
         damping: specimen.damping,

@@ -42,7 +42,7 @@ const IMPURE: &[&str] = &[
 /// A crate, and the only folders of `src` that may name it.
 const KNOWS: &[(&[&str], &[&str])] = &[
     (&["pest", "pest_derive"], &["syntax"]),
-    (&["polars", "plotters", "png", "maud"], &["output"]),
+    (&["polars", "plotters", "png", "maud", "typst", "typst_layout", "typst_pdf", "typst_assets"], &["output"]),
     (&["clap", "indicatif", "signal_hook", "ratatui", "minisign", "rpassword"], &["cli"]),
     (&["serialport"], &["rig", "simulator", "cli"]),
     (&["miette"], &["diagnostic"]),

@@ -13,9 +13,10 @@ use psd::plan::Format;
 use psd::record::{History, ImpactStep, Outcome, RampHistory};
 use psd::verdict::Verdict;
 
-const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
+const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,computed_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
 restoring_force_n,contact_force_n,striker_displacement_m,striker_velocity_m_per_s,tangent_stiffness_n_per_m,indentation_m,\
-striker_energy_j,structure_energy_j,restoring_energy_j,damping_energy_j,contact_loss_j,indentation_energy_j,energy_error_j";
+striker_energy_j,structure_energy_j,restoring_energy_j,damping_energy_j,contact_loss_j,indentation_energy_j,energy_error_j,\
+tracking_energy_error_j,tracking_indicator_m2";
 
 fn files(finished: &Finished) -> Vec<OutputFile> {
     everything(&finished.run()).expect("every output can be made")
@@ -45,14 +46,23 @@ fn the_same_run_gives_the_same_bytes_and_the_files_of_the_language() {
         paths,
         [
             "certificate.html",
+            "certificate.pdf",
             "figures/c_damping_fit.png",
+            "figures/c_damping_fit.svg",
             "figures/hit_contact_force.png",
+            "figures/hit_contact_force.svg",
             "figures/hit_displacement.png",
+            "figures/hit_displacement.svg",
             "figures/hit_energy.png",
+            "figures/hit_energy.svg",
             "figures/hit_force_displacement.png",
+            "figures/hit_force_displacement.svg",
             "figures/hit_striker_velocity.png",
+            "figures/hit_striker_velocity.svg",
             "figures/hit_velocity.png",
+            "figures/hit_velocity.svg",
             "figures/k0_force_displacement.png",
+            "figures/k0_force_displacement.svg",
             "manifest.sha256",
             "plan/beam.psd",
             "plan/lib/frame.psd",
@@ -100,12 +110,13 @@ fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
 }
 
 /// The numbers of a row in the order of the columns, step and state apart.
-fn row(step: &ImpactStep) -> [f64; 19] {
+fn row(step: &ImpactStep) -> [f64; 22] {
     let e = step.energies;
     [
         step.time,
         step.wall_time,
         step.command,
+        step.computed,
         step.displacement,
         step.velocity,
         step.acceleration,
@@ -122,6 +133,8 @@ fn row(step: &ImpactStep) -> [f64; 19] {
         e.contact_loss,
         e.indentation,
         e.error,
+        step.tracking.energy_error,
+        step.tracking.indicator,
     ]
 }
 
@@ -192,11 +205,11 @@ fn the_certificate_loads_and_runs_nothing_and_says_what_it_is() {
         "clause 7.8",
         "relate only to the items tested",
         "e = Ms/(Ms + 2M) = 0.8333",
-        "End of report, run 0123456789abcdef",
+        "End of report <span class=\"id\">0123456789abcdef</span>",
     ] {
         assert!(html.contains(wanted), "{wanted} is missing");
     }
-    let pictures = html.matches("data:image/png;base64,").count();
+    let pictures = html.matches("data:image/svg+xml;base64,").count();
     assert_eq!(pictures, finished.plan.report.figures.len());
     assert_eq!(html.matches("<figcaption>").count(), pictures);
 }
@@ -230,7 +243,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
     let plain = console::verdict_text(&finished.run(), false).replace('\u{a0}', " ");
     insta::assert_snapshot!(plain, @r"
     PASS  Simply supported beam, midspan impact  (simulated rig: rehearsal)
-      pass  stays in travel  0.15735 ± 0.00020 m  ≤ 0.17 m  margin 12.6 mm
+      pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 12.6 mm
       pass  energy closes    1.599 × 10⁻¹⁵        ≤ 0.01    margin 0.0100
       note: Parameter impact_speed was set to 1 m/s for this run.
       run 0123456789abcdef
@@ -242,7 +255,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
 #[test]
 fn figures_are_pictures_at_192_dpi_with_something_on_them() {
     let files = files(&finished());
-    let figures: Vec<&OutputFile> = files.iter().filter(|file| file.path.starts_with("figures/")).collect();
+    let figures: Vec<&OutputFile> = files.iter().filter(|file| file.bytes.starts_with(b"\x89PNG")).collect();
     assert_eq!(figures.len(), 8);
     for figure in figures {
         let mut reader = png::Decoder::new(Cursor::new(&figure.bytes)).read_info().unwrap();
@@ -303,6 +316,7 @@ fn only_the_formats_asked_for_are_written() {
             "tables/c.csv",
             "tables/hit.csv",
             "figures/k0_force_displacement.png",
+            "figures/k0_force_displacement.svg",
             "plan/beam.psd",
             "plan/lib/frame.psd",
             "manifest.sha256"

@@ -3,5 +3,6 @@
 mod contact;
 mod frame;
 mod identification;
+mod methods;
 mod reference;
 mod support;

@@ -246,9 +246,9 @@ pub fn field_not_given(kind: &BlockKind, name: Option<&Ident>, field: &str, span
         .help(format!("add the field `{field}` to it"))
 }
 
-pub fn stiffness_without_behaviour(name: Option<&Ident>, span: Span) -> Diagnostic {
+pub fn property_without_behaviour(name: Option<&Ident>, property: &str, span: Span) -> Diagnostic {
     let name = name.map_or("", |name| name.node.as_str());
-    Diagnostic::new(Code::UnknownResult, format!("specimen `{name}` has no `stiffness`: no `behaviour` gives it"))
+    Diagnostic::new(Code::UnknownResult, format!("specimen `{name}` has no `{property}`: no `behaviour` gives it"))
         .at(span, "not known before it is measured")
         .help("read the result of a `stiffness ramp`, as in `k0.stiffness`, or give the `behaviour` that is expected")
 }

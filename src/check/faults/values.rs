@@ -8,8 +8,8 @@ use crate::schema::{Field, Range};
 use crate::source::Span;
 
 fn allowed(range: Range, dimension: Dimension) -> String {
-    let show =
-        |value: f64| if dimension == Dimension::NUMBER || value == 0.0 { value.to_string() } else { shown(value, dimension) };
+    let number = |value: f64| ((value * 1e4).round() / 1e4).to_string();
+    let show = |value: f64| if dimension == Dimension::NUMBER || value == 0.0 { number(value) } else { shown(value, dimension) };
     match (range.low.is_finite(), range.above, range.high.is_finite()) {
         (true, true, false) => format!("greater than {}", show(range.low)),
         (true, false, false) => format!("at least {}", show(range.low)),

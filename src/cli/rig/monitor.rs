@@ -57,6 +57,8 @@ fn step(number: u64, reading: &Reading) -> StepReport {
         acceleration: None,
         force: first(&reading.force),
         energy_error: None,
+        tracking: None,
+        tracking_energy_error: None,
     }
 }
 

@@ -153,8 +153,8 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
         }
         ServedProtocol::Nees => Ok(Protocol::Nees),
         ServedProtocol::GenericClient => {
-            let behaviour = VirtualRig::specimen_of(plan).and_then(|specimen| specimen.behaviour);
-            let known = given.or_else(|| behaviour.map(|behaviour| behaviour.initial_stiffness()));
+            let behaviour = VirtualRig::specimen_of(plan).and_then(|specimen| specimen.behaviour.as_ref());
+            let known = given.or_else(|| behaviour.map(crate::plan::Behaviour::initial_stiffness));
             let stiffness = known.ok_or_else(|| {
                 Failure::command_line(
                     "the stiffness that a generic client may ask for is not known: the specimen has no behaviour",

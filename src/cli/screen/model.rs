@@ -122,9 +122,12 @@ impl Model {
 
     /// The limits of the plan that a step says something of, those that bound nothing left out.
     pub fn limit_rows(&self) -> Vec<LimitRow> {
-        let Limits { displacement, force, increment, tracking_error, energy_error, .. } = self.limits;
+        let Limits { displacement, force, increment, tracking_error, energy_error, tracking_energy_error, nrms_error, .. } =
+            self.limits;
         let of = |value: fn(&StepReport) -> f64| self.last.as_ref().map(value);
         let energy = self.last.and_then(|last| last.energy_error).map(f64::abs);
+        let share = self.last.and_then(|last| last.tracking_energy_error).map(f64::abs);
+        let nrms = self.last.and_then(|last| last.tracking).map(|tracking| tracking.nrms_error);
         let sizes = |limit: Interval| Interval { low: limit.low.max(0.0), ..limit };
         let row = |name, dimension, limit, size, value| LimitRow { name, dimension, limit, size, value };
         [
@@ -133,6 +136,8 @@ impl Model {
             row("increment", Dimension::LENGTH, sizes(increment), true, self.increment),
             row("tracking error", Dimension::LENGTH, sizes(tracking_error), true, self.tracking_error()),
             row("energy error", Dimension::NUMBER, sizes(energy_error), true, energy),
+            row("tracking energy", Dimension::NUMBER, sizes(tracking_energy_error), true, share),
+            row("NRMS error", Dimension::NUMBER, sizes(nrms_error), true, nrms),
         ]
         .into_iter()
         .filter(|row| row.limit.high < f64::INFINITY || row.limit.low > if row.size { 0.0 } else { f64::NEG_INFINITY })
@@ -170,6 +175,8 @@ pub mod tests {
             acceleration: None,
             force,
             energy_error: Some(-1e-4),
+            tracking: None,
+            tracking_energy_error: None,
         }
     }
 

@@ -9,6 +9,7 @@ mod band;
 mod damping;
 mod energy;
 mod factor;
+pub mod impact;
 mod modes;
 mod schemes;
 mod solver;

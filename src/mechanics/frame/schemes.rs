@@ -40,6 +40,7 @@ pub(super) struct Schemes {
     factor: BandFactor,
     /// Whether there is damping at all.
     damped: bool,
+    struck: Option<Struck>,
     scratch: Vec<f64>,
     product: Vec<f64>,
 }
@@ -53,6 +54,22 @@ pub(super) struct Instant<'a> {
     /// At the computed displacement.
     pub force: &'a [f64],
     pub load: &'a [f64],
+}
+
+/// Decides on the contact force of a step, N, from the velocity that the struck degree of freedom would end with (m/s), and
+/// from w, how much a force adds to it (m/s/N).
+pub(super) type Decide<'a> = &'a mut dyn FnMut(f64, f64) -> f64;
+
+/// A degree of freedom that a body strikes.
+#[derive(Clone, Debug)]
+struct Struck {
+    place: usize,
+    /// M⁻¹ e_s, 1/kg
+    push: Vec<f64>,
+    /// M̂⁻¹ e_s in tangent form, 1/kg; under the others M̂⁻¹ (1+α)(β_cΔt²K_I + ½ΔtC) M⁻¹ e_s, what the structure takes back.
+    response: Vec<f64>,
+    /// F of the step under way or, before it is decided, of the last one, N.
+    force: f64,
 }
 
 /// Where a step leads.
@@ -82,6 +99,7 @@ impl Schemes {
             effective: SymmetricBand::zero(order, 0),
             factor: BandFactor::Diagonal(Vec::new()),
             damped: !matrices.damping.is_zero(),
+            struck: None,
             scratch: vec![0.0; order],
             product: vec![0.0; order],
         };
@@ -112,13 +130,52 @@ impl Schemes {
     pub fn set_storeys(&mut self, stiffnesses: &[f64]) -> Result<(), NotPositiveDefinite> {
         super::storeys::set_storeys(stiffnesses, &mut self.operator);
         self.compose();
-        self.factor.renew(&self.effective)
+        self.factor.renew(&self.effective)?;
+        self.respond();
+        Ok(())
+    }
+
+    /// A body may strike this degree of freedom.
+    pub fn strike(&mut self, place: usize) -> Result<(), NotPositiveDefinite> {
+        let mut push = vec![0.0; self.matrices.order()];
+        push[place] = 1.0;
+        BandFactor::new(&self.matrices.mass)?.solve_in_place(&mut push);
+        self.struck = Some(Struck { place, response: push.clone(), push, force: 0.0 });
+        self.respond();
+        Ok(())
+    }
+
+    /// β of the contact's part: the trapezoidal rule, but for explicit Newmark, which has none.
+    fn contact_beta(&self) -> f64 {
+        if self.integrator == Integrator::Explicit { 0.0 } else { 0.25 }
+    }
+
+    /// What the factor makes of a unit force at the struck degree of freedom.
+    fn respond(&mut self) {
+        let (time_step, beta) = (self.time_step, self.contact_beta());
+        let Some(struck) = &mut self.struck else { return };
+        struck.response.fill(0.0);
+        if self.integrator == Integrator::Tangent {
+            struck.response[struck.place] = 1.0;
+        } else {
+            let now = 1.0 + self.coefficients.alpha;
+            if beta > 0.0 {
+                self.operator.mul_add(now * beta * time_step * time_step, &struck.push, &mut struck.response);
+            }
+            self.matrices.damping.mul_add(now * 0.5 * time_step, &struck.push, &mut struck.response);
+        }
+        self.factor.solve_in_place(&mut struck.response);
+    }
+
+    /// F of the last step, N.
+    pub fn contact_force(&self) -> f64 {
+        self.struck.as_ref().map_or(0.0, |struck| struck.force)
     }
 }
 
 impl Schemes {
     /// The whole step in tangent form, all but the force that will be read at its end.
-    pub fn foretell(&mut self, from: Instant, load_end: &[f64], to: &mut Course) {
+    pub fn foretell(&mut self, from: Instant, load_end: &[f64], to: &mut Course, decide: Decide) {
         let time_step = self.time_step;
         let half = 0.5 * time_step;
         for ((to, load), force) in to.acceleration.iter_mut().zip(load_end).zip(from.force) {
@@ -135,16 +192,43 @@ impl Schemes {
         }
         self.operator.mul_add(-1.0, &self.scratch, &mut to.acceleration);
         self.factor.solve_in_place(&mut to.acceleration);
-        self.follow(from, to);
-    }
-
-    /// Eqs. (2c), (2d): on with the acceleration found.
-    pub fn follow(&self, from: Instant, to: &mut Course) {
-        let half = 0.5 * self.time_step;
+        if let Some(struck) = &mut self.struck {
+            let s = struck.place;
+            let velocity = from.velocity[s] + half * (from.acceleration[s] + to.acceleration[s]);
+            struck.force = decide(velocity, half * struck.response[s]);
+            add(&mut to.acceleration, struck.force, &struck.response);
+        }
         let before = from.velocity.iter().zip(from.acceleration);
         for ((to, after), (velocity, acceleration)) in to.velocity.iter_mut().zip(&to.acceleration).zip(before) {
             *to = velocity + half * (acceleration + after);
         }
+        self.travel(from, to);
+    }
+
+    /// The step of Moreau and Jean (θ = ½): an impulse p = FΔt is a jump of the velocity, M̂(Ẋ₁ − Ẋ) = Δt(½(f₀ + f₁) − R −
+    /// CẊ − ½ΔtK_tẊ) + p e_s. The acceleration at its end follows from the force read there.
+    pub fn jump(&mut self, from: Instant, load_end: &[f64], to: &mut Course, decide: Decide) {
+        let time_step = self.time_step;
+        let loads = from.load.iter().zip(load_end).zip(from.force);
+        for (to, ((load, after), force)) in to.velocity.iter_mut().zip(loads) {
+            *to = 0.5 * (load + after) - force;
+        }
+        self.matrices.damping.mul_add(-1.0, from.velocity, &mut to.velocity);
+        self.operator.mul_add(-0.5 * time_step, from.velocity, &mut to.velocity);
+        self.factor.solve_in_place(&mut to.velocity);
+        for (change, velocity) in to.velocity.iter_mut().zip(from.velocity) {
+            *change = velocity + time_step * *change;
+        }
+        if let Some(struck) = &mut self.struck {
+            struck.force = decide(to.velocity[struck.place], time_step * struck.response[struck.place]);
+            add(&mut to.velocity, struck.force * time_step, &struck.response);
+        }
+        self.travel(from, to);
+    }
+
+    /// Eq. (2d).
+    fn travel(&self, from: Instant, to: &mut Course) {
+        let half = 0.5 * self.time_step;
         let before = from.displacement.iter().zip(from.velocity);
         for ((to, after), (displacement, velocity)) in to.displacement.iter_mut().zip(&to.velocity).zip(before) {
             *to = displacement + half * (velocity + after);
@@ -160,10 +244,17 @@ impl Schemes {
             *place = displacement + time_step * (velocity + time_step * ((0.5 - beta) * acceleration));
             *speed = velocity + time_step * ((1.0 - gamma) * acceleration);
         }
+        // The contact's share of the acceleration goes by the trapezoidal rule.
+        if let Some(struck) = self.struck.as_ref().filter(|struck| struck.force > 0.0) {
+            let places = time_step * time_step * (beta - self.contact_beta());
+            add(&mut to.displacement, places * struck.force, &struck.push);
+            add(&mut to.velocity, time_step * (gamma - 0.5) * struck.force, &struck.push);
+        }
     }
 
     /// The end of the step that imposed `to.displacement`, where `read` (N) is the force.
-    pub fn correct(&mut self, from: Instant, load_end: &[f64], read: &[f64], to: &mut Course) {
+    pub fn correct(&mut self, from: Instant, load_end: &[f64], read: &[f64], to: &mut Course, decide: Decide) {
+        let contact_beta = self.contact_beta();
         let (time_step, Coefficients { alpha, beta, gamma }) = (self.time_step, self.coefficients);
         let now = 1.0 + alpha;
         let ends = load_end.iter().zip(read).zip(from.load.iter().zip(from.force));
@@ -178,21 +269,47 @@ impl Schemes {
         }
         self.factor.solve_in_place(&mut to.acceleration);
         to.force.copy_from_slice(read);
-        for (velocity, acceleration) in to.velocity.iter_mut().zip(&to.acceleration) {
-            *velocity += gamma * time_step * acceleration;
+        if let Some(struck) = &mut self.struck {
+            let s = struck.place;
+            let free = to.velocity[s] + gamma * time_step * to.acceleration[s];
+            struck.force = decide(free, time_step * (0.5 * struck.push[s] - gamma * struck.response[s]));
+            add(&mut to.acceleration, -struck.force, &struck.response);
+            add(&mut to.velocity, 0.5 * time_step * struck.force, &struck.push);
         }
+        add(&mut to.velocity, gamma * time_step, &to.acceleration);
         if beta > 0.0 {
-            let ways = self.scratch.iter_mut().zip(&to.acceleration);
-            for ((correction, acceleration), displacement) in ways.zip(&mut to.displacement) {
+            for (correction, acceleration) in self.scratch.iter_mut().zip(&to.acceleration) {
                 *correction = beta * time_step * time_step * acceleration;
-                *displacement += *correction;
             }
+            if let Some(struck) = &self.struck {
+                add(&mut self.scratch, contact_beta * time_step * time_step * struck.force, &struck.push);
+            }
+            add(&mut to.displacement, 1.0, &self.scratch);
             self.operator.mul_add(1.0, &self.scratch, &mut to.force);
         }
+        if let Some(struck) = &self.struck {
+            add(&mut to.acceleration, struck.force, &struck.push);
+        }
+    }
+
+    /// M Ẍ = f − R − CẊ: the acceleration at the end of a jump, whose impulse is over.
+    pub fn settle_acceleration(&self, mass: &BandFactor, load: &[f64], to: &mut Course) {
+        for ((acceleration, load), force) in to.acceleration.iter_mut().zip(load).zip(&to.force) {
+            *acceleration = load - force;
+        }
+        self.matrices.damping.mul_add(-1.0, &to.velocity, &mut to.acceleration);
+        mass.solve_in_place(&mut to.acceleration);
     }
 
     /// Two vectors of the frame's order for whoever balances energies between steps.
     pub fn scratch(&mut self) -> (&FrameMatrices, &mut [f64], &mut [f64]) {
         (&self.matrices, &mut self.scratch, &mut self.product)
+    }
+}
+
+/// x ← x + factor · y.
+fn add(x: &mut [f64], factor: f64, y: &[f64]) {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x += factor * y;
     }
 }

@@ -7,7 +7,7 @@ use super::FrameMatrices;
 use super::band::SymmetricBand;
 use super::energy::{End, FrameEnergies};
 use super::factor::{BandFactor, NotPositiveDefinite};
-use super::schemes::{Course, Instant, Schemes};
+use super::schemes::{Course, Decide, Instant, Schemes};
 use super::storeys::storeys_of;
 use super::tangents::{StoreyTangents, Tangents};
 use crate::plan::Integrator;
@@ -94,6 +94,8 @@ pub struct FrameSolver {
     predicted: bool,
     /// The force the recursion takes, N.
     felt: Vec<f64>,
+    /// Of M, where steps are those of Moreau and Jean.
+    mass: Option<BandFactor>,
 }
 
 impl FrameSolver {
@@ -144,18 +146,34 @@ impl FrameSolver {
             load_end: zero(),
             predicted: false,
             felt: zero(),
+            mass: None,
         })
+    }
+
+    /// A body may strike the degree of freedom `place`: with impulses that jump (`tangent` only), or with forces.
+    pub(super) fn strike(&mut self, place: usize, jumps: bool) -> Result<(), FrameError> {
+        if jumps {
+            self.mass = Some(BandFactor::new(&self.schemes.matrices.mass).map_err(FrameError::Mass)?);
+        }
+        self.schemes.strike(place).map_err(FrameError::Mass)
     }
 
     /// Displacements to command in this step, m, under the loads at its end (N). Asked again before `complete`, they are
     /// the same whatever the loads.
     pub fn predict(&mut self, load_end: &[f64]) -> &[f64] {
+        self.predict_with(load_end, &mut |_, _| 0.0)
+    }
+
+    /// The same, with a body that may strike.
+    pub(super) fn predict_with(&mut self, load_end: &[f64], decide: Decide) -> &[f64] {
         if !self.predicted {
             self.predicted = true;
             self.load_end.copy_from_slice(load_end);
             let from = self.state.instant();
-            if self.schemes.integrator == Integrator::Tangent {
-                self.schemes.foretell(from, &self.load_end, &mut self.next);
+            if self.mass.is_some() {
+                self.schemes.jump(from, &self.load_end, &mut self.next, decide);
+            } else if self.schemes.integrator == Integrator::Tangent {
+                self.schemes.foretell(from, &self.load_end, &mut self.next, decide);
             } else {
                 self.schemes.impose(from, &mut self.next);
             }
@@ -166,9 +184,18 @@ impl FrameSolver {
 
     /// Ends the step with what was measured at the targets. Without a prediction before it, under the loads of its start.
     pub fn complete(&mut self, measured_displacement: &[f64], restoring_force: &[f64]) -> &FrameState {
+        self.complete_with(measured_displacement, restoring_force, &mut |_, _| 0.0)
+    }
+
+    pub(super) fn complete_with(
+        &mut self,
+        measured_displacement: &[f64],
+        restoring_force: &[f64],
+        decide: Decide,
+    ) -> &FrameState {
         if !self.predicted {
             let load = self.state.load.clone();
-            self.predict(&load);
+            self.predict_with(&load, decide);
         }
         self.predicted = false;
         self.felt.copy_from_slice(restoring_force);
@@ -179,8 +206,12 @@ impl FrameSolver {
         }
         if self.schemes.integrator == Integrator::Tangent {
             self.next.force.copy_from_slice(&self.felt);
+            if let Some(mass) = &self.mass {
+                self.schemes.settle_acceleration(mass, &self.load_end, &mut self.next);
+            }
         } else {
-            self.schemes.correct(self.state.instant(), &self.load_end, &self.felt, &mut self.next);
+            let (schemes, from) = (&mut self.schemes, self.state.instant());
+            schemes.correct(from, &self.load_end, &self.felt, &mut self.next, decide);
         }
         if let Some(tangents) = &mut self.tangents
             && tangents.take(measured_displacement, restoring_force)
@@ -192,6 +223,11 @@ impl FrameSolver {
         }
         self.accept(measured_displacement, restoring_force);
         &self.state
+    }
+
+    /// Contact force of the last step, N.
+    pub(super) fn contact_force(&self) -> f64 {
+        self.schemes.contact_force()
     }
 
     fn accept(&mut self, measured_displacement: &[f64], restoring_force: &[f64]) {

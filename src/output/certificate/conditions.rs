@@ -1,103 +1,68 @@
-//! Conditions of the test: the item, the striker, the rig with its limits, the parameters, and the particulars that a
-//! laboratory gives. What was not given is said to be so.
+//! Conditions of the test: temperature and the like, time, the item, the striker, limits and parameters. In: a run. Out:
+//! blocks. What was not given is said to be so, and what the plan states and nobody measured is marked.
 
-use maud::{Markup, html};
-
-use super::super::{Run, number};
-use super::results::described;
-use super::{equipment, given, pairs, words};
-use crate::plan::{Behaviour, Ends, Interval, Limits, Settle, Specimen, Striker};
+use super::super::document::{Block, Text};
+use super::super::{Run, behaviour, number};
+use super::{described, pairs, particulars};
+use crate::plan::{Interval, Limits, Settle, Specimen, Striker};
 use crate::quantity::Dimension;
-
-/// Particulars of a report after clause 7.8.2 that the `plan` block may give.
-const PARTICULARS: &[(&str, &str)] = &[
-    ("laboratory", "Laboratory"),
-    ("place", "Place of the test"),
-    ("customer", "Customer"),
-    ("project", "Project"),
-    ("operator", "Operator"),
-    ("standard", "Method"),
-    ("revision", "Revision of the plan"),
-    ("specimen_id", "Item tested"),
-    ("material", "Material"),
-    ("receipt_date", "Item received"),
-    ("equipment", "Equipment"),
-    ("temperature", "Temperature"),
-    ("humidity", "Humidity"),
-];
+use crate::record::History;
 
 /// Everything about how the test was set up.
-pub(super) fn all(run: &Run<'_>) -> Markup {
-    html! {
-        section {
-            h2 { "Particulars" }
-            (particulars(run))
-        }
-        section {
-            h2 { "Conditions of the test" }
-            @for specimen in &run.plan.specimens { h3 { "Specimen " (specimen.name) } (specimen_table(specimen)) }
-            @for striker in &run.plan.strikers { h3 { "Striker " (striker.name) } (striker_table(striker)) }
-            h3 { "Rig " (run.record.rig.name) }
-            @match run.plan.rig.link.as_real() {
-                Some(link) => (equipment::table(run, link)),
-                None => (rig(run)),
-            }
-            h3 { "Limits" }
-            (limits(&run.plan.limits))
-            @if !run.plan.parameters.is_empty() { h3 { "Parameters" } (parameters(run)) }
-            p.note {
-                "Masses, geometry and striker speed are as the plan states them; they were not measured in this run. A pseudo-dynamic "
-                "test loads the specimen slowly: effects of strain rate and of the inertia of the specimen are not in the measured force."
-            }
-        }
+pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
+    body.push(Block::section("Conditions of the test"));
+    body.push(Block::Pairs { rows: particulars::others(run) });
+    time_scale(run, body);
+    body.push(Block::note(
+        "A pseudo-dynamic test loads the specimen slowly: effects of strain rate, and of the inertia of the specimen beyond the \
+         equivalent mass, are not in the measured force.",
+    ));
+    let stated = |name: String| Text::from(name).soft(" · as the plan states, not measured in this run");
+    for specimen in &run.plan.specimens {
+        body.push(Block::part(stated(format!("Specimen {}", specimen.name))));
+        body.push(specimen_table(specimen));
+    }
+    for striker in &run.plan.strikers {
+        body.push(Block::part(stated(format!("Striker {}", striker.name))));
+        body.push(striker_table(striker));
+    }
+    body.push(Block::part("Limits"));
+    body.push(limits(&run.plan.limits));
+    if !run.plan.parameters.is_empty() {
+        body.push(Block::part("Parameters"));
+        body.push(parameters(run));
     }
 }
 
-fn particulars(run: &Run<'_>) -> Markup {
-    let stated = |field: &str| run.plan.particulars.iter().find(|(name, _)| *name == field).map(|(_, text)| text.as_str());
-    // Who stood by is known from the record, whoever the plan names.
-    let operator = run.provenance.operator();
-    let text = |field: &str| if field == "operator" { operator.or_else(|| stated(field)) } else { stated(field) };
-    let mut rows: Vec<(String, Markup)> =
-        PARTICULARS.iter().map(|(field, name)| ((*name).to_owned(), given(text(field)))).collect();
-    rows.push(("Date of the test".to_owned(), given(run.provenance.date.as_deref())));
-    // The edition is the language's, the decision rule stands beside the requirements, deviations with the others.
-    let known = |field: &str| {
-        matches!(field, "date" | "edition" | "decision_rule" | "deviations") || PARTICULARS.iter().any(|(name, _)| *name == field)
-    };
-    for (field, text) in run.plan.particulars.iter().filter(|(field, _)| !known(field)) {
-        rows.push((words(field), given(Some(text))));
+/// Virtual time of each impact beside the time the rig took for it.
+fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
+    let told = run.record.procedures.iter().filter_map(|procedure| {
+        let History::Impact(history) = &procedure.history else { return None };
+        let (first, last) = (history.steps.first()?, history.steps.last()?);
+        let (virtual_time, rig_time) = (last.time - first.time, last.wall_time - first.wall_time);
+        let slower = || format!(", {:.0} times as long", rig_time / virtual_time);
+        (virtual_time > 0.0).then(|| {
+            (
+                Text::from(format!("Time scale of {}", procedure.name)),
+                Text::from(format!(
+                    "{} of virtual time took {} on the rig{}",
+                    number::text(virtual_time, Dimension::TIME),
+                    number::text(rig_time, Dimension::TIME),
+                    if rig_time > 0.0 { slower() } else { String::new() }
+                )),
+            )
+        })
+    });
+    let rows: Vec<(Text, Text)> = told.collect();
+    if !rows.is_empty() {
+        body.push(Block::Pairs { rows });
     }
-    pairs(&rows)
 }
 
-fn specimen_table(specimen: &Specimen) -> Markup {
+fn specimen_table(specimen: &Specimen) -> Block {
     let mut rows = vec![("equivalent mass", number::stated(specimen.mass, Dimension::MASS))];
-    match specimen.behaviour {
-        None => {}
-        Some(Behaviour::Elastic { stiffness }) => {
-            rows.push(("virtual behaviour", format!("elastic, stiffness {}", number::stated(stiffness, Dimension::STIFFNESS))));
-        }
-        Some(Behaviour::Bilinear { stiffness, yield_force, hardening }) => rows.push((
-            "virtual behaviour",
-            format!(
-                "bilinear, stiffness {}, yield force {}, hardening {}",
-                number::stated(stiffness, Dimension::STIFFNESS),
-                number::stated(yield_force, Dimension::FORCE),
-                number::stated(hardening, Dimension::NUMBER)
-            ),
-        )),
-        Some(Behaviour::Beam { stiffness, length, youngs_modulus, second_moment, ends }) => rows.push((
-            "virtual behaviour",
-            format!(
-                "beam, {}, length {}, modulus {}, second moment {}: stiffness {}",
-                held(ends),
-                number::stated(length, Dimension::LENGTH),
-                number::stated(youngs_modulus, Dimension::PRESSURE),
-                number::stated(second_moment, Dimension::SECOND_MOMENT),
-                number::stated(stiffness, Dimension::STIFFNESS)
-            ),
-        )),
+    if let Some(behaviour) = &specimen.behaviour {
+        rows.extend(behaviour::rows(behaviour, &number::stated));
     }
     if specimen.damping != 0.0 {
         rows.push(("damping on the load cell", number::stated(specimen.damping, Dimension::DAMPING)));
@@ -108,58 +73,13 @@ fn specimen_table(specimen: &Specimen) -> Markup {
     described(rows)
 }
 
-fn held(ends: Ends) -> String {
-    match ends {
-        Ends::Cantilever => "cantilever".to_owned(),
-        Ends::SimplySupported => "simply supported".to_owned(),
-        Ends::BuiltIn => "built in".to_owned(),
-        Ends::PartlyBuiltIn { rotational_stiffness } => {
-            format!(
-                "partly built in ({} per radian)",
-                number::stated(rotational_stiffness, Dimension::ENERGY).replace('J', "N·m")
-            )
-        }
-    }
-}
-
-fn striker_table(striker: &Striker) -> Markup {
+fn striker_table(striker: &Striker) -> Block {
     described(vec![
         ("mass", number::stated(striker.mass, Dimension::MASS)),
         ("velocity at the start", number::stated(striker.velocity, Dimension::VELOCITY)),
         ("energy", number::stated(0.5 * striker.mass * striker.velocity * striker.velocity, Dimension::ENERGY)),
         ("gap at the start", number::stated(striker.gap, Dimension::LENGTH)),
     ])
-}
-
-fn rig(run: &Run<'_>) -> Markup {
-    let identity = &run.record.rig;
-    let mut rows = vec![
-        ("Kind".to_owned(), html! { @if identity.simulated { "simulated: nothing real moved" } @else { "real" } }),
-        ("Model".to_owned(), given(Some(&identity.model))),
-        ("Serial number".to_owned(), given(Some(&identity.serial))),
-        ("Firmware".to_owned(), given(Some(&identity.firmware))),
-        ("Calibration".to_owned(), given(run.plan.rig.calibration.reference.as_deref())),
-    ];
-    let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
-    if identity.simulated {
-        let terms = [
-            ("load-cell noise", link.noise, Dimension::FORCE),
-            ("displacement quantum", link.resolution, Dimension::LENGTH),
-            ("force quantum", link.force_resolution, Dimension::FORCE),
-            ("actuator lag", link.lag, Dimension::TIME),
-            ("increment not reached", link.tracking, Dimension::NUMBER),
-            ("load-cell drift", link.drift, Dimension::FORCE_RATE),
-        ];
-        let stated: Vec<String> = terms
-            .into_iter()
-            .filter(|(_, value, _)| *value != 0.0)
-            .map(|(name, value, dimension)| format!("{name} {}", number::stated(value, dimension)))
-            .collect();
-        let text = if stated.is_empty() { "none: an ideal rig".to_owned() } else { stated.join("; ") };
-        rows.push(("Simulated errors".to_owned(), html! { (text) }));
-    }
-    rows.push(("Settling".to_owned(), html! { (settling(run.plan.rig.settle)) }));
-    pairs(&rows)
 }
 
 pub(super) fn settling(settle: Settle) -> String {
@@ -175,7 +95,7 @@ pub(super) fn settling(settle: Settle) -> String {
     )
 }
 
-fn limits(limits: &Limits) -> Markup {
+fn limits(limits: &Limits) -> Block {
     let rows: Vec<(&str, String)> = [
         ("displacement", limits.displacement, Dimension::LENGTH),
         ("force", limits.force, Dimension::FORCE),
@@ -183,12 +103,14 @@ fn limits(limits: &Limits) -> Markup {
         ("increment", limits.increment, Dimension::LENGTH),
         ("tracking error", limits.tracking_error, Dimension::LENGTH),
         ("energy error", limits.energy_error, Dimension::NUMBER),
+        ("tracking energy error", limits.tracking_energy_error, Dimension::NUMBER),
+        ("NRMS tracking error", limits.nrms_error, Dimension::NUMBER),
     ]
     .into_iter()
     .filter(|(_, interval, _)| interval.is_bounded())
     .map(|(name, interval, dimension)| (name, range(interval, dimension)))
     .collect();
-    html! { @if rows.is_empty() { p { "The plan sets no limit." } } @else { (described(rows)) } }
+    if rows.is_empty() { Block::paragraph("The plan sets no limit.") } else { described(rows) }
 }
 
 pub(super) fn range(interval: Interval, dimension: Dimension) -> String {
@@ -201,18 +123,10 @@ pub(super) fn range(interval: Interval, dimension: Dimension) -> String {
     }
 }
 
-fn parameters(run: &Run<'_>) -> Markup {
-    let rows: Vec<(String, Markup)> = run
-        .plan
-        .parameters
-        .iter()
-        .map(|parameter| {
-            let origin = if parameter.set { "set for this run" } else { "as the plan states" };
-            (
-                parameter.name.clone(),
-                html! { (number::stated(parameter.value, parameter.dimension)) " " span.soft { "(" (origin) ")" } },
-            )
-        })
-        .collect();
-    pairs(&rows)
+fn parameters(run: &Run<'_>) -> Block {
+    let value = |parameter: &crate::plan::Parameter| {
+        let origin = if parameter.set { " (set for this run)" } else { " (as the plan states)" };
+        Text::from(number::stated(parameter.value, parameter.dimension)).soft(origin)
+    };
+    pairs(run.plan.parameters.iter().map(|parameter| (parameter.name.as_str(), value(parameter))).collect())
 }

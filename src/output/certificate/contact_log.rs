@@ -1,7 +1,6 @@
 //! The contact log of an impact: every blow with its time, impulse and largest force. In: the steps. Out: a table.
 
-use maud::{Markup, html};
-
+use super::super::document::{Block, Column, Table, Text};
 use super::super::number;
 use crate::quantity::Dimension;
 use crate::record::{ImpactHistory, ImpactStep, StepState};
@@ -21,37 +20,31 @@ struct Blow {
 }
 
 /// The log, shortened where it is long.
-pub(super) fn table(history: &ImpactHistory) -> Markup {
+pub(super) fn table(history: &ImpactHistory, body: &mut Vec<Block>) {
     let blows = blows(&history.steps);
+    if blows.is_empty() {
+        body.push(Block::paragraph("Striker and structure did not touch."));
+        return;
+    }
     let end = history.steps.last().map_or(0.0, |step| step.time);
-    html! {
-        @if blows.is_empty() { p { "Striker and structure did not touch." } }
-        @else {
-            table.results {
-                thead {
-                    tr {
-                        th { "Contact log" }
-                        th.number { "Duration" }
-                        th.number { "Impulse" }
-                        th.number { "Largest force" }
-                    }
-                }
-                tbody {
-                    @for (index, blow) in blows.iter().take(PRINTED).enumerate() {
-                        tr {
-                            td {
-                                "blow " (index + 1) " at " (number::text_beside(blow.start, end, Dimension::TIME))
-                                @if blow.limited { " (limit force)" }
-                            }
-                            td.number { (number::text(blow.end - blow.start, Dimension::TIME)) }
-                            td.number { (number::text(blow.impulse, Dimension::IMPULSE)) }
-                            td.number { (number::text(blow.largest_force, Dimension::FORCE)) }
-                        }
-                    }
-                }
-            }
-            @if blows.len() > PRINTED { p.note { (blows.len() - PRINTED) " more blows are in the table of this procedure." } }
-        }
+    let row = |(index, blow): (usize, &Blow)| -> Vec<Text> {
+        let limited = if blow.limited { " (limit force)" } else { "" };
+        vec![
+            format!("blow {} at {}{limited}", index + 1, number::text_beside(blow.start, end, Dimension::TIME)).into(),
+            number::text(blow.end - blow.start, Dimension::TIME).into(),
+            number::text(blow.impulse, Dimension::IMPULSE).into(),
+            number::text(blow.largest_force, Dimension::FORCE).into(),
+        ]
+    };
+    let columns = vec![
+        Column::words("Contact log", 1),
+        Column::numbers("Duration"),
+        Column::numbers("Impulse"),
+        Column::numbers("Largest force"),
+    ];
+    body.push(Block::Table(Table { columns, rows: blows.iter().take(PRINTED).enumerate().map(row).collect() }));
+    if blows.len() > PRINTED {
+        body.push(Block::note(format!("{} more blows are in the table of this procedure.", blows.len() - PRINTED)));
     }
 }
 
@@ -84,6 +77,7 @@ fn blows(steps: &[ImpactStep]) -> Vec<Blow> {
 mod tests {
     use super::*;
     use crate::mechanics::energy::Energies;
+    use crate::mechanics::monitor::Tracking;
 
     #[test]
     fn neighbouring_steps_of_contact_are_one_blow() {
@@ -93,6 +87,7 @@ mod tests {
             wall_time: 0.0,
             state,
             command: 0.0,
+            computed: 0.0,
             displacement: 0.0,
             velocity: 0.0,
             acceleration: 0.0,
@@ -103,6 +98,7 @@ mod tests {
             tangent_stiffness: 0.0,
             indentation: 0.0,
             energies: Energies::default(),
+            tracking: Tracking::default(),
         };
         let steps = [
             step(0, StepState::Free, 0.0),

@@ -1,73 +1,114 @@
-//! Equipment and calibration of a real rig: who answered, how it was reached, what its numbers are traced to, what it was
-//! held to. In: a run on a real rig. Out: a table. Where a port lies on the machine is no part of it.
+//! Equipment and calibration: who answered, how it was reached, what its numbers are traced to, what it was held to. In: a
+//! run. Out: blocks. Where a port lies on the machine is no part of it.
 
-use maud::{Markup, html};
-
+use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
-use super::{given, pairs};
-use crate::plan::{Calibration, DeviceLink, Gate, PortPlan, ReadingRules, RealLink};
+use super::pairs;
+use crate::plan::{DeviceLink, Gate, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::record::EventKind;
 
-/// The table of a real rig.
-pub(super) fn table(run: &Run<'_>, link: &RealLink) -> Markup {
+/// The rig of the run.
+pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
+    body.push(Block::section("Equipment and calibration"));
+    body.push(calibration(run));
+    body.push(match run.plan.rig.link.as_real() {
+        Some(link) => real(run, link),
+        None => simulated(run),
+    });
+}
+
+/// What the rig's numbers are traced to, and whether that still held on the day of the test.
+fn calibration(run: &Run<'_>) -> Block {
+    let identity = &run.record.rig;
+    let calibration = &run.plan.rig.calibration;
+    let told: Vec<&str> =
+        [&identity.model, &identity.serial].into_iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
+    let state = match (calibration.due.as_deref(), standing::last_day(run)) {
+        (None, _) => Text::missing("no due date"),
+        (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
+        (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),
+        (Some(_), None) => Text::missing("day of the test not known"),
+    };
+    let row = vec![
+        Text::from(run.plan.rig.name.as_str()),
+        if told.is_empty() { Text::given(None) } else { told.join(", ").into() },
+        Text::given(calibration.reference.as_deref()),
+        Text::given(calibration.due.as_deref()),
+        state,
+    ];
+    let columns = vec![
+        Column::short("Rig"),
+        Column::words("Model, serial number", 2),
+        Column::words("Calibration certificate", 2),
+        Column::short("Holds until"),
+        Column::short("State"),
+    ];
+    Block::Table(Table { columns, rows: vec![row] })
+}
+
+fn real(run: &Run<'_>, link: &RealLink) -> Block {
     let identity = &run.record.rig;
     let calibration = &run.plan.rig.calibration;
     let kind = if identity.simulated { "a simulated controller on a real line: nothing real moved" } else { "real" };
-    let mut rows = vec![
-        ("Kind".to_owned(), html! { (kind) }),
-        ("Model".to_owned(), given(Some(&identity.model))),
-        ("Serial number".to_owned(), given(Some(&identity.serial))),
-        ("Firmware".to_owned(), given(Some(&identity.firmware))),
-    ];
+    let mut rows = vec![("Kind", kind.into()), ("Firmware", Text::given(Some(&identity.firmware)))];
     if let Some(boot) = &identity.boot {
-        rows.push(("Power-up of the controller".to_owned(), html! { span.id { (boot) } }));
+        rows.push(("Power-up of the controller", Text::new().id(boot)));
     }
-    rows.push(("Actuator".to_owned(), device(&link.actuator)));
-    rows.push((
-        "Load cell".to_owned(),
-        link.load_cell.as_ref().map_or_else(|| html! { "read by the actuator's controller" }, device),
-    ));
-    rows.push(("Calibration".to_owned(), given(calibration.reference.as_deref())));
-    rows.push(("Calibration holds until".to_owned(), due(run, calibration)));
+    rows.push(("Actuator", device(&link.actuator)));
+    rows.push(("Load cell", link.load_cell.as_ref().map_or_else(|| "read by the actuator's controller".into(), device)));
     if let Some(factor) = calibration.newtons_per_count {
         let zero = number::stated(calibration.zero_count, Dimension::NUMBER);
-        rows.push(("Force of a count".to_owned(), html! { (number::stated(factor, Dimension::FORCE)) ", zero at " (zero) }));
+        rows.push(("Force of a count", format!("{}, zero at {zero}", number::stated(factor, Dimension::FORCE)).into()));
     }
-    rows.push(("Declared of its readings".to_owned(), html! { (declared(&link.readings)) }));
-    rows.push(("Taking a reading".to_owned(), html! { (taking(&link.readings)) }));
-    rows.push(("Settling".to_owned(), html! { (settling(run.plan.rig.settle)) }));
+    rows.push(("Declared of its readings", declared(&link.readings).into()));
+    rows.push(("Taking a reading", taking(&link.readings).into()));
+    rows.push(("Settling", settling(run.plan.rig.settle).into()));
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
-    rows.push(("Watchdog".to_owned(), html! { "the rig holds by itself after " (watchdog) " without a sign of life" }));
-    rows.push(("Safe state".to_owned(), html! { (link.safe_state.name()) }));
-    rows.push(("Gate, demanded".to_owned(), html! { (demanded(&link.gate)) }));
-    rows.push(("Gate, found".to_owned(), given(found(run))));
-    pairs(&rows)
+    rows.push(("Watchdog", format!("the rig holds by itself after {watchdog} without a sign of life").into()));
+    rows.push(("Safe state", link.safe_state.name().into()));
+    rows.push(("Gate, demanded", demanded(&link.gate).into()));
+    rows.push(("Gate, found", Text::given(found(run))));
+    pairs(rows)
+}
+
+fn simulated(run: &Run<'_>) -> Block {
+    let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
+    pairs(vec![
+        ("Kind", "simulated: nothing real moved".into()),
+        ("Firmware", Text::given(Some(&run.record.rig.firmware))),
+        ("Simulated errors", errors(&link).into()),
+        ("Settling", settling(run.plan.rig.settle).into()),
+    ])
+}
+
+/// What a virtual rig adds to its specimen.
+fn errors(link: &VirtualLink) -> String {
+    let terms = [
+        ("load-cell noise", link.noise, Dimension::FORCE),
+        ("displacement quantum", link.resolution, Dimension::LENGTH),
+        ("force quantum", link.force_resolution, Dimension::FORCE),
+        ("actuator lag", link.lag, Dimension::TIME),
+        ("increment not reached", link.tracking, Dimension::NUMBER),
+        ("load-cell drift", link.drift, Dimension::FORCE_RATE),
+    ];
+    let terms = terms.into_iter().filter(|(_, value, _)| *value != 0.0);
+    let stated: Vec<String> =
+        terms.map(|(name, value, dimension)| format!("{name} {}", number::stated(value, dimension))).collect();
+    if stated.is_empty() { "none: an ideal rig".to_owned() } else { stated.join("; ") }
 }
 
 /// How a device is reached and what it speaks.
-fn device(link: &DeviceLink) -> Markup {
+fn device(link: &DeviceLink) -> Text {
     let port = match &link.port {
         PortPlan::Serial { baud, .. } => format!("serial, {baud} baud"),
         PortPlan::Tcp { .. } => "TCP".to_owned(),
     };
-    html! {
-        (port) ", dialect " code { (link.dialect.name()) }
-        @if let Some(serial) = &link.serial_number { ", only serial number " (serial) }
-    }
-}
-
-/// The day until which the calibration holds, beside the test's own.
-fn due(run: &Run<'_>, calibration: &Calibration) -> Markup {
-    let Some(due) = calibration.due.as_deref() else { return given(None) };
-    html! {
-        (due)
-        @match standing::last_day(run) {
-            Some(day) if due < day => { " " strong { "EXPIRED" } " when the test ended, on " (day) }
-            Some(day) => { "; the test ended on " (day) }
-            None => { "; the day of the test is not known" }
-        }
+    let text = Text::from(format!("{port}, dialect ")).code(link.dialect.name());
+    match &link.serial_number {
+        Some(serial) => text.and(format!(", only serial number {serial}")),
+        None => text,
     }
 }
 

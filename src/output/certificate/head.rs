@@ -1,60 +1,19 @@
-//! The top of the certificate: what was tested, the verdict, and what must be known before it is believed.
+//! The first page after the title: the verdict, each requirement with the rule it was decided by, and what must be known
+//! before any of it is believed. In: a run. Out: blocks.
 
-use maud::{Markup, html};
-
+use super::super::document::{Block, Column, Style, Table, Text, Verdict as Stated};
 use super::super::{Run, amendment, deviations, number, summary};
-use super::{marks, title};
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
-use crate::verdict::{RequirementOutcome, Verdict};
+use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 
-/// Title, run id, verdict and marks.
-pub(super) fn title_and_verdict(run: &Run<'_>) -> Markup {
-    let verdict = run.assessment.verdict;
-    html! {
-        header.title {
-            div {
-                p.kind { "Report of a pseudo-dynamic test" }
-                @if let Some(replaced) = replaced(run) { p.kind { strong { "Amendment to report " (replaced) } } }
-                h1 { (title(run)) }
-            }
-            div.run {
-                @if run.provenance.amends.is_some() { "report " span.id { (run.provenance.report_id()) } br; }
-                "run " span.id { (run.provenance.run_id) } br;
-                @if let Some(date) = &run.provenance.date { (date) } @else { "date not given" }
-            }
-        }
-        section class={ "verdict " (verdict.name()) } {
-            strong { (verdict.name().to_uppercase()) }
-            (sentence(run))
-            @if let Outcome::Aborted { reason } | Outcome::Faulted { reason } = &run.record.outcome { " Reason: " (reason) "." }
-        }
-        (marks::boxed(run))
-        (amendments(run))
-    }
-}
-
-/// The report that this one takes the place of.
-fn replaced<'a>(run: &Run<'a>) -> Option<&'a str> {
-    let amends = run.provenance.amends.as_ref()?;
-    amends.amendments.last().map(|amendment| amendment.replaces.as_str())
-}
-
-/// Why there is another report of the same run, and what it says otherwise.
-fn amendments(run: &Run<'_>) -> Markup {
-    let told = amendment::told(run);
-    html! {
-        @if !told.is_empty() {
-            section {
-                h2 { "Amendment" }
-                ul { @for told in &told { li { (told) } } }
-                p.note {
-                    "The record of the run is the same, and so is every measured and computed number. The report named above is "
-                    "kept and no longer valid."
-                }
-            }
-        }
-    }
+/// The verdict in a sentence.
+pub(super) fn verdict(run: &Run<'_>) -> Stated {
+    let reason = match &run.record.outcome {
+        Outcome::Completed => String::new(),
+        Outcome::Aborted { reason } | Outcome::Faulted { reason } => format!(" Reason: {}.", reason.trim_end_matches('.')),
+    };
+    Stated { name: run.assessment.verdict.name(), text: (sentence(run) + &reason).into() }
 }
 
 fn sentence(run: &Run<'_>) -> String {
@@ -76,93 +35,112 @@ fn sentence(run: &Run<'_>) -> String {
     }
 }
 
-/// Every requirement with value, uncertainty, limit and margin, and the rule by which it was decided.
-pub(super) fn requirements(run: &Run<'_>) -> Markup {
-    let rule = run.plan.particulars.iter().find(|(name, _)| *name == "decision_rule").map_or("simple", |(_, text)| text);
-    html! {
-        section {
-            h2 { "Requirements" }
-            @if run.assessment.requirements.is_empty() {
-                p { "No requirement: the verdict says only that the run came to its end." }
-            } @else {
-                table {
-                    thead {
-                        tr {
-                            th { "Requirement" }
-                            th.number { "Value ± u" }
-                            th.number { "Limit" }
-                            th.number { "Margin" }
-                            th { "Verdict" }
-                        }
-                    }
-                    tbody { @for requirement in &run.assessment.requirements { (conditions(requirement)) } }
-                }
-                p.note {
-                    "Decision rule: " (rule) ". With the rule “simple” the value alone is held against the limit, whatever its "
-                    "uncertainty. u is the standard uncertainty (k = 1) where a measured result carries one. Margin is the distance "
-                    "inside the limit; a negative margin is the distance by which it is missed."
-                }
-            }
-        }
+/// Why there is another report of the same run, and what it says otherwise.
+pub(super) fn amendments(run: &Run<'_>, body: &mut Vec<Block>) {
+    let told = amendment::told(run);
+    if told.is_empty() {
+        return;
     }
+    body.push(Block::section("Amendment"));
+    body.push(Block::List { items: told.into_iter().map(Text::from).collect() });
+    body.push(Block::note(
+        "The record of the run is the same, and so is every measured and computed number. The report named above is kept and no \
+         longer valid.",
+    ));
 }
 
-fn conditions(requirement: &RequirementOutcome) -> Markup {
-    let deciding = summary::governing(requirement).map(|condition| condition.text.as_str());
-    html! {
-        @for (index, condition) in requirement.conditions.iter().enumerate() {
-            tr {
-                td {
-                    @if index == 0 { (requirement.label) br; }
-                    code.soft { (condition.text) }
-                    @if let Some(reason) = &condition.reason { br; span.note { (reason) } }
-                }
-                td.number {
-                    @match number::value(condition) {
-                        Some(value) => { (value) }
-                        None => { span.missing { "no value" } }
-                    }
-                }
-                td.number { (number::bound(condition)) }
-                td.number { @if let Some(margin) = number::margin(condition) { (margin) } @else { "—" } }
-                td class=(condition.verdict.name()) { (condition.verdict.name()) }
-            }
-        }
-        @if deciding.is_none() {
-            tr { td colspan="4" { (requirement.label) } td class=(requirement.verdict.name()) { (requirement.verdict.name()) } }
-        }
+/// The report that this one takes the place of.
+pub(super) fn replaced(run: &Run<'_>) -> Option<String> {
+    let amends = run.provenance.amends.as_ref()?;
+    amends.amendments.last().map(|amendment| amendment.replaces.clone())
+}
+
+/// Whether deviations stand before the requirements: of a real rig, and where long requirements would push them off the
+/// first page.
+pub(super) fn deviations_come_first(run: &Run<'_>) -> bool {
+    const ON_ONE_PAGE: usize = 8;
+    let conditions: usize = run.assessment.requirements.iter().map(|requirement| requirement.conditions.len()).sum();
+    run.plan.rig.link.as_real().is_some() || conditions > ON_ONE_PAGE
+}
+
+/// Every requirement with value, expanded uncertainty, limit and margin, and the rule by which it was decided.
+pub(super) fn requirements(run: &Run<'_>, body: &mut Vec<Block>) {
+    body.push(Block::section("Requirements"));
+    if run.assessment.requirements.is_empty() {
+        body.push(Block::paragraph("No requirement: the verdict says only that the run came to its end."));
+        return;
     }
+    let columns = vec![
+        Column::words("Requirement", 1),
+        Column::numbers("Value ± U"),
+        Column::numbers("Limit"),
+        Column::numbers("Margin"),
+        Column::short("Verdict"),
+    ];
+    body.push(Block::Table(Table { columns, rows: run.assessment.requirements.iter().flat_map(rows).collect() }));
+    body.push(Block::note(rule(run)));
+}
+
+/// The decision rule in words, and what the columns are.
+fn rule(run: &Run<'_>) -> String {
+    let rule = run.plan.particulars.iter().find(|(name, _)| *name == "decision_rule").map_or("simple", |(_, text)| text);
+    format!(
+        "Decision rule: {rule}. With the rule “simple” the value alone is held against the limit, whatever its uncertainty. \
+         U = 2u is the expanded uncertainty (k = 2) where a measured result carries one. Margin is the distance inside the \
+         limit; a negative margin is the distance by which it is missed."
+    )
+}
+
+fn rows(requirement: &RequirementOutcome) -> Vec<Vec<Text>> {
+    if requirement.conditions.is_empty() {
+        let none = || Text::from("—");
+        return vec![vec![requirement.label.as_str().into(), none(), none(), none(), word(requirement.verdict)]];
+    }
+    let of = |(index, condition): (usize, &ConditionOutcome)| {
+        let label = if index == 0 { Text::from(requirement.label.as_str()).line() } else { Text::new() };
+        let mut name = label.code(&condition.text);
+        if let Some(reason) = &condition.reason {
+            name = name.line().soft(reason);
+        }
+        vec![
+            name,
+            number::value(condition).map_or_else(|| Text::missing("no value"), Text::from),
+            number::bound(condition).into(),
+            number::margin(condition).map_or_else(|| "—".into(), Text::from),
+            word(condition.verdict),
+        ]
+    };
+    requirement.conditions.iter().enumerate().map(of).collect()
+}
+
+fn word(verdict: Verdict) -> Text {
+    let style = match verdict {
+        Verdict::Pass => Style::Pass,
+        Verdict::Inconclusive => Style::Doubt,
+        Verdict::Fail | Verdict::Aborted | Verdict::Error => Style::Fail,
+    };
+    Text::new().with(style, verdict.name())
 }
 
 /// Deviations from the plan, and remarks on the numbers.
-pub(super) fn deviations(run: &Run<'_>) -> Markup {
+pub(super) fn deviations(run: &Run<'_>, body: &mut Vec<Block>) {
+    body.push(Block::section("Deviations and remarks"));
     let found = deviations::of(run);
-    let remarks: Vec<_> = run
-        .record
-        .events
-        .iter()
-        .filter(|event| match event.kind {
-            EventKind::Remark | EventKind::Inspection => true,
-            EventKind::Note => !deviations::is_of_the_line(&event.text),
-            _ => false,
-        })
-        .collect();
-    html! {
-        section {
-            h2 { "Deviations and remarks" }
-            @if found.is_empty() { p { "No deviation from the plan was recorded." } }
-            @else { ul { @for deviation in &found { li { (deviation) } } } }
-            @if !remarks.is_empty() {
-                ul {
-                    @for event in remarks {
-                        li {
-                            (capital(summary::event_kind(event.kind)))
-                            (deviations::place(event.procedure.as_deref(), event.step)) ": " (event.text)
-                        }
-                    }
-                }
-            }
-        }
+    if found.is_empty() {
+        body.push(Block::paragraph("No deviation from the plan was recorded."));
+    }
+    let remarks = run.record.events.iter().filter(|event| match event.kind {
+        EventKind::Remark | EventKind::Inspection => true,
+        EventKind::Note => !deviations::is_of_the_line(&event.text),
+        _ => false,
+    });
+    let remarks = remarks.map(|event| {
+        let place = deviations::place(event.procedure.as_deref(), event.step);
+        format!("{}{place}: {}", capital(summary::event_kind(event.kind)), event.text)
+    });
+    let items: Vec<Text> = found.into_iter().chain(remarks).map(Text::from).collect();
+    if !items.is_empty() {
+        body.push(Block::List { items });
     }
 }
 

@@ -1,62 +1,35 @@
-//! Marks that say what a report must not be taken for: boxed words under the verdict, and a word across every page. In: a
-//! run. Out: markup and its style. Dark on white and outlined, so that they outlive a grey print and a copy of it.
-
-use maud::{Markup, html};
+//! Marks that say what a report must not be taken for: boxed words under the verdict, and words across every page. In: a
+//! run. Out: the words, each ground for itself.
 
 use super::super::Run;
+use super::super::document::Mark;
 use super::super::standing::{self, Standing};
 
-/// Style of the word across the page; a page without one has none.
-pub(super) fn style(run: &Run<'_>) -> &'static str {
-    if across(run).is_empty() { "" } else { include_str!("marks.css") }
-}
-
 /// The boxed words, each ground on a line of its own.
-pub(super) fn boxed(run: &Run<'_>) -> Markup {
-    html! {
-        @for ground in standing::grounds(run) {
-            div.marks {
-                @match ground {
-                    Standing::Certifiable => {}
-                    Standing::Rehearsal => {
-                        span.mark { "REHEARSAL" }
-                        span.mark { "NOT CERTIFIABLE" }
-                        @if run.record.rig.simulated {
-                            span { "Simulated rig: rehearsal, not a test of a specimen." }
-                        } @else {
-                            span { "Only the gate and the leading stiffness ramps ran on the rig: not the test of the plan." }
-                        }
-                    }
-                    Standing::Incomplete => {
-                        span.mark { "INCOMPLETE" }
-                        span { "The run did not come to its end." }
-                    }
-                    Standing::NotCertifiable { missing } => {
-                        span.mark { "NOT CERTIFIABLE" }
-                        span { "This report lacks " (missing.join("; ")) "." }
-                    }
-                }
-            }
+pub(super) fn boxed(run: &Run<'_>) -> Vec<Mark> {
+    let of = |ground| match ground {
+        Standing::Certifiable => None,
+        Standing::Rehearsal if run.record.rig.simulated => {
+            Some((vec!["REHEARSAL", "NOT CERTIFIABLE"], "Simulated rig: rehearsal, not a test of a specimen.".to_owned()))
         }
-    }
+        Standing::Rehearsal => Some((
+            vec!["REHEARSAL", "NOT CERTIFIABLE"],
+            "Only the gate and the leading stiffness ramps ran on the rig: not the test of the plan.".to_owned(),
+        )),
+        Standing::Incomplete => Some((vec!["INCOMPLETE"], "The run did not come to its end.".to_owned())),
+        Standing::NotCertifiable { missing } => {
+            Some((vec!["NOT CERTIFIABLE"], format!("This report lacks {}.", missing.join("; "))))
+        }
+    };
+    standing::grounds(run).into_iter().filter_map(of).map(|(words, text)| Mark { words, text: text.into() }).collect()
 }
 
-/// The words across every page, printed or not. Of a virtual rig that came to its end there is none: nobody takes it for
-/// a test.
-pub(super) fn watermark(run: &Run<'_>) -> Markup {
-    let words = across(run);
-    html! {
-        @if !words.is_empty() {
-            div.watermark aria-hidden="true" { @for word in &words { div { (word) } } }
-        }
-    }
-}
-
-fn across(run: &Run<'_>) -> Vec<&'static str> {
+/// The words across every page: of a paper that is passed on, any page may be the only one.
+pub(super) fn across(run: &Run<'_>) -> Vec<&'static str> {
     let real_line = run.plan.rig.link.as_real().is_some();
     let words = standing::grounds(run).into_iter().filter_map(|ground| match ground {
-        Standing::Rehearsal if !run.record.rig.simulated => Some("REHEARSAL"),
-        Standing::Rehearsal => real_line.then_some("REHEARSAL ON A SIMULATED RIG"),
+        Standing::Rehearsal if real_line && run.record.rig.simulated => Some("REHEARSAL ON A SIMULATED RIG"),
+        Standing::Rehearsal => Some("REHEARSAL"),
         Standing::Incomplete => Some("INCOMPLETE"),
         Standing::NotCertifiable { .. } => Some("NOT CERTIFIABLE"),
         Standing::Certifiable => None,

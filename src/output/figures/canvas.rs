@@ -1,30 +1,29 @@
-//! A drawing surface with fine edges: everything is drawn eight times as large as a reference pixel and box-averaged
-//! to two, which is 192 dpi. In: shapes in reference pixels (96 to the inch). Out: PNG bytes. Knows no axes.
+//! What a chart is drawn on: shapes and words in reference pixels, 96 to the inch, y downward. Two surfaces are canvases: a
+//! raster of fine pixels and a drawing in vectors, both with the same font, so that words take the same room on each.
 
 use std::sync::Once;
 
-use plotters::prelude::{
-    BitMapBackend, Circle, DrawingArea, IntoDrawingArea as _, IntoFont as _, Polygon, RGBColor, Rectangle, Text,
-};
+use plotters::prelude::{IntoFont as _, RGBColor};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontStyle, FontTransform, TextStyle, register_font};
 
+use super::super::document::fonts::{SANS, SANS_BOLD};
 use super::chart::{Colour, Line};
-
-/// Subpixels to a reference pixel.
-const FINE: u32 = 8;
-/// Subpixels averaged into one of the picture, in each direction.
-const BOX: u32 = 4;
-/// 192 dpi in pixels to the metre.
-const PIXELS_PER_METRE: u32 = 7559;
-
-static REGULAR: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
-static BOLD: &[u8] = include_bytes!("../fonts/DejaVuSans-Bold.ttf");
-static FONTS: Once = Once::new();
-const FAMILY: &str = "psd";
 
 /// A point in reference pixels, y downward.
 pub(super) type Point = (f64, f64);
+
+/// A surface to draw on.
+pub(super) trait Canvas {
+    fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String>;
+
+    fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String>;
+
+    /// A line of several pieces with round joins.
+    fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String>;
+
+    fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String>;
+}
 
 /// Where a text stands about its point.
 #[derive(Clone, Copy)]
@@ -33,124 +32,10 @@ pub(super) struct Anchor {
     pub vertical: VPos,
 }
 
-pub(super) struct Canvas<'a> {
-    area: DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>,
-}
-
-/// Draws on a white sheet of `width × height` reference pixels and encodes it.
-pub(super) fn png(width: u32, height: u32, paint: impl FnOnce(&Canvas<'_>) -> Result<(), String>) -> Result<Vec<u8>, String> {
-    FONTS.call_once(|| {
-        // The two fonts are part of the program: that they read is a property of the build, not of a run.
-        for (style, font) in [(FontStyle::Normal, REGULAR), (FontStyle::Bold, BOLD)] {
-            assert!(register_font(FAMILY, style, font).is_ok(), "the embedded font reads");
-        }
-    });
-    let (fine_width, fine_height) = (width * FINE, height * FINE);
-    let mut fine = vec![255_u8; fine_width as usize * fine_height as usize * 3];
-    {
-        let area = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height)).into_drawing_area();
-        let canvas = Canvas { area };
-        paint(&canvas)?;
-        canvas.area.present().map_err(|error| error.to_string())?;
-    }
-    encode(&average(&fine, fine_width as usize), fine_width / BOX, fine_height / BOX).map_err(|error| error.to_string())
-}
-
-/// Each BOX × BOX square of subpixels becomes their mean.
-fn average(fine: &[u8], fine_width: usize) -> Vec<u8> {
-    let side = BOX as usize;
-    let mut picture = Vec::with_capacity(fine.len() / (side * side));
-    for band in fine.chunks_exact(fine_width * 3 * side) {
-        for x in (0..fine_width * 3).step_by(3 * side) {
-            for channel in 0..3 {
-                let sum: u32 =
-                    (0..side * side).map(|i| u32::from(band[(i / side) * fine_width * 3 + x + (i % side) * 3 + channel])).sum();
-                picture.push(u8::try_from((sum + BOX * BOX / 2) / (BOX * BOX)).unwrap_or(u8::MAX));
-            }
-        }
-    }
-    picture
-}
-
-fn encode(picture: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: PIXELS_PER_METRE, yppu: PIXELS_PER_METRE, unit: png::Unit::Meter }));
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(picture)?;
-    writer.finish()?;
-    Ok(bytes)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "clamped to a few times any sheet")]
-fn fine(point: Point) -> (i32, i32) {
-    let scale = |value: f64| (value * f64::from(FINE)).round().clamp(-1e5, 1e5) as i32;
-    (scale(point.0), scale(point.1))
-}
-
-const fn rgb(colour: Colour) -> RGBColor {
-    RGBColor(colour.0, colour.1, colour.2)
-}
-
-impl Canvas<'_> {
-    pub fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String> {
-        let shape = Rectangle::new([fine(from), fine(to)], rgb(colour).filled());
-        self.area.draw(&shape).map_err(|error| error.to_string())
-    }
-
-    pub fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String> {
-        let (radius, _) = fine((radius, 0.0));
-        self.area.draw(&Circle::new(fine(centre), radius, rgb(colour).filled())).map_err(|error| error.to_string())
-    }
-
-    /// A line of several pieces with round joins. Each piece is a quadrangle of its own: one filled outline of the
-    /// whole would show hollow slits where the line folds back on itself.
-    pub fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
-        for piece in dashes(points, line.dash) {
-            for ends in piece.windows(2) {
-                self.segment(ends[0], ends[1], line.width, colour)?;
-            }
-            // A dash has square ends; a solid line's joins are round.
-            let joins = if line.dash.is_empty() { &piece[..] } else { piece.get(1..piece.len() - 1).unwrap_or_default() };
-            for join in joins {
-                self.disc(*join, 0.5 * line.width, colour)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn segment(&self, from: Point, to: Point, width: f64, colour: Colour) -> Result<(), String> {
-        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let length = dx.hypot(dy);
-        if length == 0.0 {
-            return Ok(());
-        }
-        let (nx, ny) = (-dy / length * 0.5 * width, dx / length * 0.5 * width);
-        let corners = [(from.0 + nx, from.1 + ny), (to.0 + nx, to.1 + ny), (to.0 - nx, to.1 - ny), (from.0 - nx, from.1 - ny)];
-        self.area.draw(&Polygon::new(corners.map(fine), rgb(colour).filled())).map_err(|error| error.to_string())
-    }
-
-    pub fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String> {
-        // The font's box is taller below its letters than above: a centred text is let down to look centred.
-        let sinks = matches!(style.anchor.vertical, VPos::Center) && !style.upright;
-        let at = if sinks { (at.0, at.1 + 0.17 * style.size) } else { at };
-        let style = style.resolved();
-        self.area.draw(&Text::new(text.to_owned(), fine(at), style)).map_err(|error| error.to_string())
-    }
-
-    /// Width of a text in reference pixels.
-    pub fn width(&self, text: &str, style: &Lettering) -> Result<f64, String> {
-        let (width, _) = self.area.estimate_text_size(text, &style.resolved()).map_err(|error| error.to_string())?;
-        Ok(f64::from(width) / f64::from(FINE))
-    }
-}
-
 /// How a text is set.
 #[derive(Clone, Copy)]
 pub(super) struct Lettering {
-    /// Reference pixels.
+    /// Height of a line from the lowest to the highest letter, reference pixels.
     pub size: f64,
     pub bold: bool,
     pub colour: Colour,
@@ -159,69 +44,33 @@ pub(super) struct Lettering {
     pub upright: bool,
 }
 
+/// Words are measured at this many times their size: the font's reader rounds to whole pixels.
+const MEASURED_AT: f64 = 8.0;
+
 impl Lettering {
-    fn resolved(&self) -> TextStyle<'static> {
+    /// Width of a text in reference pixels.
+    pub fn width(&self, text: &str) -> Result<f64, String> {
+        let (width, _) = self.scaled(MEASURED_AT).font.box_size(text).map_err(|error| error.to_string())?;
+        Ok(f64::from(width) / MEASURED_AT)
+    }
+
+    /// As the font's reader wants it, `scale` times as large.
+    pub fn scaled(&self, scale: f64) -> TextStyle<'static> {
+        const FAMILY: &str = "psd";
+        static FONTS: Once = Once::new();
+        FONTS.call_once(|| {
+            // The two fonts are part of the program: that they read is a property of the build, not of a run.
+            for (style, font) in [(FontStyle::Normal, SANS), (FontStyle::Bold, SANS_BOLD)] {
+                assert!(register_font(FAMILY, style, font).is_ok(), "the embedded font reads");
+            }
+        });
         let weight = if self.bold { FontStyle::Bold } else { FontStyle::Normal };
-        let colour = rgb(self.colour);
-        let mut font = (FAMILY, self.size * f64::from(FINE), weight).into_font();
+        let mut font = (FAMILY, self.size * scale, weight).into_font();
         if self.upright {
             font = font.transform(FontTransform::Rotate270);
         }
-        TextStyle { font, color: colour.to_backend_color(), pos: Pos::new(self.anchor.horizontal, self.anchor.vertical) }
-    }
-}
-
-/// The drawn pieces of a line, walked along its length; a solid line is one piece.
-fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
-    let Some(&first) = points.first() else { return Vec::new() };
-    if pattern.is_empty() {
-        return vec![points.to_vec()];
-    }
-    let (mut pieces, mut piece, mut part, mut left) = (Vec::new(), vec![first], 0, pattern[0]);
-    for ends in points.windows(2) {
-        let (from, to) = (ends[0], ends[1]);
-        let length = (to.0 - from.0).hypot(to.1 - from.1);
-        let mut walked = 0.0;
-        while length - walked > left {
-            walked += left;
-            let at = (from.0 + (to.0 - from.0) * walked / length, from.1 + (to.1 - from.1) * walked / length);
-            if part % 2 == 0 {
-                piece.push(at);
-                pieces.push(std::mem::take(&mut piece));
-            } else {
-                piece = vec![at];
-            }
-            part = (part + 1) % pattern.len();
-            left = pattern[part];
-        }
-        left -= length - walked;
-        if part % 2 == 0 {
-            piece.push(to);
-        }
-    }
-    if piece.len() > 1 {
-        pieces.push(piece);
-    }
-    pieces
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn dashes_follow_the_length_of_the_line_round_a_corner() {
-        let pieces = dashes(&[(0.0, 0.0), (3.0, 0.0), (3.0, 10.0)], &[4.0, 2.0]);
-        assert_eq!(
-            pieces,
-            [vec![(0.0, 0.0), (3.0, 0.0), (3.0, 1.0)], vec![(3.0, 3.0), (3.0, 7.0)], vec![(3.0, 9.0), (3.0, 10.0)]]
-        );
-    }
-
-    #[test]
-    fn averaging_keeps_a_flat_colour_and_halves_an_edge() {
-        let row: Vec<u8> = [0_u8, 0, 255, 255].iter().flat_map(|grey| [*grey; 3]).collect();
-        assert_eq!(average(&row.repeat(4), 4), [128, 128, 128]);
-        assert_eq!(average(&[7; 4 * 4 * 3], 4), [7, 7, 7]);
+        let (red, green, blue) = self.colour;
+        let color = RGBColor(red, green, blue).to_backend_color();
+        TextStyle { font, color, pos: Pos::new(self.anchor.horizontal, self.anchor.vertical) }
     }
 }

@@ -1,11 +1,12 @@
 //! Lays a [`Chart`] out on a sheet: legend above, axes left and below, nothing inside the frame but data. In: a chart
-//! in SI. Out: PNG bytes.
+//! in SI. Out: PNG bytes, or the same in vectors.
 
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axis::Axis;
-use super::canvas::{self, Anchor, Canvas, Lettering, Point};
+use super::canvas::{Anchor, Canvas, Lettering, Point};
 use super::chart::{Chart, Colour, Line, Marker, Series, palette};
+use super::{raster, vector};
 
 const WIDTH: u32 = 720;
 const HEIGHT: u32 = 430;
@@ -23,33 +24,40 @@ const THINNEST: f64 = 0.5;
 
 /// The chart as a PNG.
 pub(super) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
+    raster::png(WIDTH, HEIGHT, |canvas| paint(chart, canvas))
+}
+
+/// The chart as an SVG.
+pub(super) fn svg(chart: &Chart) -> Result<String, String> {
+    vector::svg(WIDTH, HEIGHT, |canvas| paint(chart, canvas))
+}
+
+fn paint(chart: &Chart, canvas: &dyn Canvas) -> Result<(), String> {
     let xs = chart.series.iter().flat_map(|series| series.points.iter().map(|point| point.0));
     let ys = chart.series.iter().flat_map(|series| series.points.iter().map(|point| point.1));
     let references = near(chart);
     let x = Axis::over(&chart.x, xs, 8);
     let y = Axis::over(&chart.y, ys.chain(references), 6);
-    canvas::png(WIDTH, HEIGHT, |canvas| {
-        let entries = legend_entries(chart);
-        let rows = legend_rows(canvas, &entries)?;
+    let entries = legend_entries(chart);
+    let rows = legend_rows(&entries)?;
+    #[expect(clippy::cast_precision_loss, reason = "a legend has a few lines")]
+    let top = LEGEND_TOP + LEGEND_LINE * rows.len().max(1) as f64 - 2.0;
+    let sheet = Sheet { canvas, x: &x, y: &y, top };
+    sheet.bands(chart)?;
+    sheet.grid()?;
+    for series in &chart.series {
+        sheet.series(series)?;
+    }
+    sheet.references(chart)?;
+    sheet.axes()?;
+    for (index, row) in rows.iter().enumerate() {
         #[expect(clippy::cast_precision_loss, reason = "a legend has a few lines")]
-        let top = LEGEND_TOP + LEGEND_LINE * rows.len().max(1) as f64 - 2.0;
-        let sheet = Sheet { canvas, x: &x, y: &y, top };
-        sheet.bands(chart)?;
-        sheet.grid()?;
-        for series in &chart.series {
-            sheet.series(series)?;
+        let at = LEGEND_TOP + LEGEND_LINE * index as f64 - 4.0;
+        for (entry, left) in row {
+            legend_entry(canvas, entry, (*left, at))?;
         }
-        sheet.references(chart)?;
-        sheet.axes()?;
-        for (index, row) in rows.iter().enumerate() {
-            #[expect(clippy::cast_precision_loss, reason = "a legend has a few lines")]
-            let at = LEGEND_TOP + LEGEND_LINE * index as f64 - 4.0;
-            for (entry, left) in row {
-                legend_entry(canvas, entry, (*left, at))?;
-            }
-        }
-        Ok(())
-    })
+    }
+    Ok(())
 }
 
 /// Reference lines that the axis is stretched to. One far from the data would press the curves flat: its words alone
@@ -60,14 +68,14 @@ fn near(chart: &Chart) -> impl Iterator<Item = f64> {
     chart.references.iter().map(|reference| reference.y).filter(move |y| largest == 0.0 || y.abs() <= FARTHEST * largest)
 }
 
-struct Sheet<'a, 'b> {
-    canvas: &'a Canvas<'b>,
+struct Sheet<'a> {
+    canvas: &'a dyn Canvas,
     x: &'a Axis,
     y: &'a Axis,
     top: f64,
 }
 
-impl Sheet<'_, '_> {
+impl Sheet<'_> {
     fn point(&self, (x, y): (f64, f64)) -> Point {
         (LEFT + self.x.place(x) * (RIGHT - LEFT), BOTTOM - self.y.place(y) * (BOTTOM - self.top))
     }
@@ -149,7 +157,7 @@ impl Sheet<'_, '_> {
                 continue;
             }
             let style = Lettering { colour: LIMIT_INK, ..lettering(12.0, HPos::Left, VPos::Bottom) };
-            let width = self.canvas.width(&label, &style)?;
+            let width = style.width(&label)?;
             let above = y - 3.0;
             let below = y + 18.0;
             let covered = |(left, bottom): &Point| {
@@ -179,7 +187,7 @@ fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {
     Lettering { size, bold: false, colour: INK, anchor: Anchor { horizontal, vertical }, upright: false }
 }
 
-fn mark(canvas: &Canvas<'_>, marker: Marker, at: Point, colour: Colour) -> Result<(), String> {
+fn mark(canvas: &dyn Canvas, marker: Marker, at: Point, colour: Colour) -> Result<(), String> {
     match marker {
         Marker::Disc(radius) => canvas.disc(at, radius, colour),
         Marker::Ring(radius) => {
@@ -266,11 +274,11 @@ const GAP: f64 = 18.0;
 const NEAR: f64 = 7.0;
 
 /// Entries with the left end of each, broken into lines that fit the frame.
-fn legend_rows<'a, 'b>(canvas: &Canvas<'_>, entries: &'b [Entry<'a>]) -> Result<Vec<Vec<(&'b Entry<'a>, f64)>>, String> {
+fn legend_rows<'a, 'b>(entries: &'b [Entry<'a>]) -> Result<Vec<Vec<(&'b Entry<'a>, f64)>>, String> {
     let mut rows: Vec<Vec<(&Entry<'_>, f64)>> = vec![Vec::new()];
     let mut left = LEFT;
     for entry in entries {
-        let width = entry.sample() + NEAR + canvas.width(entry.label(), &lettering(13.0, HPos::Left, VPos::Center))?;
+        let width = entry.sample() + NEAR + lettering(13.0, HPos::Left, VPos::Center).width(entry.label())?;
         if left + width > RIGHT && left > LEFT {
             rows.push(Vec::new());
             left = LEFT;
@@ -283,7 +291,7 @@ fn legend_rows<'a, 'b>(canvas: &Canvas<'_>, entries: &'b [Entry<'a>]) -> Result<
     Ok(rows)
 }
 
-fn legend_entry(canvas: &Canvas<'_>, entry: &Entry<'_>, (left, middle): Point) -> Result<(), String> {
+fn legend_entry(canvas: &dyn Canvas, entry: &Entry<'_>, (left, middle): Point) -> Result<(), String> {
     let sample = entry.sample();
     match entry {
         Entry::Series(series) => {

@@ -12,7 +12,7 @@ use crate::verdict::Bound;
 pub(super) fn displacement(history: &ImpactHistory, limits: &[Reference]) -> Chart {
     let mut chart = against_time(history, Quantity::of("Displacement", Dimension::LENGTH));
     chart.series = vec![
-        series(history, "structure X", |step| step.command, Style::line(palette::BLUE, 2.0, SOLID)),
+        series(history, "structure X", |step| step.computed, Style::line(palette::BLUE, 2.0, SOLID)),
         series(history, "striker Xs", |step| step.striker_displacement, Style::line(palette::VERMILION, 2.0, DASHED)),
     ];
     chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
@@ -78,6 +78,20 @@ pub(super) fn energy(history: &ImpactHistory) -> Chart {
         e.striker + e.structure + e.restoring + e.damping + e.contact_loss
     };
     chart.series.push(series(history, "total", total, Style::line(palette::BLACK, 1.2, SOLID)));
+    chart
+}
+
+/// What the actuator missed, and the tracking indicator as a length: over the largest command.
+pub(super) fn tracking(history: &ImpactHistory) -> Chart {
+    let mut chart = against_time(history, Quantity::of("Tracking error", Dimension::LENGTH));
+    let largest = history.steps.iter().map(|step| step.command.abs()).fold(0.0, f64::max);
+    let missed = |step: &ImpactStep| step.displacement - step.command;
+    chart.series = vec![series(history, "measured − commanded", missed, Style::line(palette::BLUE, 1.5, SOLID))];
+    if largest > 0.0 {
+        let points = history.steps.iter().map(|step| (step.time, step.tracking.indicator / largest)).collect();
+        let style = Style::line(palette::VERMILION, 2.0, DASHED);
+        chart.series.push(Series { label: "tracking indicator / largest command".to_owned(), points, style });
+    }
     chart
 }
 

@@ -1,5 +1,5 @@
-//! Figures: what the plan's report asks for, drawn as PNG at 192 dpi. In: a run. Out: bytes with the caption the
-//! certificate prints below them. Knows no HTML.
+//! Figures: what the plan's report asks for, drawn as PNG at 192 dpi and in vectors. In: a run. Out: bytes with the caption
+//! the certificate prints below them. Knows no HTML.
 
 mod axis;
 mod canvas;
@@ -10,6 +10,8 @@ mod draw;
 mod identification;
 mod impact;
 mod plain;
+mod raster;
+mod vector;
 
 use rayon::prelude::*;
 
@@ -23,9 +25,11 @@ pub use plain::{Curve, Curves, PlainAxis};
 
 /// A figure, drawn.
 pub(super) struct Drawn {
-    /// `figures/NAME_FIGURE.png`
+    /// `figures/NAME_FIGURE`, without its ending.
     pub path: String,
     pub png: Vec<u8>,
+    /// The same in vectors.
+    pub svg: String,
     /// What it shows, in one sentence.
     pub caption: String,
 }
@@ -50,8 +54,9 @@ pub fn data(run: &Run<'_>) -> Figures {
 fn one(run: &Run<'_>, figure: Figure) -> Option<Result<Drawn, OutputError>> {
     let procedure = run.record.procedures.get(figure.procedure.0)?;
     let (chart, caption) = chart_of(run, procedure, figure)?;
-    Some(match draw::png(&chart) {
-        Ok(png) => Ok(Drawn { path: format!("figures/{}_{}.png", procedure.name, figure.kind.name()), png, caption }),
+    let drawn = draw::png(&chart).and_then(|png| draw::svg(&chart).map(|svg| (png, svg)));
+    Some(match drawn {
+        Ok((png, svg)) => Ok(Drawn { path: format!("figures/{}_{}", procedure.name, figure.kind.name()), png, svg, caption }),
         Err(reason) => Err(OutputError::Figure { figure: figure.kind.name(), procedure: procedure.name.clone(), reason }),
     })
 }
@@ -83,6 +88,12 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
         (History::Impact(history), FigureKind::Energy) => (
             impact::energy(history),
             format!("{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."),
+        ),
+        (History::Impact(history), FigureKind::Tracking) => (
+            impact::tracking(history),
+            format!(
+                "{name}: what the actuator missed of its commands, and the tracking indicator over the largest command; an indicator that falls says that the lag feeds energy into the test."
+            ),
         ),
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),

@@ -5,10 +5,11 @@ use psd::formula::{Estimate, Formula, Part, ProcedureId, ResultReference, Result
 use psd::mechanics::contact::StepState;
 use psd::mechanics::energy::Energies;
 use psd::mechanics::identification::LineFit;
+use psd::mechanics::monitor::Tracking;
 use psd::output::{Provenance, Run};
 use psd::plan::{
-    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Interval,
-    Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
+    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Integrator,
+    Interval, Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
     StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
@@ -142,6 +143,7 @@ fn impact_steps() -> Vec<ImpactStep> {
         wall_time: 40.0,
         state: StepState::Free,
         command: 0.0,
+        computed: 0.0,
         displacement: 0.0,
         velocity: 0.0,
         acceleration: 0.0,
@@ -152,6 +154,7 @@ fn impact_steps() -> Vec<ImpactStep> {
         tangent_stiffness: k,
         indentation: 0.0,
         energies: Energies { striker: 0.5 * ms, ..Energies::default() },
+        tracking: Tracking::default(),
     };
     let mut steps = vec![now];
     while now.striker_velocity > 0.0 || now.velocity > 0.0 {
@@ -185,6 +188,7 @@ fn impact_steps() -> Vec<ImpactStep> {
             wall_time: now.wall_time + 0.6,
             state,
             command: x1,
+            computed: x1,
             displacement: x1 + 1e-6 / 3.0,
             velocity: v1,
             acceleration: a1,
@@ -195,6 +199,7 @@ fn impact_steps() -> Vec<ImpactStep> {
             tangent_stiffness: k,
             indentation: 0.0,
             energies,
+            tracking: Tracking::default(),
         };
         steps.push(now);
     }
@@ -292,6 +297,9 @@ fn plan() -> Plan {
                 stiffness: result(0, "stiffness"),
                 damping: constant(0.0),
                 contact: Contact::Rigid,
+                integrator: Integrator::Tangent,
+                allow_unstable: false,
+                i_modification: false,
                 time_step: constant(TIME_STEP),
                 duration: constant(0.4),
                 until: Until::StrikerStop,

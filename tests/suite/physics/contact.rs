@@ -186,7 +186,7 @@ fn a_yielding_specimen_stops_where_energy_says() {
 }
 
 /// Eq. (6) on ±5 N of noise: a secant counts only over 10·σ/K0 or more, so that 10 N of change is 20 % of K0 at most. At
-/// the fine step no change is large enough and `K_t` stays; at the coarse one it moves.
+/// the fine step no step tells alone, and the window of several tells better than that.
 #[test]
 fn noise_does_not_become_a_stiffness() {
     struct Noisy {
@@ -201,14 +201,14 @@ fn noise_does_not_become_a_stiffness() {
             3e5
         }
     }
-    for (time_step, moves) in [(1e-5, false), (5e-4, true)] {
+    for (time_step, within) in [(1e-5, 0.12), (5e-4, 0.25)] {
         let input = ImpactInput { force_noise: 5.0, ..impact(1.0, 3e5, ContactLaw::Rigid, time_step) };
         let run = run_on(&input, &mut Noisy { sign: 1.0 });
         for state in &run.states {
             assert!((0.0..=6e5).contains(&state.tangent_stiffness));
-            assert!((state.tangent_stiffness / 3e5 - 1.0).abs() < 0.25, "{} N/m", state.tangent_stiffness);
+            assert!((state.tangent_stiffness / 3e5 - 1.0).abs() < within, "{} N/m", state.tangent_stiffness);
         }
-        assert_eq!(run.states.iter().any(|state| state.tangent_stiffness != 3e5), moves);
+        assert!(run.states.iter().any(|state| state.tangent_stiffness != 3e5));
     }
 }
 

@@ -4,6 +4,7 @@ use psd::mechanics::contact::ContactLaw;
 use psd::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use psd::mechanics::specimen::{Elastic, RestoringForce};
 use psd::mechanics::summary::{ImpactSummary, SummaryBuilder};
+use psd::plan::Integrator;
 
 /// A striker of 10 kg at 1 m/s that touches an undamped structure at t = 0.
 pub fn impact(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> ImpactInput {
@@ -17,6 +18,9 @@ pub fn impact(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> Imp
         time_step,
         max_tangent_ratio: 2.0,
         law,
+        integrator: Integrator::Tangent,
+        operator_stiffness: stiffness,
+        i_modification: false,
         force_noise: 0.0,
         resolution: 0.0,
     }

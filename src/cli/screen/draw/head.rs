@@ -84,12 +84,15 @@ fn numbers_line(view: &View<'_>, wide: bool) -> String {
     if let Some(error) = last.energy_error {
         words.push(format!("energy{error_word} {}", percent(error)));
     }
+    if let Some(share) = last.tracking_energy_error.filter(|_| wide) {
+        words.push(format!("tracking energy {}", percent(share)));
+    }
     format!(" {}", words.join("   "))
 }
 
 /// A fraction for people; rounding noise is nothing.
 pub fn percent(fraction: f64) -> String {
-    if fraction.abs() < 1e-8 { "0 %".to_owned() } else { format!("{} %", significant(fraction * 100.0, 3)) }
+    if fraction.abs() < 1e-8 { "0 %".to_owned() } else { format!("{} %", significant(fraction * 100.0, 3).replace('-', "−")) }
 }
 
 fn clock(seconds: u64) -> String {

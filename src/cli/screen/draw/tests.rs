@@ -22,6 +22,7 @@ fn model() -> Model {
     plan.limits.increment = Interval { low: 0.0, high: 2e-3 };
     plan.limits.tracking_error = Interval { low: 0.0, high: 0.05e-3 };
     plan.limits.energy_error = Interval { low: 0.0, high: 0.05 };
+    plan.limits.tracking_energy_error = Interval { low: 0.0, high: 0.05 };
     let mut model = Model::new(&plan, true);
     model.procedure_started("hit", "impact", Some(600));
     for step in 1..=240_u32 {
@@ -36,6 +37,8 @@ fn model() -> Model {
             acceleration: None,
             force: 3e5 * displacement,
             energy_error: Some(0.012),
+            tracking: None,
+            tracking_energy_error: Some(-0.013),
         });
     }
     for (step, kind, text) in [

@@ -1,5 +1,8 @@
 //! Frames of many degrees of freedom: modes, integrators, loads, blows, each against what is known of it otherwise.
 
+mod field;
+mod ground;
+mod impact;
 mod modes;
 mod order;
 mod support;

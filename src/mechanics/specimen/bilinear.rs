@@ -1,30 +1,6 @@
-//! Restoring force of virtual specimens against displacement. A model knows its own path and nothing of time.
+//! Elastic–plastic with two slopes. In: a displacement. Out: the force there, by an exact return map.
 
-use crate::plan::Behaviour;
-
-/// What a virtual rig bends.
-pub trait RestoringForce {
-    /// Moves on to `displacement` (m) and gives the force there, N.
-    fn move_to(&mut self, displacement: f64) -> f64;
-    /// Stiffness before anything has happened, N/m.
-    fn initial_stiffness(&self) -> f64;
-}
-
-/// R = K X.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elastic {
-    pub stiffness: f64,
-}
-
-impl RestoringForce for Elastic {
-    fn move_to(&mut self, displacement: f64) -> f64 {
-        self.stiffness * displacement
-    }
-
-    fn initial_stiffness(&self) -> f64 {
-        self.stiffness
-    }
-}
+use super::RestoringForce;
 
 /// Elastic–plastic with kinematic hardening: the force runs with stiffness K between two parallel lines of slope `K_p`,
 /// `R = K_p X ± (1 − K_p/K) F_y`, and along the line it meets. The elastic trial cut to the band is the exact return map.
@@ -62,41 +38,6 @@ impl RestoringForce for Bilinear {
 
     fn initial_stiffness(&self) -> f64 {
         self.stiffness
-    }
-}
-
-/// Any specimen a plan can declare.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SpecimenModel {
-    Elastic(Elastic),
-    Bilinear(Bilinear),
-}
-
-impl SpecimenModel {
-    #[must_use]
-    pub fn new(behaviour: &Behaviour) -> Self {
-        match *behaviour {
-            Behaviour::Elastic { stiffness } | Behaviour::Beam { stiffness, .. } => Self::Elastic(Elastic { stiffness }),
-            Behaviour::Bilinear { stiffness, yield_force, hardening } => {
-                Self::Bilinear(Bilinear::new(stiffness, yield_force, hardening))
-            }
-        }
-    }
-}
-
-impl RestoringForce for SpecimenModel {
-    fn move_to(&mut self, displacement: f64) -> f64 {
-        match self {
-            Self::Elastic(model) => model.move_to(displacement),
-            Self::Bilinear(model) => model.move_to(displacement),
-        }
-    }
-
-    fn initial_stiffness(&self) -> f64 {
-        match self {
-            Self::Elastic(model) => model.initial_stiffness(),
-            Self::Bilinear(model) => model.initial_stiffness(),
-        }
     }
 }
 

@@ -1,0 +1,27 @@
+//! Faults of how a run is integrated and driven: E64x and W71x.
+
+use super::shown;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::Integrator;
+use crate::quantity::Dimension;
+use crate::source::Span;
+
+pub fn law_needs_the_tangent(integrator: &str, named: Span, law: &str, struck: Span) -> Diagnostic {
+    let message = format!("`{law}` finds the instant of a blow inside a step by the tangent stiffness; `{integrator}` has none");
+    Diagnostic::new(Code::LawNeedsTangent, message)
+        .at(struck, "this law looks inside the step")
+        .at(named, format!("`{integrator}` knows the force only at its end"))
+        .help("write `integrator = tangent`, or take `contact = rigid` or `contact = limit(1500 N)`")
+}
+
+pub fn unstable(span: Span, integrator: Integrator, step: f64, limit: f64) -> Diagnostic {
+    let time = |value| shown(value, Dimension::TIME);
+    let (step, longest) = (time(step), time(limit));
+    let why = match integrator {
+        Integrator::AlphaOs { .. } => "the specimen is stiffer than the `stiffness` that α-OS splits with",
+        Integrator::Tangent | Integrator::Explicit => "explicit Newmark is stable up to the period over π",
+    };
+    Diagnostic::new(Code::Unstable, format!("the time step {step} is beyond the stability limit {longest}: {why}"))
+        .at(span, format!("{step}, stable up to {longest}"))
+        .help("write `time_step = critical / 20`; `allow_unstable = true` runs it all the same")
+}

@@ -1,0 +1,90 @@
+//! Faults of specimens: E630 to E634, and W715.
+
+use super::shown;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::Interval;
+use crate::quantity::Dimension;
+use crate::source::Span;
+use crate::syntax::ast::Ident;
+
+pub fn corners_of_two_lengths(displacements: Span, forces: Span, counts: (usize, usize)) -> Diagnostic {
+    Diagnostic::new(Code::CornersDoNotFit, "every corner has a displacement and a force")
+        .at(displacements, format!("{} displacements", counts.0))
+        .at(forces, format!("{} forces", counts.1))
+        .help("give both lists as many entries")
+}
+
+/// `place` counts from 0.
+pub fn corner(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::CornersDoNotFit, format!("corner {} does not follow from the one before", place + 1))
+        .at(span, label)
+        .help(help)
+}
+
+/// A row of a table, its line from 1 and its text; without one: what the file as a whole lacks.
+pub fn table_file(file: &str, row: Option<&(usize, String)>, reason: &str, named_at: Span, help: &str) -> Diagnostic {
+    let place = row.map_or_else(String::new, |(line, text)| format!(", line {line}, `{text}`"));
+    Diagnostic::new(Code::BadTableFile, format!("`{file}`{place}: {reason}")).at(named_at, "the table").help(help)
+}
+
+/// Two arguments of which one means nothing without the other.
+pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BehaviourIncomplete, format!("`{given}` means nothing without `{missing}`"))
+        .at(span, format!("`{missing}` is missing"))
+        .help(format!("add `{missing}`, or remove `{given}`"))
+}
+
+/// One of two ways to say a thing must stand, and not both; `takes` says of what which two, `example` shows one.
+pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Diagnostic {
+    let (label, help) = if given == 0 {
+        ("neither is given", format!("add `{example}`, for instance"))
+    } else {
+        ("both are given", "remove one of them".to_owned())
+    };
+    Diagnostic::new(Code::BehaviourIncomplete, format!("{takes}, one of the two")).at(span, label).help(help)
+}
+
+pub fn too_few_parts(variant: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BehaviourIncomplete, format!("`{variant}` joins two behaviours or more"))
+        .at(span, "only one")
+        .help(format!("add another, or write the one without `{variant}`"))
+}
+
+pub fn too_many_parts(most: usize, what: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnfitInside, format!("a behaviour has at most {most} {what}"))
+        .at(span, "too many")
+        .help("put springs that stand together into one")
+}
+
+pub fn rate_inside(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnfitInside, "`rate` acts on the load cell, and there is one: it cannot stand inside another behaviour")
+        .at(span, "inside")
+        .help("write it around the whole: `rate(of: series(…), reference_velocity: …)`")
+}
+
+pub fn falls_in_series(span: Span, series: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnfitInside,
+        "in series a force that falls leaves the displacement of the parts open: no rig could follow it",
+    )
+    .at(span, "its force may fall while its displacement grows")
+    .at(series, "one of these")
+    .help("put what falls around the series: `fracture(of: series(…), force: …)`")
+}
+
+pub fn no_such_property(name: Option<&Ident>, property: &str, reason: &str, span: Span) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    Diagnostic::new(Code::NoSuchProperty, format!("specimen `{name}` has no `{property}`: {reason}"))
+        .at(span, "not known of it")
+        .help("read it of a behaviour that has one, such as `portal` or `bilinear` without hardening")
+}
+
+/// Limits let the specimen go where its table does not reach.
+pub fn table_too_short(file: &str, table: Interval, limit: Interval, named_at: Span, limit_at: Span) -> Diagnostic {
+    let range =
+        |interval: Interval| format!("{} .. {}", shown(interval.low, Dimension::LENGTH), shown(interval.high, Dimension::LENGTH));
+    Diagnostic::new(Code::TableTooShort, format!("the limits reach beyond the points of `{file}`: there its last force holds"))
+        .at(named_at, format!("points over {}", range(table)))
+        .at(limit_at, format!("allows {}", range(limit)))
+        .help("narrow the limits to what was measured, or measure further")
+}

@@ -1,0 +1,56 @@
+//! `integrator = …` of a procedure that integrates, and whether its time step is stable. In: a block. Out: the
+//! integrator, or why it cannot be.
+
+use super::checker::Checker;
+use super::faults::methods as fault;
+use super::impact::time_step_before_the_run;
+use crate::mechanics::method::longest_stable_step;
+use crate::plan::{Contact, Impact, Integrator, Specimen};
+
+/// The integrator a block names, else the tangent form.
+pub fn integrator(checker: &mut Checker, block: usize) -> Option<Integrator> {
+    let Some((entry, _)) = checker.given(block, "integrator") else { return Some(Integrator::Tangent) };
+    let place = checker.place(block, entry);
+    let chosen = checker.choice(block, "integrator")?;
+    Some(match chosen.variant.name {
+        "explicit" => Integrator::Explicit,
+        "alpha_os" => Integrator::AlphaOs { alpha: checker.constant_argument(&chosen, "alpha", place)? },
+        _ => Integrator::Tangent,
+    })
+}
+
+/// Laws that find the instant of a blow inside a step go by the tangent's prediction of the force there: an integrator
+/// that imposes before it solves has none.
+pub fn meets_the_contact(checker: &mut Checker, block: usize, integrator: Integrator, contact: &Contact) -> Option<()> {
+    let law = match contact {
+        Contact::Restitution { .. } => "restitution",
+        Contact::Hertz { .. } => "hertz",
+        Contact::Rigid | Contact::Limit { .. } => return Some(()),
+    };
+    if integrator == Integrator::Tangent {
+        return Some(());
+    }
+    let head = checker.scope.blocks[block].block.head;
+    let at = |field| checker.given(block, field).map_or(head, |(_, entry)| entry.value.span);
+    let (named, struck) = (at("integrator"), at("contact"));
+    checker.fail(fault::law_needs_the_tangent(integrator.name(), named, law, struck))
+}
+
+/// The longest stable step against the plan's, as far as both are known before the run: of the stiffness the procedure
+/// starts from, and of what a virtual specimen is.
+pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Option<&Specimen>) {
+    let (Some(step), Some(mass)) = (time_step_before_the_run(impact), impact.mass.constant()) else { return };
+    let virtual_rig = checker.real_rig.is_none();
+    let specimen = specimen.filter(|_| virtual_rig).and_then(|specimen| specimen.behaviour.as_ref());
+    let behaves = specimen.map_or(0.0, |behaviour| behaviour.initial_stiffness());
+    let assumed = impact.stiffness.constant();
+    let stiffest = assumed.unwrap_or(0.0).max(behaves);
+    let shortfall = assumed.map_or(0.0, |assumed| behaves - assumed);
+    let limit = longest_stable_step(impact.integrator, stiffest / mass, shortfall / mass);
+    if step <= limit || impact.allow_unstable {
+        return;
+    }
+    let head = checker.scope.blocks[block].block.head;
+    let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
+    checker.faults.push(fault::unstable(at, impact.integrator, step, limit));
+}

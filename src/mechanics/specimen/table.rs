@@ -1,0 +1,147 @@
+//! Measured force–displacement points. In: a displacement. Out: the force there, exact however large the move.
+
+use super::{RestoringForce, SpecimenModel};
+use crate::plan::{Table, Unloading};
+
+/// The model of a table, by the way it unloads.
+#[must_use]
+pub fn model(table: &Table) -> SpecimenModel {
+    match table.unloading {
+        Unloading::InitialStiffness => SpecimenModel::Plastic(Box::new(PlasticCurve::new(table.clone()))),
+        Unloading::AlongTheCurve => SpecimenModel::AlongTheCurve(Box::new(AlongTheCurve { table: table.clone() })),
+    }
+}
+
+/// R = g(X), whatever came before: elastic, if not linear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlongTheCurve {
+    table: Table,
+}
+
+impl RestoringForce for AlongTheCurve {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        self.table.force(displacement)
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        self.table.initial_stiffness()
+    }
+}
+
+/// R = K (X − p), K the steepest slope of the table, between two strengths, one each way. On the first loading each way the
+/// strength is the curve g itself; coming back, it is the force reached there before, until the farthest point is reached
+/// again and the curve goes on. p moves only at a strength and its way, so that nothing gives back energy it did not take.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlasticCurve {
+    table: Table,
+    stiffness: f64,
+    /// Farthest points on the curve, forwards and backwards, m.
+    farthest: [f64; 2],
+    displacement: f64,
+    force: f64,
+}
+
+impl PlasticCurve {
+    #[must_use]
+    pub fn new(table: Table) -> Self {
+        let stiffness = table.initial_stiffness();
+        // As far as the curve is as steep as its steepest stretch, nothing flows.
+        let elastic_to = |way: f64| {
+            let mut ends: Vec<f64> = table.points.iter().map(|[x, _]| x * way).filter(|x| *x > 0.0).collect();
+            ends.sort_by(f64::total_cmp);
+            let straight = |end: &f64| {
+                let force = table.force(way * end).abs();
+                (force - stiffness * end).abs() <= 1e-12 * force
+            };
+            way * ends.into_iter().take_while(straight).last().unwrap_or(0.0)
+        };
+        let farthest = [elastic_to(1.0), elastic_to(-1.0)];
+        Self { table, stiffness, farthest, displacement: 0.0, force: 0.0 }
+    }
+}
+
+impl RestoringForce for PlasticCurve {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        let trial = self.force + self.stiffness * (displacement - self.displacement);
+        let [ahead, behind] = &mut self.farthest;
+        // A strength is reached no later than where it was reached before, so that beyond it stands the curve.
+        self.force = if displacement > *ahead {
+            *ahead = displacement;
+            self.table.force(displacement)
+        } else if displacement < *behind {
+            *behind = displacement;
+            self.table.force(displacement)
+        } else {
+            trial.min(self.table.force(*ahead)).max(self.table.force(*behind))
+        };
+        self.displacement = displacement;
+        self.force
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        self.stiffness
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::energy_along;
+    use super::*;
+
+    fn table(points: &[[f64; 2]], unloading: Unloading) -> Table {
+        Table { file: "points.csv".to_owned(), points: points.to_vec(), unloading, scale: 1.0 }
+    }
+
+    /// 1000 N/mm to 1 kN, 500 N/mm to 2 kN, then it falls by 250 N/mm.
+    const POINTS: [[f64; 2]; 7] =
+        [[-0.005, -1500.0], [-0.003, -2000.0], [-0.001, -1000.0], [0.0, 0.0], [0.001, 1000.0], [0.003, 2000.0], [0.005, 1500.0]];
+
+    #[test]
+    fn loading_is_the_table_and_unloading_is_parallel_to_its_steepest_stretch() {
+        let mut model = PlasticCurve::new(table(&POINTS, Unloading::InitialStiffness));
+        assert!((model.initial_stiffness() - 1e6).abs() < 1e-6);
+        let path = [
+            (0.0005, 500.0),
+            (0.0020, 1500.0),
+            (0.0010, 500.0),
+            (0.0020, 1500.0),
+            (0.0040, 1750.0),
+            (0.0030, 750.0),
+            // Backwards it yields where it did at first, and flows back to where it did.
+            (0.0010, -1000.0),
+            (-0.0010, -1000.0),
+            (-0.0020, -1500.0),
+            // Forwards again at the force reached before, and then on along the curve.
+            (0.0020, 1750.0),
+            (0.0040, 1750.0),
+            (0.0050, 1500.0),
+            (0.0090, 1500.0),
+        ];
+        for (displacement, force) in path {
+            let found = model.move_to(displacement);
+            assert!((found - force).abs() < 1e-9, "{displacement} m: {found} N is not {force} N");
+        }
+    }
+
+    /// Out to 3 mm and back to no force: the area under the curve less the triangle that comes back.
+    #[test]
+    fn energy_of_one_way_out_and_back() {
+        let mut model = PlasticCurve::new(table(&POINTS, Unloading::InitialStiffness));
+        let taken = energy_along(&mut model, 0.0, &[0.003, 0.001], 1e-7);
+        assert!((taken - (0.5 + 3.0 - 2.0)).abs() < 1e-6, "{taken} J");
+        let mut elastic = AlongTheCurve { table: table(&POINTS, Unloading::AlongTheCurve) };
+        let back = energy_along(&mut elastic, 0.0, &[0.005, -0.004, 0.0], 1e-7);
+        assert!(back.abs() < 1e-6, "{back} J of the 6 J it took");
+    }
+
+    #[test]
+    fn a_toe_is_slack_after_it_was_taken_up() {
+        let points = [[-0.002, -1000.0], [-0.001, 0.0], [0.0, 0.0], [0.001, 0.0], [0.002, 1000.0]];
+        let mut model = PlasticCurve::new(table(&points, Unloading::InitialStiffness));
+        assert_eq!(model.move_to(0.001), 0.0);
+        assert!((model.move_to(0.0015) - 500.0).abs() < 1e-9);
+        assert!(model.move_to(0.001).abs() < 1e-9);
+        assert!(model.move_to(-0.001).abs() < 1e-9);
+        assert!((model.move_to(-0.002) + 1000.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,56 @@
+//! The fonts of a paged report, all part of the program. Out: each parsed once, and which characters they have. No font of
+//! the machine is looked for, so that the same report has the same bytes everywhere.
+
+use std::sync::LazyLock;
+
+use typst::foundations::Bytes;
+use typst::text::{Font, FontBook};
+use typst::utils::LazyHash;
+
+/// The two fonts of the figures; letters that the text's own font lacks are set in them.
+pub(in crate::output) static SANS: &[u8] = include_bytes!("../fonts/DejaVuSans.ttf");
+pub(in crate::output) static SANS_BOLD: &[u8] = include_bytes!("../fonts/DejaVuSans-Bold.ttf");
+
+pub(super) struct Fonts {
+    fonts: Vec<Font>,
+    book: LazyHash<FontBook>,
+}
+
+/// Parsed when a report is first set, and never by a command that sets none.
+pub(super) static FONTS: LazyLock<Fonts> = LazyLock::new(|| {
+    /// Of the fonts that come with typst those the template names: Libertinus Serif in three cuts, DejaVu Sans Mono.
+    const NAMED: [usize; 4] = [0, 1, 2, 16];
+    let theirs = typst_assets::fonts().enumerate().filter(|(place, _)| NAMED.contains(place)).map(|(_, font)| font);
+    let fonts: Vec<Font> = [SANS, SANS_BOLD].into_iter().chain(theirs).flat_map(|font| Font::iter(Bytes::new(font))).collect();
+    let book = LazyHash::new(FontBook::from_fonts(&fonts));
+    Fonts { fonts, book }
+});
+
+impl Fonts {
+    pub fn book(&self) -> &LazyHash<FontBook> {
+        &self.book
+    }
+
+    pub fn get(&self, index: usize) -> Option<Font> {
+        self.fonts.get(index).cloned()
+    }
+
+    /// Whether one of them has the character.
+    pub fn have(&self, c: char) -> bool {
+        self.fonts.iter().any(|font| font.info().coverage.contains(c.into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FONTS;
+
+    #[test]
+    fn the_families_of_the_template_are_here() {
+        let families: Vec<String> =
+            (0..6).map(|index| FONTS.get(index).map_or_else(String::new, |font| font.info().family.clone())).collect();
+        let serif = "Libertinus Serif";
+        assert_eq!(families, ["DejaVu Sans", "DejaVu Sans", serif, serif, serif, "DejaVu Sans Mono"]);
+        assert!("ΔẊ∫ζ₀≤µ−×⁻⁶Ж".chars().all(|c| FONTS.have(c)) && !FONTS.have('試'));
+    }
+}

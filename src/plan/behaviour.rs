@@ -1,0 +1,261 @@
+//! What a virtual specimen is: its restoring force against displacement, as the plan states it. In: numbers in SI from the
+//! check. Out: data that `mechanics` turns into a model and `output` into words. It bends nothing itself.
+
+use super::portal::Portal;
+
+/// Restoring force of a virtual specimen against displacement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Behaviour {
+    /// R = K X; K in N/m.
+    Elastic { stiffness: f64 },
+    /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
+    Bilinear { stiffness: f64, yield_force: f64, hardening: f64 },
+    /// A beam by geometry.
+    Beam(Beam),
+    /// Piecewise linear, with kinematic hardening: corners of the first loading, displacement (m) and force (N), both rising,
+    /// each stretch softer than the one before; the last one goes on.
+    Multilinear { corners: Vec<[f64; 2]> },
+    /// Smooth hysteresis (Bouc 1967, Wen 1976). `sharpness` is n; γ = 1 − `beta`.
+    BoucWen { stiffness: f64, yield_force: f64, hardening: f64, sharpness: f64, beta: f64 },
+    /// Pinched hysteresis, peak-oriented (Ibarra, Medina & Krawinkler 2005).
+    Pinching(Pinching),
+    /// R = K(x) X with K(x) = K (r + (1 − r)/(1 + x/h)), x the largest displacement so far (either way), h where half of what
+    /// can be lost is lost.
+    Degrading { stiffness: f64, half_displacement: f64, residual: f64 },
+    /// A bolted joint: friction, clearance, bearing, holes that grow.
+    Bolted(Bolted),
+    /// Measured points.
+    Table(Table),
+    /// Whole until it breaks, no force after.
+    Fracture { of: Box<Behaviour>, at: Breaks },
+    /// One force, displacements add.
+    Series(Vec<Behaviour>),
+    /// One displacement, forces add.
+    Parallel(Vec<Behaviour>),
+    /// What the load cell reads while the actuator moves at v: R (1 + (|v|/`reference_velocity`)^`exponent`).
+    Rate { of: Box<Behaviour>, reference_velocity: f64, exponent: f64 },
+    /// A portal frame by plastic hinges.
+    Portal(Portal),
+}
+
+/// A beam by geometry: already its stiffness at the struck section (N/m), and what it was made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    pub stiffness: f64,
+    /// m
+    pub length: f64,
+    /// Pa
+    pub youngs_modulus: f64,
+    /// m⁴
+    pub second_moment: f64,
+    pub ends: Ends,
+    /// Shear stiffness κGA, N. None: a slender beam.
+    pub shear: Option<f64>,
+    /// q·A·L, kg, where the specimen states density, area and length.
+    pub own_mass: Option<f64>,
+}
+
+/// How the ends of a beam are held (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ends {
+    Cantilever,
+    SimplySupported,
+    BuiltIn,
+    /// Rotational stiffness of each end, N·m/rad.
+    PartlyBuiltIn {
+        rotational_stiffness: f64,
+    },
+}
+
+/// The rule stands in `mechanics/specimen/pinching.rs`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pinching {
+    /// N/m
+    pub stiffness: f64,
+    /// N
+    pub yield_force: f64,
+    /// Stiffness of the backbone past yield over the initial one.
+    pub hardening: f64,
+    /// κ_F: force of the break point over that of the straight way to the peak.
+    pub force_factor: f64,
+    /// κ_D: 1 − displacement of the break point over the largest permanent one.
+    pub displacement_factor: f64,
+    /// a of the unloading stiffness K (x_y/x_max)^a.
+    pub unloading_exponent: f64,
+}
+
+/// The rule stands in `mechanics/specimen/bolted.rs`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bolted {
+    /// In bearing, and of the friction before it slips, N/m.
+    pub stiffness: f64,
+    /// Force at which a hole yields and grows, N.
+    pub bearing_force: f64,
+    /// Way from the middle to bearing, m.
+    pub clearance: f64,
+    /// Friction of the clamped faces, N.
+    pub slip_force: f64,
+}
+
+/// Measured points, from the least displacement to the largest, through the origin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// The file, as the plan named it.
+    pub file: String,
+    /// Displacement (m), force (N).
+    pub points: Vec<[f64; 2]>,
+    pub unloading: Unloading,
+    /// The forces of the file times this; 1 but in a rehearsal, where a measured stiffness replaces the table's.
+    pub scale: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unloading {
+    /// Parallel to the steepest stretch of the table.
+    InitialStiffness,
+    /// Back the way it came: elastic.
+    AlongTheCurve,
+}
+
+/// What a specimen breaks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Breaks {
+    /// m, either way
+    Displacement(f64),
+    /// N, either way
+    Force(f64),
+}
+
+impl Behaviour {
+    /// Stiffness at no displacement, N/m; where there is none (a joint with clearance and no friction), that in bearing.
+    #[must_use]
+    pub fn initial_stiffness(&self) -> f64 {
+        match self {
+            Self::Elastic { stiffness }
+            | Self::Bilinear { stiffness, .. }
+            | Self::BoucWen { stiffness, .. }
+            | Self::Degrading { stiffness, .. } => *stiffness,
+            Self::Beam(beam) => beam.stiffness,
+            Self::Multilinear { corners } => corners.first().map_or(0.0, |[x, force]| force / x),
+            Self::Pinching(pinching) => pinching.stiffness,
+            Self::Bolted(bolted) if bolted.clearance == 0.0 && bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
+            Self::Bolted(bolted) => bolted.stiffness,
+            Self::Table(table) => table.initial_stiffness(),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.initial_stiffness(),
+            Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.initial_stiffness()).sum::<f64>(),
+            Self::Parallel(parts) => parts.iter().map(Self::initial_stiffness).sum(),
+            Self::Portal(portal) => portal.stiffness,
+        }
+    }
+
+    /// The behaviours it is made of.
+    #[must_use]
+    pub fn parts(&self) -> &[Behaviour] {
+        match self {
+            Self::Series(parts) | Self::Parallel(parts) => parts,
+            Self::Fracture { of, .. } | Self::Rate { of, .. } => std::slice::from_ref(of),
+            _ => &[],
+        }
+    }
+
+    /// Largest force it carries, N; infinite where nothing bounds it, None where its file alone knows.
+    #[must_use]
+    pub fn capacity(&self) -> f64 {
+        let hardens = |hardening: f64, force: f64| if hardening > 0.0 { f64::INFINITY } else { force };
+        match self {
+            Self::Elastic { .. } | Self::Beam(_) => f64::INFINITY,
+            Self::Bilinear { yield_force, hardening, .. } | Self::BoucWen { yield_force, hardening, .. } => {
+                hardens(*hardening, *yield_force)
+            }
+            Self::Pinching(pinching) => hardens(pinching.hardening, pinching.yield_force),
+            Self::Multilinear { corners } => match corners.as_slice() {
+                [.., [_, before], [_, last]] if before == last => *last,
+                _ => f64::INFINITY,
+            },
+            Self::Degrading { stiffness, half_displacement, residual } => hardens(*residual, stiffness * half_displacement),
+            Self::Bolted(bolted) => bolted.bearing_force + bolted.slip_force,
+            Self::Table(table) => table.points.iter().fold(0.0, |most: f64, [_, force]| most.max(force.abs())) * table.scale,
+            Self::Fracture { of, at: Breaks::Force(force) } => of.capacity().min(*force),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.capacity(),
+            Self::Series(parts) => parts.iter().map(Self::capacity).fold(f64::INFINITY, f64::min),
+            Self::Parallel(parts) => parts.iter().map(Self::capacity).sum(),
+            Self::Portal(portal) => portal.capacity(),
+        }
+    }
+
+    /// The same with every force times `factor`: it yields and breaks at the same displacements.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let all = |parts: &[Self]| parts.iter().map(|part| part.scaled(factor)).collect();
+        let mut same = self.clone();
+        match &mut same {
+            Self::Elastic { stiffness } | Self::Degrading { stiffness, .. } => *stiffness *= factor,
+            Self::Bilinear { stiffness, yield_force, .. } | Self::BoucWen { stiffness, yield_force, .. } => {
+                *stiffness *= factor;
+                *yield_force *= factor;
+            }
+            // No longer the beam or portal of that geometry.
+            Self::Beam(beam) => return Self::Elastic { stiffness: beam.stiffness * factor },
+            Self::Portal(portal) => {
+                let (stiffness, yield_force) = (portal.stiffness * factor, portal.capacity() * factor);
+                return Self::Bilinear { stiffness, yield_force, hardening: 0.0 };
+            }
+            Self::Multilinear { corners } => corners.iter_mut().for_each(|[_, force]| *force *= factor),
+            Self::Pinching(pinching) => {
+                pinching.stiffness *= factor;
+                pinching.yield_force *= factor;
+            }
+            Self::Bolted(bolted) => {
+                bolted.stiffness *= factor;
+                bolted.bearing_force *= factor;
+                bolted.slip_force *= factor;
+            }
+            Self::Table(table) => table.scale *= factor,
+            Self::Fracture { of, at } => {
+                **of = of.scaled(factor);
+                if let Breaks::Force(force) = at {
+                    *force *= factor;
+                }
+            }
+            Self::Rate { of, .. } => **of = of.scaled(factor),
+            Self::Series(parts) | Self::Parallel(parts) => *parts = all(parts),
+        }
+        same
+    }
+
+    /// Whether its force never falls while its displacement grows: what may stand in series.
+    #[must_use]
+    pub fn never_falls(&self) -> bool {
+        match self {
+            Self::Fracture { .. } => false,
+            Self::Table(table) => table.points.windows(2).all(|pair| pair[1][1] >= pair[0][1]),
+            _ => self.parts().iter().all(Self::never_falls),
+        }
+    }
+}
+
+impl Table {
+    /// Slope of the stretches on either side of the origin, the steeper one, N/m; with elastic unloading parallel to the
+    /// steepest stretch, that one.
+    #[must_use]
+    pub fn initial_stiffness(&self) -> f64 {
+        let slope = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]);
+        let counts = |pair: &&[[f64; 2]]| match self.unloading {
+            Unloading::InitialStiffness => true,
+            Unloading::AlongTheCurve => pair[0][0] <= 0.0 && 0.0 <= pair[1][0],
+        };
+        self.scale * self.points.windows(2).filter(counts).map(slope).fold(0.0, f64::max)
+    }
+
+    /// Force of the curve at `displacement`, N; beyond its ends the last force holds.
+    #[must_use]
+    pub fn force(&self, displacement: f64) -> f64 {
+        let after = self.points.partition_point(|[x, _]| *x < displacement);
+        let force = match (after.checked_sub(1).and_then(|before| self.points.get(before)), self.points.get(after)) {
+            (Some([x, force]), Some([to_x, to_force])) => force + (to_force - force) * ((displacement - x) / (to_x - x)),
+            (Some([_, force]), None) | (None, Some([_, force])) => *force,
+            (None, None) => 0.0,
+        };
+        self.scale * force
+    }
+}

@@ -1,0 +1,130 @@
+//! A portal frame by plastic hinges: fixed feet, one section throughout, point loads at midspan and at the beam's end. In:
+//! geometry, plastic moment, EI or a stiffness. Out: the mechanism that governs, its load, and the elastic stiffness.
+//! Axial and shear strains are left out, and so is the effect of axial force on the plastic moment.
+
+/// A portal frame and the loads on it (Melo et al. 2006, Figs. 3 and 4).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Portal {
+    /// L, m
+    pub span: f64,
+    /// h, m
+    pub height: f64,
+    /// Mp, N·m
+    pub plastic_moment: f64,
+    /// EI, N·m²; None where the stiffness was given.
+    pub bending_stiffness: Option<f64>,
+    /// Of the load against its own displacement, N/m.
+    pub stiffness: f64,
+    pub loads: Loads,
+}
+
+/// What the frame carries. The load of the specimen is W + H in the given ratio, its displacement the one it does work on:
+/// (W·midspan deflection + H·sway)/(W + H).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loads {
+    /// H at the beam's level.
+    Sway,
+    /// W at midspan.
+    Beam,
+    /// W₀ and H₀, N, growing together.
+    Combined { beam_load: f64, sway_load: f64 },
+}
+
+/// Where the hinges form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mechanism {
+    /// Both corners and midspan.
+    Beam,
+    /// Feet and heads of both columns.
+    Sway,
+    /// Both feet, midspan and the far corner.
+    Combined,
+}
+
+impl Mechanism {
+    pub const ALL: [Self; 3] = [Self::Beam, Self::Sway, Self::Combined];
+
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Beam => "beam",
+            Self::Sway => "sway",
+            Self::Combined => "combined",
+        }
+    }
+
+    /// Where its hinges are.
+    #[must_use]
+    pub const fn hinges(self) -> &'static str {
+        match self {
+            Self::Beam => "hinges at both corners and midspan",
+            Self::Sway => "hinges at both feet and both corners",
+            Self::Combined => "hinges at both feet, midspan and the far corner",
+        }
+    }
+}
+
+impl Loads {
+    /// W and H over W + H.
+    #[must_use]
+    pub fn shares(self) -> (f64, f64) {
+        match self {
+            Self::Sway => (0.0, 1.0),
+            Self::Beam => (1.0, 0.0),
+            Self::Combined { beam_load, sway_load } => (beam_load / (beam_load + sway_load), sway_load / (beam_load + sway_load)),
+        }
+    }
+}
+
+impl Portal {
+    /// A portal of flexural rigidity `bending_stiffness` EI, N·m².
+    #[must_use]
+    pub fn of_section(span: f64, height: f64, plastic_moment: f64, bending_stiffness: f64, loads: Loads) -> Self {
+        let stiffness = elastic_stiffness(span, height, bending_stiffness, loads);
+        Self { span, height, plastic_moment, bending_stiffness: Some(bending_stiffness), stiffness, loads }
+    }
+
+    /// Load W + H at which the frame would collapse by one mechanism, N; infinite where the loads do no work on it. Work
+    /// of the loads = work of the hinges, for a rotation θ of a column or half-beam:
+    /// beam W·(L/2)θ = Mp(1 + 2 + 1)θ; sway H·hθ = 4Mpθ; combined W·(L/2)θ + H·hθ = Mp(1 + 1 + 2 + 2)θ.
+    #[must_use]
+    pub fn collapse_load(&self, mechanism: Mechanism) -> f64 {
+        let (beam, sway) = self.loads.shares();
+        let (on_beam, on_sway) = (beam * self.span / 2.0, sway * self.height);
+        let (hinges, way) = match mechanism {
+            Mechanism::Beam => (4.0, on_beam),
+            Mechanism::Sway => (4.0, on_sway),
+            Mechanism::Combined => (6.0, on_beam + on_sway),
+        };
+        hinges * self.plastic_moment / way
+    }
+
+    /// The mechanism of the least load, which governs.
+    #[must_use]
+    pub fn mechanism(&self) -> Mechanism {
+        let least = Mechanism::ALL.into_iter().min_by(|a, b| self.collapse_load(*a).total_cmp(&self.collapse_load(*b)));
+        least.unwrap_or(Mechanism::Combined)
+    }
+
+    /// Load W + H at which the frame collapses, N.
+    #[must_use]
+    pub fn capacity(&self) -> f64 {
+        self.collapse_load(self.mechanism())
+    }
+}
+
+/// Stiffness of the load W + H against the displacement it does work on, by slope-deflection, k = (EI/L)/(EI/h) = h/L.
+///
+/// Sway, joint rotations θ, column rotation ψ = Δ/h: joint 4θ − 6ψ + 6kθ = 0, so θ = 3ψ/(2 + 3k); shear
+/// H·h = 2(EI/h)(12ψ − 6θ), so H/Δ = (24EI/h³)(6k + 1)/(6k + 4).
+/// Midspan load, joint rotations ±θ: 4EIθ/h + 2EIθ/L = WL/8, and the midspan deflection WL³/192EI + θL/4 gives
+/// W/δ = (192EI/L³)(k + 2)/(4k + 2).
+/// Neither load moves the other's point (one is symmetric, the other antisymmetric), so that the flexibilities add with
+/// the squares of the shares.
+fn elastic_stiffness(span: f64, height: f64, bending_stiffness: f64, loads: Loads) -> f64 {
+    let k = height / span;
+    let sway = 24.0 * bending_stiffness / height.powi(3) * (6.0 * k + 1.0) / (6.0 * k + 4.0);
+    let beam = 192.0 * bending_stiffness / span.powi(3) * (k + 2.0) / (4.0 * k + 2.0);
+    let (on_beam, on_sway) = loads.shares();
+    1.0 / (on_beam * on_beam / beam + on_sway * on_sway / sway)
+}

@@ -1,0 +1,134 @@
+//! The steps of an impact, one after the other. In: what is known before the first step, the rig behind its guard. Out:
+//! every step as it ended, and what they come to. It judges no plan.
+
+use super::StepReport;
+use super::impact::Setting;
+use super::session::Session;
+use super::stop::Stop;
+use super::triggers::Triggers;
+use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
+use crate::mechanics::monitor::{Monitor, Tracking, WARN};
+use crate::mechanics::summary::SummaryBuilder;
+use crate::plan::{Impact, Until};
+use crate::quantity::display::significant;
+use crate::record::{EventKind, ImpactStep};
+
+pub(super) struct Strike {
+    setting: Setting,
+    pub steps: Vec<ImpactStep>,
+    pub summary: SummaryBuilder,
+    /// Energy error of tracking over the input, the largest by size so far, signed.
+    pub worst_share: Option<f64>,
+    warned: bool,
+}
+
+impl Strike {
+    pub(super) fn new(setting: &Setting) -> Self {
+        Self {
+            setting: *setting,
+            steps: room_for(setting.steps),
+            summary: SummaryBuilder::new(&setting.input),
+            worst_share: None,
+            warned: false,
+        }
+    }
+
+    pub(super) fn run(&mut self, plan: &Impact, session: &mut Session<'_>) -> Result<(), Stop> {
+        let Setting { input, steps, pause, .. } = self.setting;
+        let mut triggers = Triggers::new(&plan.inspect);
+        // X starts where the actuator was sent to, and R₀ is read there once, before the first step.
+        let start = session.commanded();
+        let (measured, restoring_force) = session.read()?;
+        let mut solver = ImpactSolver::new(&input, start, restoring_force);
+        let mut monitor = Monitor::new(start, measured, restoring_force);
+        let first = ImpactState { measured_displacement: measured, ..*solver.state() };
+        self.take(&first, monitor.tracking(), session);
+        for _ in 0..steps {
+            let target = solver.predict();
+            session.guard.move_to(&[target], None)?;
+            session.guard.pause(pause)?;
+            let (measured, restoring_force) = session.read()?;
+            let tracking = monitor.take(target, measured, restoring_force);
+            let state = *solver.complete(measured, restoring_force);
+            self.step(&state, tracking, session)?;
+            if plan.until == Until::StrikerStop && solver.finished() {
+                break;
+            }
+            if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
+                session.inspect(&reason)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A step has ended: it is kept, judged and told.
+    fn step(&mut self, state: &ImpactState, tracking: Tracking, session: &mut Session<'_>) -> Result<(), Stop> {
+        self.take(state, tracking, session);
+        let error = error_fraction(state, &self.setting.input);
+        let share = tracking.share_of(self.setting.input.striker_energy());
+        self.watch(share, session);
+        session.guard.check_energy_error(error)?;
+        session.guard.check_tracking(share, tracking.nrms_error)?;
+        session.step_done(&StepReport {
+            step: state.step,
+            time: state.time,
+            command: state.target,
+            displacement: state.measured_displacement,
+            velocity: Some(state.velocity),
+            acceleration: Some(state.acceleration),
+            force: state.restoring_force,
+            energy_error: Some(error),
+            tracking: Some(tracking),
+            tracking_energy_error: share,
+        })
+    }
+
+    /// Says once that tracking makes or takes more energy than the field lets pass unsaid.
+    fn watch(&mut self, share: Option<f64>, session: &mut Session<'_>) {
+        let Some(share) = share else { return };
+        if self.worst_share.is_none_or(|worst| share.abs() > worst.abs()) {
+            self.worst_share = Some(share);
+        }
+        // A limit narrower than the usual one is warned of as early in proportion.
+        let warn = WARN.min(0.4 * session.guard.tracking_energy_limit().high);
+        if share.abs() > warn && !self.warned {
+            self.warned = true;
+            let does = if share < 0.0 { "puts energy into" } else { "takes energy out of" };
+            let text = format!("tracking {does} the test: {} % of the input", significant(100.0 * share.abs(), 2));
+            session.event(EventKind::Remark, text);
+        }
+    }
+
+    fn take(&mut self, state: &ImpactState, tracking: Tracking, session: &Session<'_>) {
+        self.summary.push(state);
+        self.steps.push(ImpactStep {
+            step: state.step,
+            time: state.time,
+            wall_time: session.guard.time(),
+            state: state.state,
+            command: state.target,
+            computed: state.displacement,
+            displacement: state.measured_displacement,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            restoring_force: state.restoring_force,
+            contact_force: state.contact_force,
+            striker_displacement: state.striker_displacement,
+            striker_velocity: state.striker_velocity,
+            tangent_stiffness: state.tangent_stiffness,
+            indentation: state.indentation,
+            energies: state.energies,
+            tracking,
+        });
+    }
+}
+
+/// Room for the steps to come, as far as it is cheap: `duration` is often far beyond the end.
+fn room_for(steps: u64) -> Vec<ImpactStep> {
+    Vec::with_capacity(usize::try_from(steps + 1).unwrap_or(usize::MAX).min(100_000))
+}
+
+/// Energy error over the input; of no input, any error is infinite.
+fn error_fraction(state: &ImpactState, input: &ImpactInput) -> f64 {
+    if state.energies.error == 0.0 { 0.0 } else { state.energies.error / input.striker_energy() }
+}

@@ -1,0 +1,29 @@
+//! How a run is integrated and driven: words that every procedure that integrates shares.
+
+use super::types::{Field, Variant};
+use crate::quantity::Dimension;
+
+/// −⅓ ≤ α ≤ 0; the end is the double nearest to −⅓.
+const ALPHA: Field = Field::quantity("alpha", Dimension::NUMBER, "numerical damping of what a step does not resolve")
+    .or(-0.05, "")
+    .within(-1.0 / 3.0, 0.0);
+
+const INTEGRATORS: &[Variant] = &[
+    Variant::word("tangent", "Newmark with the measured tangent stiffness, eqs. 2 to 6; stable at every step"),
+    Variant::word("explicit", "explicit Newmark: needs no stiffness; stable for Δt ≤ T/π"),
+    Variant::with("alpha_os", &[ALPHA], "α-operator splitting with the initial stiffness: softening specimens, noisy cells"),
+];
+
+pub(super) const INTEGRATOR: Field = Field::choice("integrator", INTEGRATORS, "time integration").or_said("tangent");
+
+pub(super) const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::word("false", "no")];
+
+pub(super) const I_MODIFICATION: Field = Field::choice(
+    "i_modification",
+    TRUTH,
+    "whether the force is corrected to where the specimen was to be, r_m − K_I(d_m − d): as long as it is nearly elastic",
+)
+.or_said("false");
+
+pub(super) const ALLOW_UNSTABLE: Field =
+    Field::choice("allow_unstable", TRUTH, "whether it runs beyond the stability limit of its integrator").or_said("false");

@@ -1,0 +1,142 @@
+//! Every integrator against the same closed forms: free vibration, the paper's examples as the step shrinks, energy.
+
+use psd::mechanics::contact::ContactLaw;
+use psd::mechanics::impact::{ImpactInput, ImpactSolver};
+use psd::mechanics::method::longest_stable_step;
+use psd::plan::Integrator;
+
+use super::support::{impact, run};
+
+const ALL: [Integrator; 5] = [
+    Integrator::Tangent,
+    Integrator::Explicit,
+    Integrator::AlphaOs { alpha: 0.0 },
+    Integrator::AlphaOs { alpha: -0.05 },
+    Integrator::AlphaOs { alpha: -0.3 },
+];
+
+fn by(integrator: Integrator, input: ImpactInput) -> ImpactInput {
+    ImpactInput { integrator, ..input }
+}
+
+/// A structure let go at 1 m, with the striker out of reach.
+pub fn vibration(integrator: Integrator, mass: f64, damping: f64, stiffness: f64, time_step: f64) -> ImpactInput {
+    let far = ImpactInput { gap: 1e9, striker_velocity: 0.0, damping, ..impact(mass, stiffness, ContactLaw::Rigid, time_step) };
+    by(integrator, far)
+}
+
+/// Let go at 1 m: error at 0.37 s against e^(−λt)(cos ω't + λ/ω' sin ω't) after `steps` steps.
+fn error(integrator: Integrator, damping: f64, steps: u32) -> f64 {
+    let (mass, stiffness, end): (f64, f64, f64) = (1.0, 400.0, 0.37);
+    let input = vibration(integrator, mass, damping, stiffness, end / f64::from(steps));
+    let mut solver = ImpactSolver::new(&input, 1.0, stiffness);
+    for _ in 0..steps {
+        let target = solver.predict();
+        solver.complete(target, stiffness * target);
+    }
+    let rate = damping / (2.0 * mass);
+    let damped = (stiffness / mass - rate * rate).sqrt();
+    let exact = (-rate * end).exp() * ((damped * end).cos() + rate / damped * (damped * end).sin());
+    solver.state().displacement - exact
+}
+
+#[test]
+fn free_vibration_is_of_second_order_under_every_integrator() {
+    for integrator in ALL {
+        for damping in [0.0, 6.0] {
+            let order = (error(integrator, damping, 400) / error(integrator, damping, 800)).log2();
+            assert!((order - 2.0).abs() < 0.04, "{integrator:?}, C {damping}: order {order}");
+            assert!(error(integrator, damping, 800).abs() < 2e-4, "{integrator:?}: {}", error(integrator, damping, 800));
+        }
+    }
+}
+
+/// Largest X of a run: mass, K, law, Δt.
+fn largest(integrator: Integrator, mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> f64 {
+    run(&by(integrator, impact(mass, stiffness, law, time_step))).summary.max_displacement
+}
+
+/// The exact collisions (reference table): 0.157698, 0.168185 and 0.174078 m. The error shrinks with the step, and is
+/// below 0.05 % at 10 µs; at each tenth of a step it is a tenth or less.
+#[test]
+fn the_papers_examples_converge_to_the_exact_collisions_under_every_integrator() {
+    let cases = [
+        (1.0, 327.65, ContactLaw::Rigid, 0.157_698),
+        (0.25, 327.65, ContactLaw::Rigid, 0.168_185),
+        (1.0, 300.0, ContactLaw::Limit { force: 1500.0 }, 0.174_078),
+    ];
+    for integrator in ALL {
+        for (mass, stiffness, law, exact) in cases {
+            let error = |time_step| largest(integrator, mass, stiffness, law, time_step) - exact;
+            let (coarse, fine) = (error(1e-4), error(1e-5));
+            assert!(fine.abs() < 8e-5, "{integrator:?}, {mass} kg, {law:?}: {fine} m at 10 µs, {coarse} m at 0.1 ms");
+        }
+    }
+}
+
+/// Without α, and split with the specimen's own stiffness, α-OS is the tangent form: the same numbers at any step.
+#[test]
+fn splitting_without_alpha_is_the_tangent_form_of_a_linear_specimen() {
+    for (law, time_step) in [(ContactLaw::Rigid, 0.01), (ContactLaw::Limit { force: 1500.0 }, 1e-3)] {
+        let input = ImpactInput { damping: 2.0, gap: 0.003, ..impact(1.0, 327.65, law, time_step) };
+        let (tangent, split) = (run(&input), run(&by(Integrator::AlphaOs { alpha: 0.0 }, input)));
+        assert_eq!(tangent.states.len(), split.states.len());
+        for (one, other) in tangent.states.iter().zip(&split.states) {
+            assert!((one.displacement - other.displacement).abs() < 1e-12);
+            assert!((one.contact_force - other.contact_force).abs() < 1e-8);
+            assert_eq!(one.state, other.state);
+        }
+    }
+}
+
+/// Balance: to rounding where the trapezoid is exact, and of second order or better elsewhere.
+#[test]
+fn energy_closes_under_every_integrator() {
+    for integrator in ALL {
+        let worst = |time_step| run(&by(integrator, impact(1.0, 327.65, ContactLaw::Rigid, time_step))).worst_error / 5.0;
+        let (coarse, fine) = (worst(1e-3), worst(1e-4));
+        match integrator {
+            Integrator::Tangent => assert!(coarse < 1e-12),
+            Integrator::AlphaOs { alpha: 0.0 } => assert!(coarse < 1e-12, "{coarse}"),
+            _ => assert!(coarse < 0.02 && fine < 0.15 * coarse, "{integrator:?}: {coarse} at 1 ms, {fine} at 0.1 ms"),
+        }
+    }
+}
+
+/// The blow of α-OS is the paper's collision, e = Ms/(Ms + 2M), whatever α damps.
+#[test]
+fn numerical_damping_does_not_soften_the_blow() {
+    for integrator in ALL {
+        let found = run(&by(integrator, impact(1.0, 327.65, ContactLaw::Rigid, 1e-5))).summary.restitution.unwrap();
+        assert!((found - 10.0 / 12.0).abs() < 2e-3, "{integrator:?}: {found}");
+    }
+}
+
+/// Just inside the limit a free vibration stays bounded for a thousand steps, just beyond it runs away.
+#[test]
+fn the_stability_limits_are_where_they_are_said_to_be() {
+    let (mass, stiffness): (f64, f64) = (1.0, 400.0);
+    let farthest = |integrator, operator, time_step| {
+        let input = ImpactInput { operator_stiffness: operator, ..vibration(integrator, mass, 0.0, stiffness, time_step) };
+        let mut solver = ImpactSolver::new(&input, 1.0, stiffness);
+        (0..1000).fold(0.0_f64, |farthest, _| {
+            let target = solver.predict();
+            solver.complete(target, stiffness * target);
+            farthest.max(solver.state().displacement.abs())
+        })
+    };
+    let explicit = longest_stable_step(Integrator::Explicit, stiffness / mass, 0.0);
+    assert!((explicit - 2.0 * std::f64::consts::PI / 20.0 / std::f64::consts::PI).abs() < 1e-15, "T/π");
+    assert!(farthest(Integrator::Explicit, 0.0, 0.99 * explicit) < 20.0);
+    assert!(farthest(Integrator::Explicit, 0.0, 1.01 * explicit) > 1e20);
+
+    let soft = 300.0;
+    let split = Integrator::AlphaOs { alpha: 0.0 };
+    let limit = longest_stable_step(split, stiffness / mass, (stiffness - soft) / mass);
+    assert!(farthest(split, soft, 0.99 * limit) < 20.0);
+    assert!(farthest(split, soft, 1.01 * limit) > 1e20);
+    for alpha in [0.0, -0.05, -0.3] {
+        assert!(farthest(Integrator::AlphaOs { alpha }, stiffness, 10.0) < 1.001, "as stiff as the specimen: no limit");
+        assert!(farthest(Integrator::AlphaOs { alpha }, 2.0 * stiffness, 2.0 * explicit) < 5.0, "stiffer: none either");
+    }
+}
