@@ -38,6 +38,8 @@ pub enum Command {
     Keygen(KeygenArguments),
     /// Shows everything wrong with plans; nothing moves
     Check(CheckArguments),
+    /// Lays the results of runs side by side; nothing moves
+    Compare(CompareArguments),
     /// Runs plans on virtual rigs and holds what they give against their blessed results
     Test(TestArguments),
     /// Writes plans in the canonical layout
@@ -300,6 +302,16 @@ pub struct TestArguments {
     /// How the outcome is given: told on standard error, or as JSON on standard output
     #[arg(long, value_enum, default_value_t = Format::Human, conflicts_with = "tap")]
     pub format: Format,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Run folders, or folders of blessed results; at least two
+    #[arg(value_name = "RUN", num_args = 2.., required = true)]
+    pub runs: Vec<PathBuf>,
+    /// Also writes a page, a CSV and figures into this folder, new or empty
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -47,14 +47,7 @@ impl BlessedFolder {
 
     /// What is compared of the blessed results; empty where there are none.
     pub fn truth(&self) -> Result<Truth, Failure> {
-        let folder = self.path();
-        let mut files = Vec::new();
-        for name in names(&folder)?.into_iter().filter(|name| Truth::holds(name)) {
-            let path = folder.join(&name);
-            let text = std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
-            files.push((name, text));
-        }
-        Ok(Truth::of(files))
+        truth_in(&self.path())
     }
 
     /// Blesses the files of a run. Where every number is near enough and no file came or went, nothing is written, unless
@@ -101,6 +94,17 @@ impl BlessedFolder {
     fn beside(&self, what: &str) -> PathBuf {
         self.reports.join(format!(".{}.{what}", self.name))
     }
+}
+
+/// What is compared of a folder of results; empty where there is none.
+pub fn truth_in(folder: &Path) -> Result<Truth, Failure> {
+    let mut files = Vec::new();
+    for name in names(folder)?.into_iter().filter(|name| Truth::holds(name)) {
+        let path = folder.join(&name);
+        let text = std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
+        files.push((name, text));
+    }
+    Ok(Truth::of(files))
 }
 
 /// What is compared of the files of a run.

@@ -56,14 +56,14 @@ mod tests {
         let report = Report {
             tested: vec![
                 tested("plans/a", Outcome::Same { verdict: Some("pass") }),
-                tested("plans/b # TODO", Outcome::Differs(found)),
+                tested("plans/b # SKIP", Outcome::Differs(found)),
                 tested("plans/c", Outcome::NotRun),
             ],
             unused: vec!["reports/old".to_owned()],
         };
         assert_eq!(
             tap(&report),
-            "TAP version 13\n1..3\nok 1 - plans/a\nnot ok 2 - plans/b ＃ TODO\n  ---\n  message: \"2 differences from the \
+            "TAP version 13\n1..3\nok 1 - plans/a\nnot ok 2 - plans/b ＃ SKIP\n  ---\n  message: \"2 differences from the \
              blessed results\"\n  severity: fail\n  differences:\n    - \"verdict  \\\"pass\\\" → \\\"fail\\\"\"\n    - \"table of \
              k0  blessed, and not there any more\"\n  ...\nok 3 - plans/c # SKIP the test ended at the first failure\n\
              # unused: reports/old\n"

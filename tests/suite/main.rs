@@ -7,6 +7,7 @@ mod dialects;
 mod docs;
 mod evidence;
 mod explain;
+mod golden;
 mod house;
 mod lang;
 mod manual;

@@ -3,6 +3,7 @@
 
 mod amended;
 mod disk;
+mod golden;
 mod killed;
 mod lost;
 mod needs;

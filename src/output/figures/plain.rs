@@ -18,7 +18,7 @@ pub struct PlainAxis {
 pub struct Curve {
     pub label: String,
     pub points: Vec<(f64, f64)>,
-    /// Of the runs, from 0: gives colour and dash. None: one of many, drawn pale and not in the legend.
+    /// Of the runs, from 0: gives colour and dash. None: one of many, drawn pale.
     pub place: Option<usize>,
 }
 
@@ -59,8 +59,7 @@ impl Curves {
         let x_end = if self.x.dimension == Dimension::TIME { End::Data } else { End::Air };
         let series = |curve: &Curve| {
             let (colour, width, dash) = curve.place.map_or((palette::CLOUD, 1.0, SOLID), |place| STYLES[place % STYLES.len()]);
-            let label = if curve.place.is_some() { curve.label.clone() } else { String::new() };
-            Series { label, points: curve.points.clone(), style: Style::line(colour, width, dash) }
+            Series { label: curve.label.clone(), points: curve.points.clone(), style: Style::line(colour, width, dash) }
         };
         draw::png(&Chart {
             x: axis(&self.x, x_end),
