@@ -147,6 +147,9 @@ impl SymmetricBand {
     pub fn mul_into(&self, x: &[f64], y: &mut [f64]) {
         let order = self.order;
         let (x, y) = (&x[..order], &mut y[..order]);
+        if self.half_bandwidth == 1 {
+            return self.tridiagonal(x, y, |to, product| *to = product);
+        }
         for ((to, entry), from) in y.iter_mut().zip(self.band(0)).zip(x) {
             *to = entry * from;
         }
@@ -157,6 +160,9 @@ impl SymmetricBand {
     pub fn mul_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         let order = self.order;
         let (x, y) = (&x[..order], &mut y[..order]);
+        if self.half_bandwidth == 1 {
+            return self.tridiagonal(x, y, |to, product| *to += factor * product);
+        }
         for ((to, entry), from) in y.iter_mut().zip(self.band(0)).zip(x) {
             *to += factor * (entry * from);
         }
@@ -173,6 +179,18 @@ impl SymmetricBand {
                 *to += factor * (entry * from);
             }
         }
+    }
+
+    /// Each entry of A x, A tridiagonal, taken into y in one pass.
+    #[inline]
+    fn tridiagonal(&self, x: &[f64], y: &mut [f64], take: impl Fn(&mut f64, f64)) {
+        let (last, diagonal, beside) = (self.order - 1, self.band(0), self.band(1));
+        take(&mut y[0], diagonal[0] * x[0] + beside[0] * x[1]);
+        let inner = diagonal[1..].iter().zip(beside.windows(2)).zip(x.windows(3));
+        for (to, ((entry, beside), x)) in y[1..].iter_mut().zip(inner) {
+            take(to, beside[0] * x[0] + entry * x[1] + beside[1] * x[2]);
+        }
+        take(&mut y[last], beside[last - 1] * x[last - 1] + diagonal[last] * x[last]);
     }
 
     /// A ι, ι all ones.

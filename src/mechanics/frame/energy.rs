@@ -31,29 +31,29 @@ pub(super) struct End<'a> {
 }
 
 impl FrameEnergies {
-    /// The balance one step on. `scratch` is two vectors of the frame's order.
+    /// The balance one step on, of a frame that is damped or not. `scratch` is two vectors of the frame's order.
     pub(super) fn advance(
         &self,
-        matrices: &FrameMatrices,
+        (matrices, damped): (&FrameMatrices, bool),
         time_step: f64,
         from: End,
         to: End,
         scratch: (&mut [f64], &mut [f64]),
     ) -> Self {
-        let (mean_velocity, product) = scratch;
-        for ((mean, before), after) in mean_velocity.iter_mut().zip(from.velocity).zip(to.velocity) {
-            *mean = 0.5 * (before + after);
+        let (first, second) = scratch;
+        let restoring = 0.5 * sums(from.restoring_force, to.restoring_force, from.displacement, to.displacement, -1.0);
+        let input = 0.25 * sums(from.load, to.load, from.velocity, to.velocity, 1.0);
+        let mut damping = 0.0;
+        if damped {
+            for ((mean, before), after) in first.iter_mut().zip(from.velocity).zip(to.velocity) {
+                *mean = 0.5 * (before + after);
+            }
+            matrices.damping.mul_into(first, second);
+            damping = dot(first, second);
         }
-        let moved = from.displacement.iter().zip(to.displacement).map(|(before, after)| after - before);
-        let force = from.restoring_force.iter().zip(to.restoring_force).map(|(before, after)| 0.5 * (before + after));
-        let load = from.load.iter().zip(to.load).map(|(before, after)| 0.5 * (before + after));
-        let restoring: f64 = force.zip(moved).map(|(force, moved)| force * moved).sum();
-        let input: f64 = load.zip(&*mean_velocity).map(|(load, velocity)| load * velocity).sum();
-        matrices.damping.mul_into(mean_velocity, product);
-        let damping = dot(product, mean_velocity);
-        matrices.mass.mul_into(to.velocity, product);
+        matrices.mass.mul_into(to.velocity, second);
         let mut next = Self {
-            kinetic: 0.5 * dot(product, to.velocity),
+            kinetic: 0.5 * dot(second, to.velocity),
             restoring: self.restoring + restoring,
             damping: self.damping + time_step * damping,
             input: self.input + time_step * input,
@@ -64,6 +64,33 @@ impl FrameEnergies {
     }
 }
 
+/// Sums side by side: one sum waits for each addition before the next.
+const LANES: usize = 8;
+
+/// xᵀ y.
 pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
+    let (x, y) = (x.chunks_exact(LANES), y.chunks_exact(LANES));
+    let rest: f64 = x.remainder().iter().zip(y.remainder()).map(|(x, y)| x * y).sum();
+    let mut sums = [0.0; LANES];
+    for (x, y) in x.zip(y) {
+        for ((sum, x), y) in sums.iter_mut().zip(x).zip(y) {
+            *sum += x * y;
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+/// (x₀ + x₁)ᵀ (y₁ + sign · y₀).
+fn sums(x0: &[f64], x1: &[f64], y0: &[f64], y1: &[f64], sign: f64) -> f64 {
+    let term = |x: (&f64, &f64), y: (&f64, &f64)| (x.0 + x.1) * (y.1 + sign * y.0);
+    let (x0, x1, y0, y1) = (x0.chunks_exact(LANES), x1.chunks_exact(LANES), y0.chunks_exact(LANES), y1.chunks_exact(LANES));
+    let rest = x0.remainder().iter().zip(x1.remainder()).zip(y0.remainder().iter().zip(y1.remainder()));
+    let rest: f64 = rest.map(|(x, y)| term(x, y)).sum();
+    let mut sums = [0.0; LANES];
+    for ((x0, x1), (y0, y1)) in x0.zip(x1).zip(y0.zip(y1)) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x0.iter().zip(x1).zip(y0.iter().zip(y1))) {
+            *sum += term(x, y);
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }

@@ -79,6 +79,8 @@ fn positive(row: usize, pivot: f64, entry: f64, order: usize) -> Result<(), NotP
 pub struct TwoEnds {
     middle: usize,
     pivots: Vec<f64>,
+    /// 1 over the pivots: a product is a quarter of a division's price.
+    inverses: Vec<f64>,
     /// Between rows i and i + 1: the entry over the pivot of the one eliminated first.
     multipliers: Vec<f64>,
 }
@@ -103,27 +105,49 @@ impl TwoEnds {
                 pivots[low - 1] -= multipliers[low - 1] * beside[low - 1];
             }
         }
-        positive(middle, pivots[middle], diagonal[middle], order)
+        positive(middle, pivots[middle], diagonal[middle], order)?;
+        self.inverses.clear();
+        self.inverses.extend(self.pivots.iter().map(|pivot| 1.0 / pivot));
+        Ok(())
     }
 
     fn solve(&self, x: &mut [f64]) {
         let order = self.pivots.len();
-        let (middle, last) = (self.middle, order - 1);
-        let (x, multipliers) = (&mut x[..order], &self.multipliers[..last]);
-        for i in 0..middle {
-            let low = last - i;
-            x[i + 1] -= multipliers[i] * x[i];
-            if low > middle {
-                x[low - 1] -= multipliers[low - 1] * x[low];
-            }
+        let (upper, rest) = x[..order].split_at_mut(self.middle);
+        let Some((middle, lower)) = rest.split_first_mut() else { return };
+        let (down, up) = self.multipliers.split_at(self.middle);
+        // An even number of rows leaves one more above the middle than below it: it goes first.
+        let (mut above, mut below) = (0.0, 0.0);
+        let (mut from_above, mut from_below) = (0.0, 0.0);
+        let first = upper.len() - lower.len();
+        for (x, multiplier) in upper[..first].iter_mut().zip(down) {
+            above = *x;
+            from_above = *multiplier;
         }
-        divide(x, &self.pivots);
-        for i in (0..middle).rev() {
-            let low = last - i;
-            x[i] -= multipliers[i] * x[i + 1];
-            if low > middle {
-                x[low] -= multipliers[low - 1] * x[low - 1];
-            }
+        let pairs = upper[first..].iter_mut().zip(&down[first..]).zip(lower.iter_mut().zip(up).rev());
+        for ((upper, down), (lower, up)) in pairs {
+            above = *upper - from_above * above;
+            below = *lower - from_below * below;
+            (*upper, *lower) = (above, below);
+            (from_above, from_below) = (*down, *up);
+        }
+        *middle -= from_above * above + from_below * below;
+        for (x, inverse) in upper.iter_mut().zip(&self.inverses) {
+            *x *= inverse;
+        }
+        *middle *= self.inverses[self.middle];
+        for (x, inverse) in lower.iter_mut().zip(&self.inverses[self.middle + 1..]) {
+            *x *= inverse;
+        }
+        (above, below) = (*middle, *middle);
+        let pairs = upper[first..].iter_mut().zip(&down[first..]).rev().zip(lower.iter_mut().zip(up));
+        for ((upper, down), (lower, up)) in pairs {
+            above = *upper - down * above;
+            below = *lower - up * below;
+            (*upper, *lower) = (above, below);
+        }
+        for (x, multiplier) in upper[..first].iter_mut().zip(down) {
+            *x -= multiplier * above;
         }
     }
 }

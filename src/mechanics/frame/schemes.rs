@@ -178,19 +178,17 @@ impl Schemes {
     pub fn foretell(&mut self, from: Instant, load_end: &[f64], to: &mut Course, decide: Decide) {
         let time_step = self.time_step;
         let half = 0.5 * time_step;
-        for ((to, load), force) in to.acceleration.iter_mut().zip(load_end).zip(from.force) {
+        let loads = to.acceleration.iter_mut().zip(load_end.iter().zip(from.force));
+        let ways = self.scratch.iter_mut().zip(&mut self.product).zip(from.velocity.iter().zip(from.acceleration));
+        for ((to, (load, force)), ((glide, drift), (velocity, acceleration))) in loads.zip(ways) {
             *to = load - force;
-        }
-        if self.damped {
-            for ((glide, velocity), acceleration) in self.scratch.iter_mut().zip(from.velocity).zip(from.acceleration) {
-                *glide = velocity + half * acceleration;
-            }
-            self.matrices.damping.mul_add(-1.0, &self.scratch, &mut to.acceleration);
-        }
-        for ((drift, velocity), acceleration) in self.scratch.iter_mut().zip(from.velocity).zip(from.acceleration) {
+            *glide = velocity + half * acceleration;
             *drift = time_step * (velocity + 0.5 * half * acceleration);
         }
-        self.operator.mul_add(-1.0, &self.scratch, &mut to.acceleration);
+        if self.damped {
+            self.matrices.damping.mul_add(-1.0, &self.scratch, &mut to.acceleration);
+        }
+        self.operator.mul_add(-1.0, &self.product, &mut to.acceleration);
         self.factor.solve_in_place(&mut to.acceleration);
         if let Some(struck) = &mut self.struck {
             let s = struck.place;
@@ -301,9 +299,9 @@ impl Schemes {
         mass.solve_in_place(&mut to.acceleration);
     }
 
-    /// Two vectors of the frame's order for whoever balances energies between steps.
-    pub fn scratch(&mut self) -> (&FrameMatrices, &mut [f64], &mut [f64]) {
-        (&self.matrices, &mut self.scratch, &mut self.product)
+    /// The frame, whether it is damped, and two vectors of its order for whoever balances energies between steps.
+    pub fn scratch(&mut self) -> ((&FrameMatrices, bool), &mut [f64], &mut [f64]) {
+        ((&self.matrices, self.damped), &mut self.scratch, &mut self.product)
     }
 }
 

@@ -92,8 +92,9 @@ pub struct FrameSolver {
     next: Course,
     load_end: Vec<f64>,
     predicted: bool,
-    /// The force the recursion takes, N.
+    /// Under I-modification: the force the recursion takes, N, and how far the specimen is from the target, m.
     felt: Vec<f64>,
+    away: Vec<f64>,
     /// Of M, where steps are those of Moreau and Jean.
     mass: Option<BandFactor>,
 }
@@ -146,6 +147,7 @@ impl FrameSolver {
             load_end: zero(),
             predicted: false,
             felt: zero(),
+            away: zero(),
             mass: None,
         })
     }
@@ -198,20 +200,25 @@ impl FrameSolver {
             self.predict_with(&load, decide);
         }
         self.predicted = false;
-        self.felt.copy_from_slice(restoring_force);
-        if let Some(stiffness) = &self.modification {
-            let away = measured_displacement.iter().zip(&self.state.target).map(|(measured, target)| measured - target);
-            let away: Vec<f64> = away.collect();
-            stiffness.mul_add(-1.0, &away, &mut self.felt);
-        }
+        let felt = if let Some(stiffness) = &self.modification {
+            self.felt.copy_from_slice(restoring_force);
+            let away = measured_displacement.iter().zip(&self.state.target);
+            for (away, (measured, target)) in self.away.iter_mut().zip(away) {
+                *away = measured - target;
+            }
+            stiffness.mul_add(-1.0, &self.away, &mut self.felt);
+            &self.felt
+        } else {
+            restoring_force
+        };
         if self.schemes.integrator == Integrator::Tangent {
-            self.next.force.copy_from_slice(&self.felt);
+            self.next.force.copy_from_slice(felt);
             if let Some(mass) = &self.mass {
                 self.schemes.settle_acceleration(mass, &self.load_end, &mut self.next);
             }
         } else {
             let (schemes, from) = (&mut self.schemes, self.state.instant());
-            schemes.correct(from, &self.load_end, &self.felt, &mut self.next, decide);
+            schemes.correct(from, &self.load_end, felt, &mut self.next, decide);
         }
         if let Some(tangents) = &mut self.tangents
             && tangents.take(measured_displacement, restoring_force)
@@ -240,8 +247,8 @@ impl FrameSolver {
             load: &state.load,
         };
         let to = End { displacement: &next.displacement, velocity: &next.velocity, restoring_force: &next.force, load: load_end };
-        let (matrices, mean, product) = schemes.scratch();
-        state.energies = state.energies.advance(matrices, time_step, from, to, (mean, product));
+        let (frame, first, second) = schemes.scratch();
+        state.energies = state.energies.advance(frame, time_step, from, to, (first, second));
         std::mem::swap(&mut state.displacement, &mut next.displacement);
         std::mem::swap(&mut state.velocity, &mut next.velocity);
         std::mem::swap(&mut state.acceleration, &mut next.acceleration);
