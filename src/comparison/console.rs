@@ -54,9 +54,9 @@ fn results(text: &mut String, title: &str, rows: &[Row], runs: usize) {
     lines.extend(rows.iter().map(|row| [vec![row.name.clone()], table::cells(row)].concat()));
     if runs > COLUMNS {
         // Their values are in the CSV; here their spread is what can be read.
-        lines.iter_mut().for_each(|line| {
+        for line in &mut lines {
             line.drain(1..=runs);
-        });
+        }
     }
     let _ = writeln!(text, "{title}\n{}", columns(&lines));
 }

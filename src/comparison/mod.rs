@@ -138,7 +138,7 @@ mod tests {
 
     use super::*;
 
-    fn side(name: &str, results: Value) -> Side {
+    fn side(name: &str, results: &Value) -> Side {
         let summary = json!({ "verdict": "pass", "procedures": { "hit": { "results": results } }, "plan": { "sha256": name },
             "requirements": [{ "name": "stays", "verdict": "pass" }], "parameters": {}, "rig": { "seed": 1 } });
         Side { name: name.to_owned(), summary, figures: Figures::default(), plan: Some(format!("let a = 1\nlet b = {name}\n")) }
@@ -147,8 +147,8 @@ mod tests {
     #[test]
     fn plans_are_compared_in_what_they_share_and_the_rest_is_named() {
         let one =
-            side("1", json!({ "x": { "value": 1.0, "unit": "m", "u": 0.3 }, "old": { "value": 2.0, "unit": "N", "u": null } }));
-        let two = side("2", json!({ "x": { "value": 1.5, "unit": "m", "u": 0.4 }, "d": { "value": [1.0, null], "unit": "m" } }));
+            side("1", &json!({ "x": { "value": 1.0, "unit": "m", "u": 0.3 }, "old": { "value": 2.0, "unit": "N", "u": null } }));
+        let two = side("2", &json!({ "x": { "value": 1.5, "unit": "m", "u": 0.4 }, "d": { "value": [1.0, null], "unit": "m" } }));
         let compared = Comparison::of(&[one, two]);
         let names = |rows: &[Row]| rows.iter().map(|row| row.name.clone()).collect::<Vec<_>>();
         assert_eq!(

@@ -71,7 +71,7 @@ pub fn csv(comparison: &Comparison) -> String {
     let mut text = String::from("result,unit");
     for name in &comparison.names {
         let name = inert(name);
-        text.push_str(&format!(",{},{}", quoted(&name), quoted(&format!("{name} u"))));
+        text = text + "," + &quoted(&name) + "," + &quoted(&format!("{name} u"));
     }
     text.push_str(",n,mean,standard_deviation,difference\n");
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());

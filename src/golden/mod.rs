@@ -89,7 +89,7 @@ pub fn compare(blessed: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Fin
     match (blessed.text(DIAGNOSTICS), now.text(DIAGNOSTICS)) {
         (Some(was), Some(is)) if was != is => found.push(Finding::text(Part::Diagnostics, DIAGNOSTICS, was, is)),
         (Some(_), None) => {
-            found.push(Finding::new(Part::Diagnostics, "the plan checks, and is blessed as one that does not", Change::Gone))
+            found.push(Finding::new(Part::Diagnostics, "the plan checks, and is blessed as one that does not", Change::Gone));
         }
         (None, Some(_)) => found.push(Finding::new(Part::Diagnostics, "the plan fails to check", Change::New)),
         _ => {}

@@ -11,7 +11,7 @@ pub(super) fn single(was: Option<f64>, is: Option<f64>, dimension: Dimension, ru
         (None, None) => true,
         _ => false,
     };
-    (!near).then(|| Change::Moved(Moved { dimension, was, is, rule, scale, largest: None, first: None, count: None }))
+    (!near).then_some(Change::Moved(Moved { dimension, was, is, rule, scale, largest: None, first: None, count: None }))
 }
 
 /// Many, pair by pair; the largest of them that moved stands for all. A number that came or went is the largest of all.

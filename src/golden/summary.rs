@@ -197,7 +197,7 @@ fn named(path: &[String]) -> (Part, String) {
         }
         ["requirements", name, rest @ ..] => (Part::Requirement, format!("require \"{name}\": {}", rest.join("."))),
         ["procedures", name, "results", result, "value", place @ ..] => {
-            let places: String = place.iter().map(|place| format!("[{place}]")).collect();
+            let places = place.iter().fold(String::new(), |text, place| text + "[" + place + "]");
             (Part::Result, format!("{name}.{result}{places}"))
         }
         ["procedures", name, "results", rest @ ..] => (Part::Result, format!("{name}.{}", rest.join("."))),

@@ -36,16 +36,10 @@ impl Rule {
 }
 
 /// The tolerances of one plan, by the names of its procedures.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Tolerances {
     golden: Golden,
     procedures: Vec<String>,
-}
-
-impl Default for Tolerances {
-    fn default() -> Self {
-        Self { golden: Golden::default(), procedures: Vec::new() }
-    }
 }
 
 impl Tolerances {

@@ -51,13 +51,14 @@ impl Words {
 
 /// Old and new with as many digits as tell them apart.
 fn pair(moved: &Moved) -> String {
-    const FEWEST: usize = 4;
-    const MOST: usize = 17;
+    const FEWEST: f64 = 4.0;
+    const MOST: f64 = 17.0;
     let size = moved.was.unwrap_or(0.0).abs().max(moved.is.unwrap_or(0.0).abs());
     let (unit, factor) = unit(size, moved.dimension);
     let apart = moved.by().map_or(1.0, |by| by.abs() / size);
+    let wanted = if apart > 0.0 { (2.0 - apart.log10().floor()).clamp(FEWEST, MOST) } else { FEWEST };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a few digits")]
-    let digits = if apart > 0.0 { (2.0 - apart.log10().floor()).clamp(FEWEST as f64, MOST as f64) as usize } else { FEWEST };
+    let digits = wanted as usize;
     let number = |value: Option<f64>| {
         value.map_or_else(
             || "no value".to_owned(),
@@ -165,8 +166,8 @@ mod tests {
         let told = words(Change::Moved(moved(Some(0.007_88), Some(0.007_912), Dimension::LENGTH)));
         assert_eq!((told.change.as_str(), told.by.as_str()), ("7.8800 mm → 7.9120 mm", "+32.0 µm  +0.406 %"));
         assert_eq!(told.detail, "tolerance 1 × 10⁻⁹ of 7.912 mm");
-        let near = words(Change::Moved(moved(Some(1000.0), Some(1000.000_1), Dimension::FORCE)));
-        assert_eq!((near.change.as_str(), near.by.as_str()), ("1.000000000 kN → 1.000000100 kN", "+0.000100 N  +1.00 × 10⁻⁵ %"));
+        let near = words(Change::Moved(moved(Some(1000.0), Some(1000.0 + 1e-4), Dimension::FORCE)));
+        assert_eq!((near.change.as_str(), near.by.as_str()), ("1.000000000 kN → 1.000000100 kN", "+0.000100 N  +0.0000100 %"));
         let gone = words(Change::Moved(moved(Some(3.0), None, Dimension::NUMBER)));
         assert_eq!((gone.change.as_str(), gone.by.as_str()), ("3 → no value", ""));
     }

@@ -292,3 +292,49 @@ fn names_are_found_listed_and_missed() {
     assert!(!told.stderr.contains("unused"), "{}", told.stderr);
     assert!(!told.stderr.contains("notes"), "{}", told.stderr);
 }
+
+#[test]
+fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
+    let bench = Bench::new(&[(
+        "small",
+        &PLAN
+            .replace("mass      = 1 kg", "mass      = weight")
+            .replace("specimen", "param weight = 1 kg between 0.5 kg .. 2 kg\n\nspecimen"),
+    )]);
+    for (index, mass) in ["1 kg", "1.1 kg", "1.2 kg"].iter().enumerate() {
+        bench
+            .psd(&["run", "plans/small.psd", "--set", &format!("weight={mass}"), "--out", &format!("run-{}", index + 1)])
+            .with(0);
+    }
+    let two = bench.psd(&["compare", "run-1", "run-2", "--out", "two"]).with(0).stdout;
+    for word in ["hit.max_displacement", "difference", "parameters.weight  1.0 kg  1.1 kg", "stays in travel  pass  pass"] {
+        assert!(two.contains(word), "`{word}` is not in:\n{two}");
+    }
+    assert!(!two.contains("run_id") && !two.contains("Plan of"), "{two}");
+    let value = |run: &str| -> f64 {
+        let summary: Value = serde_json::from_str(&bench.read(&format!("{run}/summary.json"))).unwrap();
+        summary["procedures"]["hit"]["results"]["max_displacement"]["value"].as_f64().unwrap()
+    };
+    let table = bench.read("two/results.csv");
+    let row = table.lines().find(|line| line.starts_with("hit.max_displacement,m,")).unwrap();
+    let cells: Vec<f64> = row.split(',').skip(2).map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+    assert_eq!((cells[0], cells[2], cells[7]), (value("run-1"), value("run-2"), value("run-2") - value("run-1")));
+    let page = bench.read("two/comparison.html");
+    assert!(page.contains("data:image/png;base64,") && !page.contains("http"), "the page needs no other file");
+    assert!(bench.path("two/figures/hit_displacement_1.png").exists());
+
+    // A folder of blessed results holds the same numbers; another plan shares what it shares.
+    bench.psd(&["test", "--bless"]).with(0);
+    let blessed = bench.psd(&["compare", "reports/small", "run-1"]).with(0).stdout;
+    assert!(blessed.contains("0 %") && !blessed.contains("What differs\n  hit"), "{blessed}");
+    bench.write("plans/ramp.psd", "specimen s {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\nstiffness ramp k0 {\n  displacements = 1 mm .. 5 mm step 1 mm\n}\n\nreport {\n  formats = [csv]\n}\n");
+    bench.psd(&["run", "plans/ramp.psd", "--out", "ramp"]).with(0);
+    let apart = bench.psd(&["compare", "run-1", "ramp"]).with(0).stdout;
+    assert!(apart.contains("Only of some runs") && !apart.contains("\nResults\n") && apart.contains("k0.stiffness"), "{apart}");
+
+    let three = bench.psd(&["compare", "run-1", "run-2", "run-3"]).with(0).stdout;
+    assert!(three.contains("deviation") && three.contains("mean"), "{three}");
+    bench.psd(&["compare", "run-1"]).with(2);
+    bench.psd(&["compare", "run-1", "plans"]).with(3).says(&["is no run"]);
+    bench.psd(&["compare", "run-1", "run-2", "--out", "two"]).with(3);
+}

@@ -98,8 +98,8 @@ const SEEN: f64 = 0.01;
 /// A column over the time of the test, of the rig, or over its rows.
 fn line(table: &Table, column: &str) -> Option<(PlainAxis, Vec<(f64, f64)>)> {
     let ys = table.numbers(column)?;
-    let along = ["time_s", "wall_time_s", "step"].into_iter().filter(|name| *name != column);
-    let (name, xs) = along.filter_map(|name| Some((name, table.numbers(name)?))).next()?;
+    let mut along = ["time_s", "wall_time_s", "step"].into_iter().filter(|name| *name != column);
+    let (name, xs) = along.find_map(|name| Some((name, table.numbers(name)?)))?;
     let points = xs.into_iter().zip(ys).filter_map(|(x, y)| Some((x?, y?))).collect();
     let shown = match name {
         "time_s" => "Virtual time",
