@@ -12,6 +12,7 @@ use super::record_file::{self, journal_of};
 use super::run_folder::{RunFolder, write_new};
 use crate::comparison::{self, Comparison, Side};
 use crate::golden::{FIGURES, SUMMARY};
+use crate::output::comparison::page;
 use crate::output::summary::Summary;
 use crate::output::{Figures, OutputError, OutputFile, Run, figure_data};
 
@@ -31,7 +32,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
     }
     let file = |path: &str, text: String| OutputFile { path: path.to_owned(), bytes: text.into_bytes() };
     write_new(folder.path(), &file("results.csv", comparison::csv(&compared)))?;
-    write_new(folder.path(), &file("comparison.html", comparison::html(&compared, &drawn)))?;
+    write_new(folder.path(), &file("comparison.html", page(&compared, &drawn)))?;
     give(&format!("{}\n", folder.path().display()))?;
     Ok(Exit::Met)
 }

@@ -4,7 +4,6 @@
 mod console;
 mod facts;
 mod figures;
-mod page;
 mod statistics;
 mod table;
 
@@ -12,9 +11,8 @@ use serde_json::Value;
 
 pub use console::told;
 pub use figures::{Sheet, sheets};
-pub use page::html;
 pub use statistics::{Difference, Spread};
-pub use table::csv;
+pub use table::{cells, csv, heads};
 
 use crate::output::Figures;
 use crate::quantity::{Dimension, unit};

@@ -5,12 +5,14 @@ use crate::quantity::Dimension;
 use crate::quantity::display::{join, minus, readable, readable_beside, si_unit, significant, unit};
 
 /// The heads of the columns after the name and the runs.
-pub(super) fn heads(runs: usize) -> &'static [&'static str] {
+#[must_use]
+pub fn heads(runs: usize) -> &'static [&'static str] {
     if runs == 2 { &["difference", "relative", "of combined u"] } else { &["n", "mean", "deviation", "of the mean"] }
 }
 
 /// Cells of a row: the runs, then their difference or their spread. The unit is that of the largest.
-pub(super) fn cells(row: &Row) -> Vec<String> {
+#[must_use]
+pub fn cells(row: &Row) -> Vec<String> {
     let values = || row.cells.iter().flatten().filter_map(|cell| cell.value);
     let largest = values().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut cells: Vec<String> = row.cells.iter().map(|cell| value(*cell, largest, row.dimension)).collect();

@@ -6,8 +6,8 @@ use super::finding::Finding;
 use super::tested::{Blessed, Outcome, Report, Tested};
 use super::words::Words;
 
-/// Differences shown of one plan; the JSON report has all.
-const SHOWN: usize = 12;
+/// Differences shown of one part of a plan's results; the JSON report has all.
+const SHOWN: usize = 7;
 
 const GREEN: &str = "32";
 const RED: &str = "31";
@@ -37,7 +37,8 @@ pub fn told(tested: &Tested, coloured: bool) -> String {
 
 /// Findings in columns: what, from what to what, by how much; and below each where and what was allowed.
 fn differences(found: &[Finding], coloured: bool) -> String {
-    let words: Vec<Words> = found.iter().take(SHOWN).map(Words::of).collect();
+    let shown = found.chunk_by(|a, b| a.part == b.part).flat_map(|part| part.iter().take(SHOWN));
+    let words: Vec<Words> = shown.map(Words::of).collect();
     let width = |of: fn(&Words) -> &str| words.iter().map(|words| of(words).chars().count()).max().unwrap_or(0);
     let (part, name) = (width(|words| words.part), width(|words| &words.name).min(44));
     let padded = |text: &str, width: usize| format!("{text}{}", " ".repeat(width.saturating_sub(text.chars().count())));
@@ -45,13 +46,14 @@ fn differences(found: &[Finding], coloured: bool) -> String {
     for words in &words {
         let line = format!("  {}  {}  {}  {}", padded(words.part, part), padded(&words.name, name), words.change, words.by);
         let _ = writeln!(text, "{}", line.trim_end());
-        if !words.detail.is_empty() {
-            let detail = format!("  {}  {}", " ".repeat(part), words.detail);
-            let _ = if coloured { writeln!(text, "\u{1b}[2m{detail}\u{1b}[0m") } else { writeln!(text, "{detail}") };
+        if words.detail.is_empty() {
+            continue;
         }
+        let detail = format!("  {}  {}", " ".repeat(part), words.detail);
+        let _ = if coloured { writeln!(text, "\u{1b}[2m{detail}\u{1b}[0m") } else { writeln!(text, "{detail}") };
     }
-    if found.len() > SHOWN {
-        let _ = writeln!(text, "  and {} more: `--format json` gives all", found.len() - SHOWN);
+    if found.len() > words.len() {
+        let _ = writeln!(text, "  and {} more: `--format json` gives all", found.len() - words.len());
     }
     text
 }
@@ -73,7 +75,7 @@ pub fn closing(report: &Report) -> String {
     let _ = match (all - good, blessed) {
         (0, 0) => writeln!(text, "{all} {plans} as blessed"),
         (0, _) => writeln!(text, "{all} {plans}, {blessed} blessed; look at what changed before you commit it"),
-        (bad, _) => writeln!(text, "{bad} of {all} {plans} failed"),
+        (bad, _) => writeln!(text, "{bad} of {all} failed"),
     };
     text
 }

@@ -192,6 +192,10 @@ fn named(path: &[String]) -> (Part, String) {
         ["verdict"] => (Part::Verdict, "verdict".to_owned()),
         ["outcome", ..] => (Part::Verdict, parts.join(".")),
         ["requirements", name] => (Part::Requirement, format!("require \"{name}\"")),
+        // What a requirement reads follows from results, which weigh more.
+        ["requirements", name, "conditions", place, rest @ ("value" | "limit" | "tolerance")] => {
+            (Part::Other, format!("require \"{name}\", condition {place}: {rest}"))
+        }
         ["requirements", name, "conditions", place, rest @ ..] => {
             (Part::Requirement, format!("require \"{name}\", condition {place}: {}", rest.join(".")))
         }

@@ -4,6 +4,7 @@
 mod amendment;
 pub mod behaviour;
 mod certificate;
+pub mod comparison;
 pub mod console;
 mod deviations;
 mod document;

@@ -58,6 +58,9 @@ const IMPACT: &[Column] = &[
     column("contact_loss_j", Dimension::ENERGY),
     column("indentation_energy_j", Dimension::ENERGY),
     column("energy_error_j", Dimension::ENERGY),
+    column("computed_m", Dimension::LENGTH),
+    column("tracking_energy_error_j", Dimension::ENERGY),
+    column("tracking_indicator_m2", Dimension::AREA),
 ];
 
 /// Of its readings, and of its whole cycles.
@@ -81,7 +84,7 @@ const CYCLE: &[Column] = &[
     column("min_force_n", Dimension::FORCE),
 ];
 
-/// The numeric columns of a procedure's tables, in their order; none where it has none.
+/// The numeric columns of a procedure's tables; none where it has none.
 #[must_use]
 pub const fn columns(kind: Kind) -> &'static [Column] {
     match kind {

@@ -11,6 +11,7 @@ mod golden;
 mod house;
 mod lang;
 mod manual;
+mod manual_golden;
 mod outputs;
 mod physics;
 mod plans;

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Comparison, Row, table};
+use crate::comparison::{Comparison, Row, cells, heads};
 
 const STYLE: &str = "body{font:15px/1.45 'DejaVu Sans',Verdana,sans-serif;color:#222;max-width:1100px;margin:2em auto;padding:0 1em}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}table{border-collapse:collapse;font-variant-numeric:tabular-nums}\
@@ -15,7 +15,7 @@ figure{margin:1.5em 0}img{max-width:100%;height:auto}figcaption{color:#555}pre{b
 
 /// The page; `figures` are captions with PNG bytes.
 #[must_use]
-pub fn html(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
+pub fn page(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
     let runs = comparison.names.len();
     let page = html! {
         (DOCTYPE)
@@ -69,8 +69,8 @@ fn results(title: &str, rows: &[Row], runs: usize) -> Markup {
         @if !rows.is_empty() {
             h2 { (title) }
             div class="wide" { table {
-                (head(runs, table::heads(runs)))
-                @for row in rows { tr { td { (row.name) } @for cell in table::cells(row) { td class="n" { (cell) } } } }
+                (head(runs, heads(runs)))
+                @for row in rows { tr { td { (row.name) } @for cell in cells(row) { td class="n" { (cell) } } } }
             } }
         }
     }
