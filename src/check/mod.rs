@@ -11,6 +11,7 @@ mod damping_sweep;
 mod data;
 mod device;
 mod dialect;
+mod escalate;
 mod expression;
 mod faults;
 mod fields;
@@ -37,6 +38,7 @@ mod striker;
 mod table_file;
 #[cfg(test)]
 mod tests;
+mod unload;
 mod warnings;
 
 pub use imports::{DEEPEST, MOST_FILES};
@@ -162,7 +164,6 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     settings.extend(options.settings.iter().cloned());
     Some(Plan {
         title: title.unwrap_or_else(|| stem(name).to_owned()),
-        particulars,
         parameters,
         specimens: specimens.into_iter().collect::<Option<_>>()?,
         strikers: strikers.into_iter().collect::<Option<_>>()?,
@@ -170,6 +171,8 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         limits: limits?.limits,
         procedures: by_place.into_iter().collect::<Option<_>>()?,
         requirements: requirements?,
+        decision_rule: plan_block::decision_rule(&particulars),
+        particulars,
         report: report?,
         golden: golden?,
         files: [files, checker.data_files()].concat(),

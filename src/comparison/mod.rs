@@ -84,7 +84,7 @@ impl Comparison {
 fn rows(sides: &[Side]) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     for (place, side) in sides.iter().enumerate() {
-        for (name, dimension, cell) in cells(&side.summary) {
+        for (name, dimension, cell) in results(&side.summary) {
             // One name may measure different things in different plans.
             let known = rows.iter_mut().find(|row| row.name == name && row.dimension == dimension);
             if let Some(row) = known {
@@ -100,7 +100,7 @@ fn rows(sides: &[Side]) -> Vec<Row> {
 }
 
 /// The results of one run.
-fn cells(summary: &Value) -> Vec<(String, Dimension, Cell)> {
+fn results(summary: &Value) -> Vec<(String, Dimension, Cell)> {
     let mut found = Vec::new();
     for (procedure, told) in summary["procedures"].as_object().into_iter().flatten() {
         for (result, quantity) in told["results"].as_object().into_iter().flatten() {

@@ -136,6 +136,15 @@ pub fn figure_data(run: &Run<'_>) -> OutputFile {
     OutputFile { path: FIGURE_DATA.to_owned(), bytes: figures::data(run).to_json().into_bytes() }
 }
 
+/// The figures of a run in vectors, for a page: `figures/NAME_FIGURE.svg`.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let drawn = figures::all(run)?.into_iter();
+    Ok(drawn.map(|figure| OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() }).collect())
+}
+
 /// The table of a client that drove the rig.
 ///
 /// # Errors

@@ -2,6 +2,7 @@
 //! certificates are functions of it.
 
 mod cycle;
+mod escalate;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,7 @@ use crate::mechanics::monitor::Tracking;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
+pub use escalate::{Blow, EscalateHistory};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -95,6 +97,7 @@ pub enum History {
     Sweep(SweepHistory),
     Impact(ImpactHistory),
     Cycle(CycleHistory),
+    Escalate(EscalateHistory),
     Move(Vec<RampStep>),
     Inspect,
 }

@@ -15,6 +15,7 @@ use crate::record::{EventKind, ImpactStep};
 
 pub(super) struct Strike {
     setting: Setting,
+    before: u64,
     pub steps: Vec<ImpactStep>,
     pub summary: SummaryBuilder,
     /// Energy error of tracking over the input, the largest by size so far, signed.
@@ -23,9 +24,11 @@ pub(super) struct Strike {
 }
 
 impl Strike {
-    pub(super) fn new(setting: &Setting) -> Self {
+    /// `before` steps of the procedure are done already.
+    pub(super) fn new(setting: &Setting, before: u64) -> Self {
         Self {
             setting: *setting,
+            before,
             steps: room_for(setting.steps),
             summary: SummaryBuilder::new(&setting.input),
             worst_share: None,
@@ -51,7 +54,7 @@ impl Strike {
             let tracking = monitor.take(target, measured, restoring_force);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;
-            if plan.until == Until::StrikerStop && solver.finished() {
+            if over(plan.until, &solver) {
                 break;
             }
             if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
@@ -70,7 +73,7 @@ impl Strike {
         session.guard.check_energy_error(error)?;
         session.guard.check_tracking(share, tracking.nrms_error)?;
         session.step_done(&StepReport {
-            step: state.step,
+            step: self.before + state.step,
             time: state.time,
             command: state.target,
             displacement: state.measured_displacement,
@@ -120,6 +123,15 @@ impl Strike {
             energies: state.energies,
             tracking,
         });
+    }
+}
+
+/// Whether the run has come to its end before its duration.
+fn over(until: Until, solver: &ImpactSolver) -> bool {
+    match until {
+        Until::StrikerStop => solver.finished(),
+        Until::Rebound => solver.rebounded(),
+        Until::Duration => false,
     }
 }
 

@@ -58,6 +58,7 @@ const IMPACT: &[Column] = &[
     column("contact_loss_j", Dimension::ENERGY),
     column("indentation_energy_j", Dimension::ENERGY),
     column("energy_error_j", Dimension::ENERGY),
+    column("weight_work_j", Dimension::ENERGY),
     column("computed_m", Dimension::LENGTH),
     column("tracking_energy_error_j", Dimension::ENERGY),
     column("tracking_indicator_m2", Dimension::AREA),
@@ -84,14 +85,33 @@ const CYCLE: &[Column] = &[
     column("min_force_n", Dimension::FORCE),
 ];
 
+/// Of its blows; each blow has the table of an impact besides.
+const ESCALATE: &[Column] = &[
+    column("blow", Dimension::NUMBER),
+    VELOCITY,
+    column("energy_j", Dimension::ENERGY),
+    column("max_displacement_m", Dimension::LENGTH),
+    column("time_of_max_displacement_s", Dimension::TIME),
+    column("stop_time_s", Dimension::TIME),
+    column("absorbed_energy_j", Dimension::ENERGY),
+    column("impulse_n_s", Dimension::IMPULSE),
+    column("max_contact_force_n", Dimension::FORCE),
+    column("contacts", Dimension::NUMBER),
+    column("indentation_m", Dimension::LENGTH),
+    column("energy_error", Dimension::NUMBER),
+    column("rest_displacement_m", Dimension::LENGTH),
+    column("rest_force_n", Dimension::FORCE),
+];
+
 /// The numeric columns of a procedure's tables; none where it has none.
-#[must_use]
-pub const fn columns(kind: Kind) -> &'static [Column] {
-    match kind {
-        Kind::StiffnessRamp | Kind::Move => RAMP,
-        Kind::DampingSweep => SWEEP,
-        Kind::Impact => IMPACT,
-        Kind::Cycle => CYCLE,
-        _ => &[],
-    }
+pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
+    let (own, more): (&[Column], &[Column]) = match kind {
+        Kind::StiffnessRamp | Kind::Move => (RAMP, &[]),
+        Kind::DampingSweep => (SWEEP, &[]),
+        Kind::Impact => (IMPACT, &[]),
+        Kind::Cycle => (CYCLE, &[]),
+        Kind::Escalate => (ESCALATE, IMPACT),
+        _ => (&[], &[]),
+    };
+    own.iter().chain(more)
 }

@@ -17,6 +17,7 @@ mod reference;
 mod report;
 mod results;
 mod rig;
+mod sequences;
 mod types;
 
 pub use columns::{Column, columns};
@@ -35,6 +36,8 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
     &cyclic::CYCLE,
+    &sequences::ESCALATE,
+    &sequences::UNLOAD,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,

@@ -14,6 +14,8 @@ pub enum Kind {
     DampingSweep,
     Impact,
     Cycle,
+    Unload,
+    Escalate,
     Move,
     Inspect,
     Report,
@@ -105,6 +107,8 @@ pub enum FieldType {
     ColumnName,
     /// How near a number must be: in its own unit, or in `%` of its size.
     Tolerance,
+    /// Conditions on the results of a blow, as in `require`.
+    Condition,
 }
 
 impl FieldType {
@@ -279,6 +283,10 @@ impl Field {
         Self::new(name, FieldType::Figures, doc)
     }
 
+    pub(super) const fn condition(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Condition, doc)
+    }
+
     /// A known word of a later version.
     pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
         let mut field = Self::new(name, FieldType::Text, doc);
@@ -380,10 +388,6 @@ impl Variant {
 
     pub(super) const fn with(name: &'static str, arguments: &'static [Field], doc: &'static str) -> Self {
         Self { name, arguments, doc, available: true }
-    }
-
-    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
-        Self { name, arguments: &[], doc, available: false }
     }
 
     #[must_use]

@@ -91,7 +91,7 @@ fn the_columns_of_the_tables_are_those_of_the_schema() {
                 .find(|(name, _)| stem == **name || stem.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('_')));
             let kind = owner.expect("a table has its procedure").1["kind"].as_str().expect("a kind");
             let words: Vec<&str> = kind.split(' ').collect();
-            let known = columns(schema::block_of_words(&words).expect("a block").kind);
+            let known: Vec<_> = columns(schema::block_of_words(&words).expect("a block").kind).collect();
             let text = fs::read_to_string(&table).expect("readable");
             let mut lines = text.lines();
             let names: Vec<&str> = lines.next().expect("a head").split(',').collect();
