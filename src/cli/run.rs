@@ -16,7 +16,7 @@ use crate::diagnostic::json;
 use crate::golden::{Outcome, Tested, console};
 use crate::output::{OutputFile, Provenance};
 use crate::plan::{Link, Plan};
-use crate::rig::{VirtualRig, Wish};
+use crate::rig::{Wish, virtual_rig};
 use crate::run::tape::{self, Recorded};
 
 /// Runs one plan.
@@ -25,7 +25,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
-            give(&format!("{:#}\n", json::document(&plan_file::diagnostics(&checked, &arguments.plan))))?;
+            give(&json::text(&plan_file::diagnostics(&checked, &arguments.plan)))?;
         }
         return Ok(Exit::Wrong);
     };
@@ -78,7 +78,7 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
     let provenance = provenance::of(plan);
     let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let recorded = tape::record(plan, &mut VirtualRig::of_plan(plan), &mut watcher, journal, Box::new(|| None));
+    let recorded = tape::record(plan, virtual_rig(plan).as_mut(), &mut watcher, journal, Box::new(|| None));
     watcher.finish();
     Ok(Ran { folder, provenance, recorded })
 }

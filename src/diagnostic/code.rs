@@ -93,6 +93,15 @@ codes! {
     E614 FieldWithoutUse Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
+    E620 GroundRecord Error;
+    E621 BadMatrix Error;
+    E622 StoreyStiffness Error;
+    E623 SpecimenTwice Error;
+    E624 NoStoreys Error;
+    E625 OneDegreeOfFreedom Error;
+    E626 FrameOnRealRig Error;
+    E627 DampingRatios Error;
+    E628 NoOneStiffness Error;
     E630 CornersDoNotFit Error;
     E631 BadTableFile Error;
     E632 BehaviourIncomplete Error;
@@ -113,6 +122,8 @@ codes! {
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
     W710 WideTolerance Warning;
+    W712 BeyondStability Warning;
+    W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
     W715 TableTooShort Warning;
     W720 BlowOnBlow Warning;

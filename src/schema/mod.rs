@@ -6,6 +6,7 @@ mod columns;
 mod cyclic;
 mod declarations;
 mod devices;
+mod frames;
 mod functions;
 mod golden;
 mod later;
@@ -30,20 +31,20 @@ pub const BLOCKS: &[&BlockKind] = &[
     &plan_block::PLAN,
     &declarations::SPECIMEN,
     &declarations::STRIKER,
+    &frames::GROUND,
     &limits::LIMITS,
     &rig::RIG,
     &procedures::STIFFNESS_RAMP,
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
     &cyclic::CYCLE,
+    &frames::SHAKE,
     &sequences::ESCALATE,
     &sequences::UNLOAD,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
     &golden::GOLDEN,
-    &later::GROUND,
-    &later::SHAKE,
     &later::STUDY,
 ];
 

@@ -109,7 +109,8 @@ fn write_values(text: &mut String, head: &str, values: &[ResultKind]) {
     for value in values {
         let unit = if value.dimension == Dimension::NUMBER { String::new() } else { format!("`{}`", si_unit(value.dimension)) };
         let measured = if value.measured { ", with its standard uncertainty `.u`" } else { "" };
-        let _ = writeln!(text, "| `{}` | {unit} | {}{measured} |", value.name, value.doc);
+        let list = if value.list { "; a list" } else { "" };
+        let _ = writeln!(text, "| `{}` | {unit} | {}{measured}{list} |", value.name, value.doc);
     }
 }
 

@@ -13,6 +13,8 @@ pub enum Kind {
     StiffnessRamp,
     DampingSweep,
     Impact,
+    Ground,
+    Shake,
     Cycle,
     Unload,
     Escalate,
@@ -285,13 +287,6 @@ impl Field {
 
     pub(super) const fn condition(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Condition, doc)
-    }
-
-    /// A known word of a later version.
-    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
-        let mut field = Self::new(name, FieldType::Text, doc);
-        field.available = false;
-        field
     }
 
     /// Must stand; the example is a line that is right.

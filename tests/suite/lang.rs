@@ -10,7 +10,7 @@ use psd::diagnostic::render::{Appearance, render_all};
 use psd::diagnostic::{Code, Diagnostic, Severity};
 use psd::quantity::display::readable;
 use psd::record::{Outcome, Record};
-use psd::rig::VirtualRig;
+use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, RigKind, Variant};
 use psd::verdict::{Assessment, Verdict, assess};
@@ -93,8 +93,8 @@ fn cases() -> Vec<Case> {
 /// How a run ended, and its verdict.
 fn play(checked: &Checked) -> Option<(Record, Assessment)> {
     let plan = checked.plan.as_ref()?;
-    let mut rig = VirtualRig::of_plan(plan);
-    let record = run(plan, &mut rig, &mut Unwatched);
+    let mut rig = virtual_rig(plan);
+    let record = run(plan, rig.as_mut(), &mut Unwatched);
     let assessment = assess(plan, &record);
     Some((record, assessment))
 }

@@ -18,5 +18,6 @@ mod plans;
 mod reference;
 mod rehearse;
 mod serve;
+mod shake;
 mod specimens_page;
 mod sweep;

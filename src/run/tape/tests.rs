@@ -238,6 +238,11 @@ fn measured(record: &Record) -> String {
                     writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
                 }
             }
+            History::Shake(history) => {
+                for step in &history.steps {
+                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
+                }
+            }
             History::Inspect => {}
         }
     }
