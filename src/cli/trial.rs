@@ -13,7 +13,7 @@ use crate::diagnostic::render::{Appearance, render_all};
 use crate::golden::{DIAGNOSTICS, Tolerances};
 use crate::output::{OutputFile, Run, figure_data};
 use crate::plan::Plan;
-use crate::rig::VirtualRig;
+use crate::rig::virtual_rig;
 use crate::run::tape;
 use crate::run::{Inspection, Observer, StepReport};
 use crate::verdict;
@@ -38,7 +38,7 @@ pub fn of(path: &Path) -> Result<Trial, Failure> {
     let provenance = provenance::of(plan);
     let header = record_file::header(plan, &PlanSettings::default(), &provenance, Circumstances::default());
     let journal = record_file::begin_nowhere(plan, &header)?;
-    let recorded = tape::record(plan, &mut VirtualRig::of_plan(plan), &mut Unattended { operator }, journal, Box::new(|| None));
+    let recorded = tape::record(plan, virtual_rig(plan).as_mut(), &mut Unattended { operator }, journal, Box::new(|| None));
     let record = recorded.record;
     let assessment = verdict::assess(plan, &record);
     let mut files = made_of(plan, &record, &assessment, &provenance, None)?;
