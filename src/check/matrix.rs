@@ -19,7 +19,9 @@ pub fn read(text: &str) -> Result<Vec<Vec<f64>>, String> {
     square(&matrix)?;
     symmetric(&mut matrix)?;
     match first_pivot_that_is_not_positive(&matrix) {
-        Some(row) => Err(format!("it is not positive definite: the first {} rows and columns give no positive determinant", row + 1)),
+        Some(row) => {
+            Err(format!("it is not positive definite: the first {} rows and columns give no positive determinant", row + 1))
+        }
         None => Ok(matrix),
     }
 }

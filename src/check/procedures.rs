@@ -65,7 +65,9 @@ pub fn hold_axes(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)
                 checker.faults.push(frames::frame_on_real_rig(&specimen.name, axes, head));
             }
             ProcedureKind::Shake(_) | ProcedureKind::Inspect { .. } => {}
-            _ => checker.faults.push(frames::one_degree_of_freedom(procedure.kind.keyword(), &specimen.name, axes, head, declared)),
+            _ => {
+                checker.faults.push(frames::one_degree_of_freedom(procedure.kind.keyword(), &specimen.name, axes, head, declared))
+            }
         }
     }
 }

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use super::columns::columns;
 use super::dry_rig::{Reach, Watched};
-use super::explain_shake;
 use super::exit::Exit;
+use super::explain_shake;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
@@ -31,7 +31,9 @@ impl<'a> Explained<'a> {
     /// Runs the plan dry, where the specimen that it tests has a behaviour or none is tested.
     pub fn of(plan: &'a Plan) -> Self {
         match plan.specimen_on_the_rig() {
-            Some(specimen) if specimen.behaviour.is_none() && specimen.frame.is_none() => Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name },
+            Some(specimen) if specimen.behaviour.is_none() && specimen.frame.is_none() => {
+                Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name }
+            }
             _ => Self::Dry(Box::new(DryRun::of(plan))),
         }
     }

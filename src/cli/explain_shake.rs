@@ -34,10 +34,7 @@ pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     vec![
         row("critical time step", readable(history.critical_time_step, Dimension::TIME)),
-        row(
-            "chosen time step",
-            format!("{}, {} {judged}", readable(history.time_step, Dimension::TIME), significant(ratio, 3)),
-        ),
+        row("chosen time step", format!("{}, {} {judged}", readable(history.time_step, Dimension::TIME), significant(ratio, 3))),
         row("virtual time", format!("{} in {} steps", readable(ends, Dimension::TIME), history.steps.len() - 1)),
         row("largest displacement, floor by floor", peaks(history, |step| step.computed.clone(), Dimension::LENGTH)),
         row("largest drift, storey by storey", peaks(history, ShakeStep::drift, Dimension::LENGTH)),

@@ -475,15 +475,9 @@ impl FigureKind {
                 Self::Energy,
                 Self::Tracking,
             ],
-            ProcedureKind::Shake(_) => &[
-                Self::Modes,
-                Self::Ground,
-                Self::Displacement,
-                Self::Drift,
-                Self::Hysteresis,
-                Self::BaseShear,
-                Self::Energy,
-            ],
+            ProcedureKind::Shake(_) => {
+                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
+            }
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }

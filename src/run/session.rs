@@ -43,7 +43,8 @@ impl<'run> Session<'run> {
             Guard::new(rig, plan.limits)
         } else {
             rig.hold();
-            let degrees = |count| if count == 1 { "one degree of freedom".to_owned() } else { format!("{count} degrees of freedom") };
+            let degrees =
+                |count| if count == 1 { "one degree of freedom".to_owned() } else { format!("{count} degrees of freedom") };
             Err(RigFault::Device(format!("these procedures move {}, and the rig has {axes}", degrees(wanted))))
         };
         match guard {

@@ -6,8 +6,8 @@ use super::inputs::Inputs;
 use super::session::Session;
 use super::shake_results::{ShakeSummary, results};
 use super::stop::Stop;
-use super::watch::Watch;
 use super::triggers::Triggers;
+use super::watch::Watch;
 use super::{AxisReport, Performed, StepReport};
 use crate::formula::{Formula, NoResults};
 use crate::mechanics::frame::{Damping, FrameInput, FrameSolver, FrameState, Tangents, storeys_of};
@@ -30,7 +30,13 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     );
     let setting = match setting {
         Ok(setting) => setting,
-        Err(stop) => return Performed { history: History::Shake(ShakeHistory::default()), results: results(None, None), stop: Some(stop) },
+        Err(stop) => {
+            return Performed {
+                history: History::Shake(ShakeHistory::default()),
+                results: results(None, None),
+                stop: Some(stop),
+            };
+        }
     };
     let history = ShakeHistory {
         steps: Vec::new(),
@@ -39,7 +45,12 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
         time_step: setting.time_step,
         critical_time_step: setting.properties.critical_time_step(),
     };
-    let mut shaking = Shaking { setting: &setting, history, summary: ShakeSummary::new(setting.properties.matrices.order()), watch: Watch::default() };
+    let mut shaking = Shaking {
+        setting: &setting,
+        history,
+        summary: ShakeSummary::new(setting.properties.matrices.order()),
+        watch: Watch::default(),
+    };
     let stop = shaking.run(plan, ground, session).err();
     let results = results(shaking.history.modes.as_ref(), Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty()));
     Performed { results, history: History::Shake(shaking.history), stop }

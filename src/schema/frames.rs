@@ -32,8 +32,11 @@ pub(super) const GROUND: BlockKind = BlockKind {
     naming: Naming::Named,
     procedure: false,
     fields: &[
-        Field::text("record", "file: a table with the header `time_s,acceleration_m_per_s2`, or an `.AT2` file of the PEER database")
-            .required("record = \"ground.csv\""),
+        Field::text(
+            "record",
+            "file: a table with the header `time_s,acceleration_m_per_s2`, or an `.AT2` file of the PEER database",
+        )
+        .required("record = \"ground.csv\""),
         Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, ""),
         Field::quantity("unit", Dimension::ACCELERATION, "what 1 in the record is worth, where its header does not say")
             .above_zero()

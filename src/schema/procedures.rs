@@ -4,7 +4,8 @@ use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
 use super::{methods, results};
 use crate::quantity::Dimension;
 
-pub(super) const SPECIMEN: Field = Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");
+pub(super) const SPECIMEN: Field =
+    Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");
 
 const SPEED: Field = Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own");
 
@@ -89,11 +90,7 @@ const CONTACTS: &[Variant] = &[
 ];
 
 pub(super) const INSPECT_TRIGGERS: &[Variant] = &[
-    Variant::with(
-        "every",
-        &[Field::count("steps", 1.0, 1e7, "steps between looks").required("20")],
-        "every so many steps",
-    ),
+    Variant::with("every", &[Field::count("steps", 1.0, 1e7, "steps between looks").required("20")], "every so many steps"),
     Variant::with(
         "force_drop",
         &[Field::quantity("fraction", Dimension::NUMBER, "of the largest restoring force so far")

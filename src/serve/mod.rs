@@ -28,12 +28,12 @@ use connection::{Broken, Connection};
 const LOOK: Duration = Duration::from_millis(100);
 
 /// What the client speaks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Protocol {
     Nees,
-    /// With the constant stiffness it is told, N/m.
+    /// With the constant stiffness it is told, N/m: of n axes n·n numbers, row by row.
     GenericClient {
-        stiffness: f64,
+        stiffness: Vec<f64>,
     },
 }
 
@@ -124,7 +124,7 @@ pub enum Event<'a> {
 /// The listener fails.
 pub fn serve(
     listener: &TcpListener,
-    protocol: Protocol,
+    protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
     once: bool,
     stop: &(dyn Fn() -> bool + Sync),
@@ -164,7 +164,7 @@ pub fn serve(
 pub fn session(
     stream: TcpStream,
     address: SocketAddr,
-    protocol: Protocol,
+    protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
     stop: &dyn Fn() -> bool,
 ) -> Session {

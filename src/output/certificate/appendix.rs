@@ -58,8 +58,7 @@ fn printed(file: &PlanFile, body: &mut Vec<Block>) {
 
 /// The plan and every file it used, under the names that they have in the run folder.
 pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
-    let attached =
-        |file: &PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
+    let attached = |file: &PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
     run.plan.files.iter().map(attached).collect()
 }
 

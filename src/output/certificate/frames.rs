@@ -115,7 +115,11 @@ fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
 fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
     let applied = history.steps.iter().map(|step| step.ground_acceleration.abs()).fold(0.0, f64::max);
     let text = |value| number::text(value, Dimension::ACCELERATION);
-    format!("largest acceleration as applied {}, of the record {} before the factor of the run", text(applied), text(ground.peak()))
+    format!(
+        "largest acceleration as applied {}, of the record {} before the factor of the run",
+        text(applied),
+        text(ground.peak())
+    )
 }
 
 fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
@@ -127,7 +131,8 @@ fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
         Column::words("Shape, from the lowest floor up", 1),
     ];
     let row = |mode: usize| -> Vec<Text> {
-        let shape: Vec<String> = modes.shapes[mode].iter().map(|entry| crate::quantity::display::minus(&significant(*entry, 4))).collect();
+        let shape: Vec<String> =
+            modes.shapes[mode].iter().map(|entry| crate::quantity::display::minus(&significant(*entry, 4))).collect();
         vec![
             (mode + 1).to_string().into(),
             number::text(modes.periods[mode], Dimension::TIME).into(),

@@ -128,13 +128,14 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: Figure, kin
             shake::displacement(history),
             format!("{name}: displacement of each floor relative to the ground against virtual time{chosen}."),
         ),
-        FigureKind::Drift => (
-            shake::drift(history, &limits("max_drift")),
-            format!("{name}: drift of each storey against virtual time{chosen}."),
-        ),
+        FigureKind::Drift => {
+            (shake::drift(history, &limits("max_drift")), format!("{name}: drift of each storey against virtual time{chosen}."))
+        }
         FigureKind::Hysteresis => (
             shake::hysteresis(history),
-            format!("{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."),
+            format!(
+                "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
+            ),
         ),
         FigureKind::BaseShear => (
             shake::base_shear(history, &limits("max_base_shear")),
