@@ -47,17 +47,16 @@ fn square(matrix: &[Vec<f64>]) -> Result<(), String> {
 
 /// Mirrored entries become the same number.
 fn symmetric(matrix: &mut [Vec<f64>]) -> Result<(), String> {
-    for row in 0..matrix.len() {
-        for column in 0..row {
-            let (below, above) = (matrix[row][column], matrix[column][row]);
-            if (below - above).abs() > SYMMETRIC * below.abs().max(above.abs()) {
-                let (row, column) = (row + 1, column + 1);
-                return Err(format!(
-                    "it is not symmetric: row {row}, column {column} is {below}, row {column}, column {row} is {above}"
-                ));
-            }
-            matrix[row][column] = above;
+    let pairs = (0..matrix.len()).flat_map(|row| (0..row).map(move |column| (row, column)));
+    for (row, column) in pairs {
+        let (below, above) = (matrix[row][column], matrix[column][row]);
+        if (below - above).abs() > SYMMETRIC * below.abs().max(above.abs()) {
+            let (row, column) = (row + 1, column + 1);
+            return Err(format!(
+                "it is not symmetric: row {row}, column {column} is {below}, row {column}, column {row} is {above}"
+            ));
         }
+        matrix[row][column] = above;
     }
     Ok(())
 }

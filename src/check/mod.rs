@@ -43,6 +43,7 @@ mod table_file;
 mod tests;
 mod warnings;
 
+pub use ground_record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
 pub use imports::{DEEPEST, MOST_FILES};
 pub use literal::MOST_ENTRIES;
 pub use stiffness_ramp::MOST_READINGS;

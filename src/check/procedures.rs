@@ -66,7 +66,8 @@ pub fn hold_axes(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)
             }
             ProcedureKind::Shake(_) | ProcedureKind::Inspect { .. } => {}
             _ => {
-                checker.faults.push(frames::one_degree_of_freedom(procedure.kind.keyword(), &specimen.name, axes, head, declared))
+                let keyword = procedure.kind.keyword();
+                checker.faults.push(frames::one_degree_of_freedom(keyword, &specimen.name, axes, head, declared));
             }
         }
     }

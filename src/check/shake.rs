@@ -90,9 +90,10 @@ pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, 
     let behaves = if checker.real_rig.is_some() { None } else { Some(frame) };
     let limit = properties.longest_stable_step(shake.integrator, behaves);
     if step > limit {
-        checker.faults.push(match shake.allow_unstable {
-            true => fault::unstable_though(step_at, step, limit),
-            false => methods::unstable(step_at, shake.integrator, step, limit),
+        checker.faults.push(if shake.allow_unstable {
+            fault::unstable_though(step_at, step, limit)
+        } else {
+            methods::unstable(step_at, shake.integrator, step, limit)
         });
         return;
     }

@@ -5,16 +5,15 @@
 #[must_use]
 pub fn acceleration_at(times: &[f64], accelerations: &[f64], time: f64) -> f64 {
     let after = times.partition_point(|sample| *sample <= time);
-    match (after.checked_sub(1), accelerations.get(after)) {
-        (None, _) => 0.0,
-        (Some(before), Some(next)) => {
-            let (from, to) = (times[before], times[after]);
-            let share = (time - from) / (to - from);
+    let Some(before) = after.checked_sub(1) else { return 0.0 };
+    match accelerations.get(after) {
+        Some(next) => {
+            let share = (time - times[before]) / (times[after] - times[before]);
             accelerations[before] + share * (next - accelerations[before])
         }
         // The last sample itself, to the rounding of a time that was counted in steps.
-        (Some(last), None) if time <= times[last] * (1.0 + 1e-12) => accelerations[last],
-        (Some(_), None) => 0.0,
+        None if time <= times[before] * (1.0 + 1e-12) => accelerations[before],
+        None => 0.0,
     }
 }
 

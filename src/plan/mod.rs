@@ -176,8 +176,6 @@ pub struct Procedure {
     pub kind: ProcedureKind,
 }
 
-/// A plan has few procedures, so that their size does not matter.
-#[expect(clippy::large_enum_variant, reason = "a plan has a handful of them")]
 #[derive(Clone, Debug)]
 pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),

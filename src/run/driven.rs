@@ -207,12 +207,13 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.asked(&Request::Commit);
         self.commits += 1;
         let nothing = None;
+        // At rest, as it is whenever a client asks.
         let axis = |axis: usize| AxisReport {
             command: self.guard.commanded()[axis],
             displacement: self.felt.displacement[axis],
             force: self.felt.force[axis],
-            velocity: nothing,
-            acceleration: nothing,
+            velocity: 0.0,
+            acceleration: 0.0,
         };
         let AxisReport { command, displacement, force, .. } = axis(0);
         let others = (1..self.guard.commanded().len()).map(axis).collect();

@@ -47,7 +47,8 @@ fn printed(file: &PlanFile, body: &mut Vec<Block>) {
     const FIRST: usize = 8;
     let lines: Vec<String> = file.text.lines().map(str::to_owned).collect();
     let left = lines.len().saturating_sub(FIRST);
-    if file.name.ends_with(".psd") || left <= FIRST {
+    let is_plan = file.name.rsplit('.').next().is_some_and(|ending| ending.eq_ignore_ascii_case("psd"));
+    if is_plan || left <= FIRST {
         body.push(Block::Code { lines });
         return;
     }
