@@ -3,6 +3,8 @@
 //! opens no port and keeps no record: every request goes through the specimen, which does.
 
 mod connection;
+#[cfg(test)]
+mod frame_tests;
 mod generic_client;
 mod generic_header;
 mod nees;

@@ -5,7 +5,7 @@ use std::net::{TcpListener, TcpStream};
 
 use super::*;
 use crate::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
-use crate::rig::{Guard, VirtualRig};
+use crate::rig::{Guard, Rig, VirtualRig};
 use crate::run::Unwatched;
 
 const STIFFNESS: f64 = 3e5;
@@ -14,7 +14,7 @@ fn generic() -> Protocol {
     Protocol::GenericClient { stiffness: vec![STIFFNESS] }
 }
 
-const LIMITS: Limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
+pub(super) const LIMITS: Limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
 
 fn spring() -> VirtualRig {
     let behaviour = Some(Behaviour::Elastic { stiffness: STIFFNESS });
@@ -23,14 +23,22 @@ fn spring() -> VirtualRig {
     VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0)
 }
 
-/// Serves once while `client` talks, and gives what both say.
+/// Serves the spring once while `client` talks, and gives what both say.
 fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(SocketAddr) -> T + Send) -> (T, Session) {
+    served_on(&mut spring(), protocol, limits, client)
+}
+
+pub(super) fn served_on<T: Send>(
+    rig: &mut dyn Rig,
+    protocol: Protocol,
+    limits: Limits,
+    client: impl FnOnce(SocketAddr) -> T + Send,
+) -> (T, Session) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     std::thread::scope(|scope| {
         let client = scope.spawn(move || client(address));
-        let mut rig = spring();
-        let mut guard = Guard::new(&mut rig, limits).unwrap();
+        let mut guard = Guard::new(rig, limits).unwrap();
         let mut sessions = Vec::new();
         let mut told = |event: Event<'_>| {
             if let Event::Ended(session) = event {
@@ -46,33 +54,33 @@ fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(Socke
 }
 
 /// A client of OpenSees' element, words of 64 bits.
-struct Element {
+pub(super) struct Element {
     stream: TcpStream,
     words: usize,
 }
 
 impl Element {
-    fn connect(address: SocketAddr, header: [i32; 11]) -> Self {
+    pub(super) fn connect(address: SocketAddr, header: [i32; 11]) -> Self {
         let mut stream = TcpStream::connect(address).unwrap();
         let bytes: Vec<u8> = header.iter().flat_map(|number| number.to_le_bytes()).collect();
         stream.write_all(&bytes).unwrap();
         Self { stream, words: usize::try_from(header[10]).unwrap() }
     }
 
-    fn send(&mut self, words: &[f64]) {
+    pub(super) fn send(&mut self, words: &[f64]) {
         let padded = words.iter().copied().chain(std::iter::repeat(0.0)).take(self.words);
         let bytes: Vec<u8> = padded.flat_map(f64::to_le_bytes).collect();
         self.stream.write_all(&bytes).unwrap();
     }
 
-    fn ask(&mut self, action: f64) -> Vec<f64> {
+    pub(super) fn ask(&mut self, action: f64) -> Vec<f64> {
         self.send(&[action]);
         let mut bytes = vec![0; 8 * self.words];
         self.stream.read_exact(&mut bytes).unwrap();
         bytes.chunks_exact(8).map(|word| f64::from_le_bytes(word.try_into().unwrap())).collect()
     }
 
-    fn is_closed(&mut self) -> bool {
+    pub(super) fn is_closed(&mut self) -> bool {
         !matches!(self.stream.read(&mut [0; 8]), Ok(1..))
     }
 }
