@@ -25,6 +25,7 @@ fn example_1() -> ImpactInput {
         striker_mass: 10.0,
         striker_velocity: 1.0,
         gap: 0.0,
+        gravity: 0.0,
         time_step: 1e-6,
         max_tangent_ratio: 2.0,
         law: ContactLaw::Rigid,

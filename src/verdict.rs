@@ -1,8 +1,8 @@
 //! Requirements against the record. In: a [`Plan`] and a [`Record`]. Out: an [`Assessment`], every requirement with
-//! value, limit and margin. A missed requirement is a verdict, never an error.
+//! value, limit, margin and, under the guarded rule, guard band. A missed requirement is a verdict, never an error.
 
-use crate::formula::{Formula, FormulaError};
-use crate::plan::{Comparison, Condition, Plan, Requirement, Test};
+use crate::formula::{Formula, FormulaError, Operator, Results};
+use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
 use crate::record::{Outcome, Record};
 
@@ -10,7 +10,7 @@ use crate::record::{Outcome, Record};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Pass,
-    /// A result that the requirement reads does not exist in this run.
+    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it.
     Inconclusive,
     Fail,
     /// Stopped by a limit or by a person.
@@ -37,6 +37,8 @@ impl Verdict {
 #[derive(Clone, Debug)]
 pub struct Assessment {
     pub verdict: Verdict,
+    /// By which every condition was decided.
+    pub rule: DecisionRule,
     pub requirements: Vec<RequirementOutcome>,
 }
 
@@ -60,6 +62,8 @@ pub struct ConditionOutcome {
     pub bound: Option<Bound>,
     /// Distance inside the bound, SI; negative: missed by so much.
     pub margin: Option<f64>,
+    /// w = U = 2u of the margin under the guarded rule, SI; None under the simple one, and where no uncertainty is known.
+    pub guard_band: Option<f64>,
     /// Why it is inconclusive.
     pub reason: Option<String>,
 }
@@ -82,48 +86,81 @@ pub enum Bound {
 /// failed an Error, whatever its requirements say of the results it has.
 #[must_use]
 pub fn assess(plan: &Plan, record: &Record) -> Assessment {
-    let requirements: Vec<_> = plan.requirements.iter().map(|requirement| assess_requirement(requirement, record)).collect();
+    let rule = plan.decision_rule;
+    let requirements: Vec<_> =
+        plan.requirements.iter().map(|requirement| assess_requirement(requirement, rule, record)).collect();
     let run = match record.outcome {
         Outcome::Completed => Verdict::Pass,
         Outcome::Aborted { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
     };
     let verdict = requirements.iter().map(|requirement| requirement.verdict).fold(run, Verdict::max);
-    Assessment { verdict, requirements }
+    Assessment { verdict, rule, requirements }
 }
 
-fn assess_requirement(requirement: &Requirement, record: &Record) -> RequirementOutcome {
-    let conditions: Vec<_> = requirement.conditions.iter().map(|condition| assess_condition(condition, record)).collect();
+fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
+    let conditions: Vec<_> = requirement.conditions.iter().map(|condition| assess_condition(condition, rule, record)).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
     RequirementOutcome { label: requirement.label.clone(), verdict, conditions }
 }
 
+/// k of the expanded uncertainty U = k·u: about 95 % of a normal distribution.
+pub const COVERAGE: f64 = 2.0;
+
 /// Value and bound are evaluated each on its own, so that a report shows whichever exists.
-fn assess_condition(condition: &Condition, record: &Record) -> ConditionOutcome {
+pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record: &dyn Results) -> ConditionOutcome {
     let value = condition.value.evaluate(record, None);
     let bound = evaluate_bound(&condition.test, record);
     let known = match (&value, &bound) {
         (Ok(value), Ok(bound)) => Some((value.value, *bound)),
         _ => None,
     };
+    let guard_band = match rule {
+        DecisionRule::Simple => None,
+        DecisionRule::Guarded => known.and_then(|(value, bound)| guard_band(condition, value, bound, record)),
+    };
     let verdict = match known {
-        Some((value, bound)) if bound.holds(value) => Verdict::Pass,
-        Some(_) => Verdict::Fail,
+        Some((value, bound)) => bound.verdict(value, guard_band),
         None => Verdict::Inconclusive,
     };
+    let missing = value.as_ref().err().or(bound.as_ref().err()).map(ToString::to_string);
+    let too_near = || (verdict == Verdict::Inconclusive).then(|| "the limit is nearer than the guard band w = U".to_owned());
     ConditionOutcome {
         text: condition.text.clone(),
         verdict,
         dimension: condition.dimension,
         value: value.as_ref().ok().map(|value| value.value),
         uncertainty: value.as_ref().ok().and_then(|value| value.uncertainty),
-        bound: bound.as_ref().ok().copied(),
+        bound: bound.ok(),
         margin: known.map(|(value, bound)| bound.margin(value)),
-        reason: value.err().or(bound.err()).map(|error| error.to_string()),
+        guard_band,
+        reason: missing.or_else(too_near),
     }
 }
 
-fn evaluate_bound(test: &Test, record: &Record) -> Result<Bound, FormulaError> {
+/// w = U = 2u of the distance between value and bound, so that a limit which was measured itself counts too, and a result
+/// that stands on both sides counts once. None where nothing of it is uncertain.
+fn guard_band(condition: &Condition, value: f64, bound: Bound, record: &dyn Results) -> Option<f64> {
+    let difference = |a: &Formula, b: &Formula| Formula::Binary(Operator::Subtract, Box::new(a.clone()), Box::new(b.clone()));
+    let distance = match (&condition.test, bound) {
+        (Test::Compare { limit, .. }, _) => difference(&condition.value, limit),
+        (Test::Within { target, tolerance, relative }, bound) => {
+            let low_side = matches!(bound, Bound::Within { target, .. } if value < target);
+            let off = if low_side { difference(target, &condition.value) } else { difference(&condition.value, target) };
+            let tolerance = if *relative {
+                let size = Formula::Call(crate::formula::Function::Abs, vec![target.clone()]);
+                Formula::Binary(Operator::Multiply, Box::new(tolerance.clone()), Box::new(size))
+            } else {
+                tolerance.clone()
+            };
+            difference(&off, &tolerance)
+        }
+    };
+    let uncertainty = distance.evaluate(record, None).ok()?.uncertainty?;
+    (uncertainty > 0.0).then_some(COVERAGE * uncertainty)
+}
+
+fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaError> {
     let number = |formula: &Formula| formula.evaluate(record, None).map(|estimate| estimate.value);
     Ok(match test {
         Test::Compare { comparison, limit } => Bound::Compare { comparison: *comparison, limit: number(limit)? },
@@ -152,6 +189,25 @@ impl Bound {
         }
     }
 
+    /// The verdict on `value` (SI): without a guard band the value decides. With one, w (SI, above 0), it passes if it keeps
+    /// the bound by at least w, fails if it misses it by more than w, and else nothing is decided.
+    #[must_use]
+    pub fn verdict(self, value: f64, guard_band: Option<f64>) -> Verdict {
+        let Some(band) = guard_band else {
+            return if self.holds(value) { Verdict::Pass } else { Verdict::Fail };
+        };
+        let margin = self.margin(value);
+        let strict =
+            matches!(self, Self::Compare { comparison: Comparison::Less | Comparison::Greater | Comparison::NotEqual, .. });
+        if if strict { margin > band } else { margin >= band } {
+            Verdict::Pass
+        } else if margin < -band {
+            Verdict::Fail
+        } else {
+            Verdict::Inconclusive
+        }
+    }
+
     /// Distance of `value` inside the bound; negative: missed by so much. Equality has nothing inside it, inequality
     /// nothing outside.
     #[must_use]
@@ -170,102 +226,4 @@ impl Bound {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
-    use crate::record::{History, NamedResult, ProcedureRecord};
-    use crate::rig::Identity;
-
-    fn record(outcome: Outcome) -> Record {
-        let number = |name, value, uncertainty| NamedResult {
-            name,
-            value: ResultValue::Number { value, uncertainty },
-            dimension: Dimension::LENGTH,
-        };
-        Record {
-            rig: Identity {
-                name: String::new(),
-                model: String::new(),
-                serial: String::new(),
-                firmware: String::new(),
-                boot: None,
-                simulated: true,
-            },
-            procedures: vec![ProcedureRecord {
-                name: "hit".to_owned(),
-                kind: "impact",
-                complete: true,
-                inputs: Vec::new(),
-                results: vec![number("max_displacement", Some(8.0), Some(0.1)), number("stop_time", None, None)],
-                history: History::Inspect,
-            }],
-            events: Vec::new(),
-            outcome,
-        }
-    }
-
-    fn result(name: &'static str) -> Formula {
-        Formula::Result(ResultReference { procedure: ProcedureId(0), name, part: Part::Value })
-    }
-
-    fn condition(value: Formula, test: Test) -> Condition {
-        Condition { text: "as written".to_owned(), value, test, dimension: Dimension::LENGTH }
-    }
-
-    fn compare(comparison: Comparison, limit: f64) -> Test {
-        Test::Compare { comparison, limit: Formula::Constant(limit) }
-    }
-
-    fn outcome_of(test: Test) -> ConditionOutcome {
-        assess_condition(&condition(result("max_displacement"), test), &record(Outcome::Completed))
-    }
-
-    #[test]
-    fn a_comparison_passes_or_fails_with_its_margin_and_uncertainty() {
-        let met = outcome_of(compare(Comparison::LessEqual, 8.5));
-        assert_eq!((met.verdict, met.margin), (Verdict::Pass, Some(0.5)));
-        assert!((met.uncertainty.unwrap() - 0.1).abs() < 1e-12);
-        let missed = outcome_of(compare(Comparison::Greater, 8.0));
-        assert_eq!((missed.verdict, missed.margin), (Verdict::Fail, Some(0.0)));
-        let equal = outcome_of(compare(Comparison::Equal, 7.0));
-        assert_eq!((equal.verdict, equal.margin), (Verdict::Fail, Some(-1.0)));
-    }
-
-    #[test]
-    fn a_relative_tolerance_is_of_the_size_of_the_target() {
-        let within = |target, tolerance, relative| {
-            outcome_of(Test::Within { target: Formula::Constant(target), tolerance: Formula::Constant(tolerance), relative })
-        };
-        let near = within(10.0, 0.25, true);
-        assert_eq!((near.verdict, near.margin), (Verdict::Pass, Some(0.5)));
-        assert_eq!(near.bound, Some(Bound::Within { target: 10.0, tolerance: 2.5 }));
-        assert_eq!(within(10.0, 0.25, false).verdict, Verdict::Fail);
-        assert_eq!(within(-10.0, 1.9, true).verdict, Verdict::Pass);
-    }
-
-    #[test]
-    fn a_missing_result_is_inconclusive_and_says_so() {
-        let outcome =
-            assess_condition(&condition(result("stop_time"), compare(Comparison::Less, 1.0)), &record(Outcome::Completed));
-        assert_eq!((outcome.verdict, outcome.value, outcome.margin), (Verdict::Inconclusive, None, None));
-        assert!(outcome.reason.unwrap().contains("stop_time"));
-        assert_eq!(outcome.bound, Some(Bound::Compare { comparison: Comparison::Less, limit: 1.0 }));
-    }
-
-    #[test]
-    fn the_whole_takes_its_worst_part_and_the_end_of_the_run() {
-        let mut plan = crate::run::testing::empty_plan();
-        let requirement = |limit| Requirement {
-            label: "travel".to_owned(),
-            conditions: vec![condition(result("max_displacement"), compare(Comparison::Less, limit))],
-        };
-        assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Pass);
-        plan.requirements = vec![requirement(9.0), requirement(7.0)];
-        let assessed = assess(&plan, &record(Outcome::Completed));
-        assert_eq!(assessed.verdict, Verdict::Fail);
-        assert_eq!(assessed.requirements[0].verdict, Verdict::Pass);
-        let stopped = assess(&plan, &record(Outcome::Aborted { reason: String::new() }));
-        assert_eq!((stopped.verdict, stopped.requirements[1].verdict), (Verdict::Aborted, Verdict::Fail));
-        assert_eq!(assess(&plan, &record(Outcome::Faulted { reason: String::new() })).verdict, Verdict::Error);
-    }
-}
+mod tests;

@@ -48,6 +48,8 @@ pub enum Reads {
     Nothing(&'static str),
     /// Those of procedures that ran before this one.
     Before(ProcedureId),
+    /// Those of the blow that is just over, by their own names, and those of procedures that ran before this one.
+    Blow(ProcedureId),
     All,
 }
 

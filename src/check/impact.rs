@@ -10,6 +10,11 @@ use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Un
 use crate::schema::Kind;
 
 pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    blow(checker, block).map(ProcedureKind::Impact)
+}
+
+/// What the fields of an impact say, in whatever block they stand.
+pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
     let head = checker.scope.blocks[block].block.head;
     let striker = checker.reference(block, "striker", Kind::Striker);
     let specimen_block = checker.specimen_block(block);
@@ -17,12 +22,7 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         Some(_) => checker.quantity(block, "mass"),
         None => specimen_block.and_then(|tested| specimen::export(checker, tested, "mass", head)).map(Formula::Constant),
     };
-    let stiffness = match checker.given(block, "stiffness") {
-        Some(_) => checker.quantity(block, "stiffness"),
-        // Required there, and said already.
-        None if checker.real_rig.is_some() => None,
-        None => specimen_block.and_then(|tested| specimen::export(checker, tested, "stiffness", head)).map(Formula::Constant),
-    };
+    let stiffness = checker.stiffness_or_specimens(block, specimen_block);
     let damping = checker.quantity(block, "damping");
     let contact = contact(checker, block);
     let integrator = integrator::integrator(checker, block);
@@ -49,7 +49,11 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         i_modification: i_modification?,
         time_step: time_step?,
         duration: duration?,
-        until: if until? == "duration" { Until::Duration } else { Until::StrikerStop },
+        until: match until? {
+            "duration" => Until::Duration,
+            "rebound" => Until::Rebound,
+            _ => Until::StrikerStop,
+        },
         pause: pause?,
         max_tangent_ratio: max_tangent_ratio?,
         inspect: inspect?,
@@ -62,7 +66,7 @@ pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         return checker.fail(values::too_many("steps", steps, MOST_STEPS, at, "shorten `duration` or take a longer `time_step`"));
     }
     integrator::meets_the_contact(checker, block, impact.integrator, &impact.contact)?;
-    Some(ProcedureKind::Impact(impact))
+    Some(impact)
 }
 
 fn twentieth_of_critical() -> Formula {

@@ -11,6 +11,7 @@ mod damping_sweep;
 mod data;
 mod device;
 mod dialect;
+mod escalate;
 mod expression;
 mod faults;
 mod fields;
@@ -41,6 +42,7 @@ mod striker;
 mod table_file;
 #[cfg(test)]
 mod tests;
+mod unload;
 mod warnings;
 
 pub use ground_record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
@@ -174,7 +176,6 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     settings.extend(options.settings.iter().cloned());
     Some(Plan {
         title: title.unwrap_or_else(|| stem(name).to_owned()),
-        particulars,
         parameters,
         specimens: specimens.into_iter().collect::<Option<_>>()?,
         strikers: strikers.into_iter().collect::<Option<_>>()?,
@@ -183,6 +184,8 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         limits: limits?.limits,
         procedures: by_place.into_iter().collect::<Option<_>>()?,
         requirements: requirements?,
+        decision_rule: plan_block::decision_rule(&particulars),
+        particulars,
         report: report?,
         files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),

@@ -7,13 +7,19 @@ use super::scope::Meaning;
 use super::{specimen, striker};
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::quantity::Dimension;
-use crate::schema::Kind;
+use crate::schema::{self, Kind};
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 
 impl<'a> Checker<'a> {
     /// The value a bare name stands for.
     pub fn name(&mut self, name: &str, span: Span, place: Place) -> Option<Typed> {
+        if let Reads::Blow(procedure) = place.reads
+            && let Some(result) = schema::block(Kind::Impact).result(name)
+        {
+            let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
+            return Some(Typed::number(formula, result.dimension, span));
+        }
         if let Some((block, own)) = place.entry
             && let Some(entry) = self.sibling(block, own, name)
         {
@@ -38,7 +44,10 @@ impl<'a> Checker<'a> {
                 let siblings = place.entry.map_or(&[][..], |(block, _)| &self.scope.blocks[block].block.fields);
                 let known =
                     siblings.iter().map(|entry| entry.key.node.as_str()).filter(|key| *key != name).chain(self.scope.names());
-                let fault = fault::unknown_name(name, span, known);
+                // After a blow its results have names of their own.
+                let results = matches!(place.reads, Reads::Blow(_)).then(|| schema::block(Kind::Impact).results);
+                let results = results.unwrap_or_default().iter().map(|result| result.name);
+                let fault = fault::unknown_name(name, span, known.chain(results));
                 self.fail(fault)
             }
         }
@@ -134,13 +143,13 @@ impl<'a> Checker<'a> {
             let text = self.text(span);
             match place.reads {
                 Reads::Nothing(what) => return self.fail(values::result_before_the_run(text, span, what, head)),
-                Reads::Before(procedure) if reference.procedure == procedure => {
+                Reads::Before(procedure) | Reads::Blow(procedure) if reference.procedure == procedure => {
                     return self.fail(values::own_result(text, span, head));
                 }
-                Reads::Before(procedure) if reference.procedure > procedure => {
+                Reads::Before(procedure) | Reads::Blow(procedure) if reference.procedure > procedure => {
                     return self.fail(values::result_of_later_procedure(text, span, head));
                 }
-                Reads::Before(_) | Reads::All => {}
+                Reads::Before(_) | Reads::Blow(_) | Reads::All => {}
             }
         }
         Some(typed)

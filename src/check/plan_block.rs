@@ -2,6 +2,7 @@
 
 use super::checker::Checker;
 use super::faults::values;
+use crate::plan::DecisionRule;
 use crate::schema::{FieldType, Kind};
 
 /// The edition this version reads.
@@ -28,4 +29,10 @@ pub fn plan_block(checker: &mut Checker, date: Option<&str>) -> (Option<String>,
     }
     let title = checker.scope.blocks[block].block.title.as_ref().map(|title| title.node.clone());
     (title, particulars)
+}
+
+/// The rule that the particulars name; the simple one where they name none.
+pub fn decision_rule(particulars: &[(&'static str, String)]) -> DecisionRule {
+    let named = particulars.iter().find(|(field, _)| *field == "decision_rule").map(|(_, word)| word.as_str());
+    if named == Some(DecisionRule::Guarded.name()) { DecisionRule::Guarded } else { DecisionRule::Simple }
 }

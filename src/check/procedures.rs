@@ -2,7 +2,7 @@
 
 use super::checker::Checker;
 use super::faults::{frames, names, whole as fault};
-use super::{cycle, damping_sweep, impact, inspect, move_block, shake, stiffness_ramp};
+use super::{cycle, damping_sweep, escalate, impact, inspect, move_block, shake, stiffness_ramp, unload};
 use crate::plan::{Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
@@ -21,6 +21,8 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
         Kind::Impact => impact::impact(checker, block),
         Kind::Shake => shake::shake(checker, block),
         Kind::Cycle => cycle::cycle(checker, block),
+        Kind::Escalate => escalate::escalate(checker, block),
+        Kind::Unload => unload::unload(checker, block),
         Kind::Move => move_block::move_block(checker, block),
         _ => inspect::inspect(checker, block),
     };

@@ -16,7 +16,7 @@ impl<'a> Checker<'a> {
             .map(|index| {
                 let declared = &self.scope.requirements[index];
                 let mut conditions = Vec::new();
-                self.conditions(declared.condition, &mut conditions);
+                self.conditions(declared.condition, PLACE, &mut conditions);
                 let conditions = conditions.into_iter().collect::<Option<Vec<Condition>>>()?;
                 Some(Requirement { label: declared.label.node.clone(), conditions })
             })
@@ -24,27 +24,34 @@ impl<'a> Checker<'a> {
         checked.into_iter().collect()
     }
 
-    fn conditions(&mut self, expr: &'a Expr, into: &mut Vec<Option<Condition>>) {
+    /// The conditions of an expression, one for each part joined with `and`; None if one has a fault.
+    pub fn conditions_at(&mut self, expr: &'a Expr, place: Place) -> Option<Vec<Condition>> {
+        let mut conditions = Vec::new();
+        self.conditions(expr, place, &mut conditions);
+        conditions.into_iter().collect()
+    }
+
+    fn conditions(&mut self, expr: &'a Expr, place: Place, into: &mut Vec<Option<Condition>>) {
         match &expr.kind {
-            ExprKind::Parenthesised(inner) => self.conditions(inner, into),
+            ExprKind::Parenthesised(inner) => self.conditions(inner, place, into),
             ExprKind::Binary { operator, left, right } if operator.node == BinaryOperator::And => {
-                self.conditions(left, into);
-                self.conditions(right, into);
+                self.conditions(left, place, into);
+                self.conditions(right, place, into);
             }
             _ => {
-                let condition = self.condition(expr);
+                let condition = self.condition(expr, place);
                 into.push(condition);
             }
         }
     }
 
-    fn condition(&mut self, expr: &'a Expr) -> Option<Condition> {
+    fn condition(&mut self, expr: &'a Expr, place: Place) -> Option<Condition> {
         let text = self.text(expr.span).split_whitespace().collect::<Vec<_>>().join(" ");
         match &expr.kind {
             ExprKind::Faulty => None,
             ExprKind::Within { value, tolerance, target } => {
                 let (value, width, target) =
-                    (self.single(value, PLACE), self.single(tolerance, PLACE), self.single(target, PLACE));
+                    (self.single(value, place), self.single(tolerance, place), self.single(target, place));
                 let (value, width, target) = (value?, width?, target?);
                 if value.dimension != target.dimension {
                     return self.fail(fault::mismatched("within", &value, &target));
@@ -58,7 +65,7 @@ impl<'a> Checker<'a> {
             }
             ExprKind::Binary { operator, left, right } if comparison(operator.node).is_some() => {
                 let comparison = comparison(operator.node)?;
-                let (left, right) = (self.single(left, PLACE), self.single(right, PLACE));
+                let (left, right) = (self.single(left, place), self.single(right, place));
                 let (left, right) = (left?, right?);
                 if left.dimension != right.dimension {
                     return self.fail(fault::mismatched(operator.node.symbol(), &left, &right));
@@ -67,7 +74,10 @@ impl<'a> Checker<'a> {
                 let (value, comparison, limit) = value_first(left, comparison, right);
                 Some(Condition { text, value, test: Test::Compare { comparison, limit }, dimension })
             }
-            _ => self.fail(fault::condition_wanted(expr.span, self.text(expr.span))),
+            _ => {
+                let wanted_by = if matches!(place.reads, Reads::Blow(_)) { "while" } else { "require" };
+                self.fail(fault::condition_wanted(wanted_by, expr.span, self.text(expr.span)))
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `striker NAME { … }`: mass, velocity or height of fall, gap.
+//! `striker NAME { … }`: mass, gap, and its velocity, which a height of fall or the swing of a pendulum gives as well.
 
 use super::checker::Checker;
 use super::faults::names as fault;
@@ -6,34 +6,60 @@ use crate::plan::Striker;
 use crate::source::Span;
 
 /// Standard gravity, m/s².
-const STANDARD_GRAVITY: f64 = 9.806_65;
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// The fields each of which gives the velocity; an angle needs its arm.
+const FORMS: [&str; 3] = ["velocity", "drop_height", "angle"];
 
 /// A striker whose entries are all right; None where a fault was reported.
 pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     let declared = &checker.scope.blocks[block];
+    let (kind, name, head) = (declared.kind, declared.name, declared.block.head);
     let mass = checker.constant(block, "mass");
-    match (checker.given(block, "velocity"), checker.given(block, "drop_height")) {
-        (Some((_, velocity)), Some((_, height))) => {
-            checker.faults.push(fault::velocity_twice(height.key.span, velocity.key.span));
-            checker.quantity(block, "drop_height");
+    let mut forms: Vec<(&str, Span)> = FORMS
+        .into_iter()
+        .filter_map(|form| checker.given(block, form).map(|(entry, written)| (entry, form, written.key.span)))
+        .map(|(_, form, span)| (form, span))
+        .collect();
+    forms.sort_by_key(|(_, span)| span.start);
+    match forms.as_slice() {
+        [] if checker.given(block, "arm").is_some() || checker.misspelt(block, &FORMS) => {}
+        [] => checker.faults.push(fault::missing_field(kind, name, head, "velocity", "velocity = 1 m/s")),
+        [_] => {}
+        [(first, first_span), rest @ ..] => {
+            for (again, span) in rest {
+                checker.faults.push(fault::velocity_twice(again, *span, first, *first_span));
+            }
         }
-        (None, None) if checker.misspelt(block, &["velocity", "drop_height"]) => {}
-        (None, None) => {
-            let head = declared.block.head;
-            checker.faults.push(fault::missing_field(declared.kind, declared.name, head, "velocity", "velocity = 1 m/s"));
-        }
-        _ => {}
     }
-    let (velocity, gap) = (velocity(checker, block), checker.constant(block, "gap"));
-    Some(Striker { name: declared.name?.node.clone(), mass: mass?, velocity: velocity?, gap: gap? })
+    for (form, other, example) in [("angle", "arm", "arm = 1 m"), ("arm", "angle", "angle = 60 deg")] {
+        let pairless = checker.given(block, form).is_some() && checker.given(block, other).is_none();
+        let lacking = form == "angle" || forms.is_empty();
+        if pairless && lacking && !checker.misspelt(block, &[other]) {
+            checker.faults.push(fault::missing_field(kind, name, head, other, example));
+        }
+    }
+    // Every entry is read, so that each has its fault said.
+    for field in ["drop_height", "arm", "angle"] {
+        checker.quantity(block, field);
+    }
+    let (velocity, gap, gravity) = (velocity(checker, block), checker.constant(block, "gap"), checker.constant(block, "gravity"));
+    Some(Striker { name: name?.node.clone(), mass: mass?, velocity: velocity?, gap: gap?, gravity: gravity? })
 }
 
-/// `velocity`, else √(2·gn·h).
+/// `velocity`, else √(2·gn·h), where a pendulum falls by h = L(1 − cos θ).
 fn velocity(checker: &mut Checker, block: usize) -> Option<f64> {
     if checker.given(block, "velocity").is_some() {
         return checker.constant(block, "velocity");
     }
-    checker.constant(block, "drop_height").map(|height| (2.0 * STANDARD_GRAVITY * height).sqrt())
+    let height = if checker.given(block, "drop_height").is_some() {
+        checker.constant(block, "drop_height")?
+    } else {
+        let (arm, angle) = (checker.constant(block, "arm"), checker.constant(block, "angle"));
+        // 1 − cos θ = 2 sin²(θ/2), which keeps the digits of a small angle.
+        arm? * 2.0 * (0.5 * angle?).sin().powi(2)
+    };
+    Some((2.0 * STANDARD_GRAVITY * height).sqrt())
 }
 
 /// The value of `pendulum.energy` and its like; None where the striker has a fault that is reported in its place.

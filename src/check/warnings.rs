@@ -1,9 +1,9 @@
 //! What runs but is unwise. In: what was checked. Out: warnings, with the numbers.
 
 use super::checker::Checker;
-use super::faults::whole as fault;
+use super::faults::{cyclic, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker, Test};
+use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker};
 use crate::source::{FileId, Span};
 
 /// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
@@ -31,6 +31,7 @@ pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Opt
 /// Warnings of the whole plan; asked for only where no error stands.
 pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement], plan: Span) {
     peak_forces(checker, procedures, requirements);
+    blows_on_blows(checker, procedures);
     match procedures.last() {
         None => checker.faults.push(fault::nothing_runs(plan)),
         Some((block, _)) if requirements.is_empty() => {
@@ -46,18 +47,32 @@ pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     }
 }
 
+/// An impact straight after another starts from the peak of that one, which no specimen stays at.
+fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    let mut before: Option<usize> = None;
+    for (block, procedure) in procedures {
+        match procedure.as_ref().map(|procedure| &procedure.kind) {
+            Some(ProcedureKind::Impact(_)) => {
+                if let Some(first) = before {
+                    let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
+                    let name = first.name.map_or("", |name| name.node.as_str());
+                    let fault = cyclic::blow_on_blow(this.block.head, name, first.block.head);
+                    checker.faults.push(fault);
+                }
+                before = Some(*block);
+            }
+            // A look moves nothing.
+            Some(ProcedureKind::Inspect { .. }) => {}
+            _ => before = None,
+        }
+    }
+}
+
 fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
     for (index, requirement) in requirements.iter().enumerate() {
         let mut references = Vec::new();
         for condition in &requirement.conditions {
-            condition.value.collect_references(&mut references);
-            match &condition.test {
-                Test::Compare { limit, .. } => limit.collect_references(&mut references),
-                Test::Within { target, tolerance, .. } => {
-                    target.collect_references(&mut references);
-                    tolerance.collect_references(&mut references);
-                }
-            }
+            condition.collect_references(&mut references);
         }
         for reference in references.iter().filter(|reference| reference.name == "max_contact_force") {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)

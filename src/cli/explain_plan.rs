@@ -323,7 +323,7 @@ mod tests {
             particulars: Vec::new(),
             parameters: Vec::new(),
             specimens: vec![specimen],
-            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
             grounds: Vec::new(),
             rig: RigPlan {
                 name: "noisy".to_owned(),
@@ -335,6 +335,7 @@ mod tests {
             limits: Limits { displacement: Interval { low: -0.1, high: farthest }, ..Limits::NONE },
             procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],
             requirements: Vec::new(),
+            decision_rule: crate::plan::DecisionRule::Simple,
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
             files: Vec::new(),
             settings: Vec::new(),

@@ -88,7 +88,7 @@ pub fn hex(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Calibration, Limits, Link, PlanFile, Report, RigPlan, Settle, VirtualLink};
+    use crate::plan::{Calibration, DecisionRule, Limits, Link, PlanFile, Report, RigPlan, Settle, VirtualLink};
 
     fn plan(files: &[(&str, &str)], settings: &[(&str, &str)], seed: u64) -> Plan {
         let own = |(name, text): &(&str, &str)| (String::from(*name), String::from(*text));
@@ -105,6 +105,7 @@ mod tests {
             limits: Limits::NONE,
             procedures: Vec::new(),
             requirements: Vec::new(),
+            decision_rule: DecisionRule::Simple,
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
             files: files.iter().map(own).map(|(name, text)| PlanFile { name, text }).collect(),
             settings: settings.iter().map(own).collect(),

@@ -109,6 +109,7 @@ codes! {
     E643 Unstable Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
+    E648 ConditionWithoutBlow Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -122,6 +123,8 @@ codes! {
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
     W715 TableTooShort Warning;
+    W720 BlowOnBlow Warning;
+    W721 LevelsDoNotRise Warning;
 }
 
 impl std::fmt::Display for Code {

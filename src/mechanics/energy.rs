@@ -1,7 +1,7 @@
 //! The energy balance of an impact (physics: every dynamic run, every step).
 
 /// Energies at the end of a step, all in J. They add up:
-/// `striker + structure + restoring + damping + contact_loss + error = ½ Ms V0²`.
+/// `striker + structure + restoring + damping + contact_loss + error = ½ Ms V0² + weight`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Energies {
     /// ½ Ms Ẋs²
@@ -16,6 +16,8 @@ pub struct Energies {
     pub contact_loss: f64,
     /// `F_lim` Δδp, cumulated: an indicator, not a part of the sum.
     pub indentation: f64,
+    /// Work of the striker's weight, Ms g (Xs − Xs₀): put in, where it falls.
+    pub weight: f64,
     /// What remains of the input: the integration error.
     pub error: f64,
 }

@@ -25,6 +25,8 @@ pub struct ImpactInput {
     pub striker_velocity: f64,
     /// m, at least 0
     pub gap: f64,
+    /// Acceleration of the striker along its way, m/s²: gn of a weight that falls.
+    pub gravity: f64,
     /// Δt, s
     pub time_step: f64,
     /// c of `K_t within [0, c·K0]`
@@ -45,7 +47,13 @@ pub struct ImpactInput {
 impl ImpactInput {
     #[must_use]
     pub const fn bodies(&self) -> Bodies {
-        Bodies { mass: self.mass, damping: self.damping, striker_mass: self.striker_mass, time_step: self.time_step }
+        Bodies {
+            mass: self.mass,
+            damping: self.damping,
+            striker_mass: self.striker_mass,
+            gravity: self.gravity,
+            time_step: self.time_step,
+        }
     }
 
     /// ½ Ms V0², J.
@@ -177,9 +185,11 @@ impl<S: Scheme> Step<S> {
             damping: before.energies.damping + advance.damping_work,
             contact_loss: before.energies.contact_loss + advance.contact_loss,
             indentation: before.energies.indentation + advance.indentation_work,
+            weight: before.energies.weight
+                + self.bodies.striker_mass * self.bodies.gravity * (advance.striker_displacement - before.striker_displacement),
             error: 0.0,
         };
-        energies.error = self.input_energy
+        energies.error = self.input_energy + energies.weight
             - (energies.striker + energies.structure + energies.restoring + energies.damping + energies.contact_loss);
         let step = before.step + 1;
         #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
@@ -211,6 +221,8 @@ pub struct ImpactSolver {
     step: Step<AnyScheme>,
     predicted: Option<<AnyScheme as Scheme>::Prediction>,
     striker_stopped: bool,
+    /// K0, N/m
+    stiffness: f64,
 }
 
 impl ImpactSolver {
@@ -218,7 +230,7 @@ impl ImpactSolver {
     #[must_use]
     pub fn new(input: &ImpactInput, initial_displacement: f64, initial_restoring_force: f64) -> Self {
         let step = Step::new(input, AnyScheme::new(input), initial_displacement, initial_restoring_force);
-        Self { step, predicted: None, striker_stopped: false }
+        Self { step, predicted: None, striker_stopped: false, stiffness: input.stiffness }
     }
 
     /// Displacement to command in this step, m. Asked again before `complete`, it is the same.
@@ -254,6 +266,22 @@ impl ImpactSolver {
     #[must_use]
     pub const fn striker_stopped(&self) -> bool {
         self.striker_stopped
+    }
+
+    /// Whether striker and structure are apart for good, as far as the structure is elastic from here on: the striker
+    /// moves back, and either faster than the structure ever can, `√(Ẋ² + R²/(M K0))`, or from behind where it can get
+    /// to. A striker that falls always comes back.
+    #[must_use]
+    pub fn rebounded(&self) -> bool {
+        let state = &self.step.state;
+        let Bodies { mass, gravity, .. } = self.step.bodies;
+        let (gap, back) = (state.striker_displacement - state.displacement, -state.striker_velocity);
+        if state.step == 0 || gravity > 0.0 || state.state != StepState::Free || gap >= state.indentation || back <= 0.0 {
+            return false;
+        }
+        let fastest = state.velocity.hypot(state.restoring_force / (mass * self.stiffness).sqrt());
+        let farthest = state.displacement - state.restoring_force / self.stiffness - fastest * (mass / self.stiffness).sqrt();
+        back >= fastest || state.striker_displacement < farthest + state.indentation
     }
 
     /// Whether the last step ended with Ẋs ≤ 0 and Ẋ ≤ 0.

@@ -80,7 +80,8 @@ impl Split {
     #[inline]
     #[must_use]
     pub fn complete(&self, bodies: &Bodies, start: &Start, imposed: f64, read: f64) -> Advance {
-        let Bodies { mass, damping, striker_mass, time_step } = *bodies;
+        let Bodies { mass, damping, striker_mass, gravity, time_step } = *bodies;
+        let falling = start.striker_velocity + gravity * time_step;
         let Coefficients { alpha, beta, gamma } = self.coefficients;
         let from = start.structure;
         let (smooth, contact) = parts(bodies, start);
@@ -97,7 +98,7 @@ impl Split {
         let mut force = 0.0;
         // No tolerance: δp was stored as this very difference.
         if start.striker_displacement - from.displacement >= start.indentation {
-            let closing = start.striker_velocity - (predicted + gamma * time_step * unpushed);
+            let closing = falling - (predicted + gamma * time_step * unpushed);
             let needed = closing / (time_step / striker_mass + velocity_by_force);
             if needed > self.force_limit {
                 (state, force) = (StepState::Limit, self.force_limit);
@@ -111,9 +112,9 @@ impl Split {
         let corrected = time_step * time_step * (beta * smooth + self.contact_beta * contact);
         let displacement = imposed + corrected;
         let striker_velocity = match state {
-            StepState::Free => start.striker_velocity,
+            StepState::Free => falling,
             StepState::Contact => velocity,
-            StepState::Limit => start.striker_velocity - force * time_step / striker_mass,
+            StepState::Limit => falling - force * time_step / striker_mass,
         };
         let striker_moved = 0.5 * time_step * (start.striker_velocity + striker_velocity);
         let striker_displacement = start.striker_displacement + striker_moved;

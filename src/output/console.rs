@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use super::standing::Standing;
 use super::{Run, deviations, number, standing, summary};
+use crate::plan::DecisionRule;
 use crate::run::rehearsal;
-use crate::verdict::Verdict;
+use crate::verdict::{ConditionOutcome, Verdict};
 
 /// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
 #[must_use]
@@ -32,8 +33,10 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
                 return [requirement.verdict.name().to_owned(), name, String::new(), String::new(), String::new()];
             };
             let value = number::value(deciding).unwrap_or_else(|| "no value".to_owned());
-            let margin = number::margin(deciding)
-                .map_or_else(|| deciding.reason.clone().unwrap_or_default(), |margin| format!("margin {margin}"));
+            let margin = number::margin(deciding).map_or_else(
+                || deciding.reason.clone().unwrap_or_default(),
+                |margin| format!("margin {margin}{}", band(deciding, run.assessment.rule)),
+            );
             [requirement.verdict.name().to_owned(), name, value, number::bound(deciding), printable(&margin)]
         })
         .collect();
@@ -45,11 +48,33 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         let line = format!("  {verdict}  {}  {}", cells.join("  "), row[4]);
         let _ = writeln!(text, "{}", line.trim_end());
     }
+    text.push_str(rule(run));
     for deviation in deviations::of(run) {
         let _ = writeln!(text, "  note: {}", printable(&deviation));
     }
     let _ = writeln!(text, "  run {}", run.provenance.run_id);
     text
+}
+
+/// What must be left between value and limit, where the rule wants that.
+fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
+    match (rule, number::guard_band(condition)) {
+        (DecisionRule::Simple, _) => String::new(),
+        (DecisionRule::Guarded, Some(band)) => format!(", guard band {band}"),
+        (DecisionRule::Guarded, None) => ", no uncertainty known".to_owned(),
+    }
+}
+
+/// The rule of decision, where an uncertainty is printed that it regards or not.
+fn rule(run: &Run<'_>) -> &'static str {
+    let uncertain = run.assessment.requirements.iter().flat_map(|requirement| &requirement.conditions);
+    match run.assessment.rule {
+        DecisionRule::Guarded => "  decision rule: guarded; ± is U = 2u, and a limit nearer than that decides nothing\n",
+        DecisionRule::Simple if uncertain.into_iter().any(|condition| condition.uncertainty.is_some()) => {
+            "  decision rule: simple; ± is U = 2u, the value alone decides\n"
+        }
+        DecisionRule::Simple => "",
+    }
 }
 
 /// What the report may be taken for, where it is no certificate.

@@ -128,6 +128,15 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     Ok(files)
 }
 
+/// The figures of a run in vectors, for a page: `figures/NAME_FIGURE.svg`.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let drawn = figures::all(run)?.into_iter();
+    Ok(drawn.map(|figure| OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() }).collect())
+}
+
 /// The table of a client that drove the rig.
 ///
 /// # Errors

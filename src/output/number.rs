@@ -4,7 +4,7 @@
 use crate::plan::Comparison;
 use crate::quantity::Dimension;
 use crate::quantity::display::{self, digits, minus, significant, trimmed, unit};
-use crate::verdict::{Bound, ConditionOutcome};
+use crate::verdict::{Bound, COVERAGE, ConditionOutcome};
 
 /// A value in its readable unit: `7.922 mm`, `−2.000 kN`, `20` for a count.
 pub(super) fn text(value: f64, dimension: Dimension) -> String {
@@ -42,9 +42,6 @@ fn join(number: &str, unit: &str) -> String {
 fn joined(number: &str, unit: &str) -> String {
     if unit.is_empty() { number.to_owned() } else { format!("{number}\u{a0}{unit}") }
 }
-
-/// The coverage factor of an expanded uncertainty U = k·u: about 95 % of a normal distribution.
-pub(super) const COVERAGE: f64 = 2.0;
 
 /// A number and its uncertainties in one unit, all to the standard uncertainty's second digit.
 pub(super) struct Parts {
@@ -136,13 +133,21 @@ pub(super) fn bound(condition: &ConditionOutcome) -> String {
 
 /// The margin of a condition in a unit of its own; None where there is no margin.
 pub(super) fn margin(condition: &ConditionOutcome) -> Option<String> {
+    condition.bound?;
+    condition.margin.map(|margin| distance(margin, condition))
+}
+
+/// The guard band of a condition in a unit of its own; None where there is none.
+pub(super) fn guard_band(condition: &ConditionOutcome) -> Option<String> {
+    condition.guard_band.map(|band| distance(band, condition))
+}
+
+fn distance(distance: f64, condition: &ConditionOutcome) -> String {
     /// The distance to a limit is itself a difference: more digits would be the value's noise.
     const DIGITS: usize = 3;
-    condition.bound?;
-    let margin = condition.margin?;
     let (scale, percent) = if in_percent(condition) { (100.0, "\u{a0}%") } else { (1.0, "") };
-    let (unit, factor) = unit(margin, condition.dimension);
-    Some(join(&minus(&rounded(scale * margin / factor, DIGITS)), &unit) + percent)
+    let (unit, factor) = unit(distance, condition.dimension);
+    join(&minus(&rounded(scale * distance / factor, DIGITS)), &unit) + percent
 }
 
 /// Significant digits, a count as a whole number.
@@ -188,6 +193,7 @@ mod tests {
             uncertainty: None,
             bound: Some(bound),
             margin: Some(bound.margin(value)),
+            guard_band: None,
             reason: None,
         };
         let below = |limit| Bound::Compare { comparison: Comparison::Less, limit };

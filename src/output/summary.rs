@@ -33,6 +33,9 @@ pub struct Summary {
     /// The worst of all requirements, or how the run ended if that is worse.
     #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,
+    /// By which every condition was decided.
+    #[schemars(extend("enum" = ["simple", "guarded"]))]
+    pub decision_rule: &'static str,
     /// What the report may be taken for: its gravest ground against a certificate.
     #[schemars(extend("enum" = ["certifiable", "rehearsal", "incomplete", "not certifiable"]))]
     pub standing: &'static str,
@@ -162,6 +165,8 @@ pub struct RequirementSummary {
     pub unit: Option<String>,
     /// Standard uncertainty of the value.
     pub u: Option<f64>,
+    /// w = 2u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
+    pub guard_band: Option<f64>,
     /// As the plan wrote it.
     pub condition: Option<String>,
     /// Every condition of the requirement.
@@ -181,6 +186,8 @@ pub struct ConditionSummary {
     pub margin: Option<f64>,
     pub unit: String,
     pub u: Option<f64>,
+    /// w = 2u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
+    pub guard_band: Option<f64>,
     /// Why it is inconclusive.
     pub reason: Option<String>,
 }

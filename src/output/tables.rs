@@ -1,6 +1,7 @@
 //! Tables: one row a step, SI, the column names of the language. In: the record. Out: CSV with shortest round-trip
 //! numbers and Parquet (zstd), both from one Polars frame. Knows nothing of units for people.
 
+mod blows;
 mod cyclic;
 
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
@@ -17,6 +18,13 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         let failed = |error: PolarsError| OutputError::Table { procedure: procedure.name.clone(), reason: error.to_string() };
         let Some(frame) = frame(procedure).map_err(failed)? else { continue };
         written(run, &procedure.name, frame, &mut files).map_err(failed)?;
+        if let History::Escalate(history) = &procedure.history {
+            for (number, blow) in (1..).zip(&history.blows) {
+                let steps = &blow.history.steps;
+                let frame = DataFrame::new(steps.len(), impact(steps)).map_err(failed)?;
+                written(run, &format!("{}_{number}", procedure.name), frame, &mut files).map_err(failed)?;
+            }
+        }
         if let History::Cycle(history) = &procedure.history {
             let cycles = cyclic::cycles(history).map_err(failed)?;
             written(run, &format!("{}_cycles", procedure.name), cycles, &mut files).map_err(failed)?;
@@ -78,6 +86,7 @@ fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> 
         History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
         History::Impact(history) => (history.steps.len(), impact(&history.steps)),
         History::Shake(history) => shake_table::columns(&history.steps),
+        History::Escalate(history) => (history.blows.len(), blows::rows(history)),
         History::Cycle(history) => (history.steps.len(), cyclic::steps(&history.steps)),
         History::Inspect => return Ok(None),
     };
@@ -108,6 +117,7 @@ fn impact(steps: &[ImpactStep]) -> Vec<Column> {
         of("damping_energy_j", |step| step.energies.damping),
         of("contact_loss_j", |step| step.energies.contact_loss),
         of("indentation_energy_j", |step| step.energies.indentation),
+        of("weight_work_j", |step| step.energies.weight),
         of("energy_error_j", |step| step.energies.error),
         of("tracking_energy_error_j", |step| step.tracking.energy_error),
         of("tracking_indicator_m2", |step| step.tracking.indicator),

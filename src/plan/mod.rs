@@ -3,16 +3,21 @@
 
 mod behaviour;
 mod cycle;
+mod escalate;
+mod figure;
 mod frame;
 mod integrator;
 mod portal;
 mod rig;
+mod unload;
 
-use crate::formula::{Formula, ProcedureId};
+use crate::formula::{Formula, ResultReference};
 use crate::quantity::Dimension;
 
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use escalate::{Between, Escalate, MOST_BLOWS};
+pub use figure::{Figure, FigureKind};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
 pub use integrator::Integrator;
 pub use portal::{Loads, Mechanism, Portal};
@@ -20,6 +25,7 @@ pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
     Settle, VirtualLink,
 };
+pub use unload::Unload;
 
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -36,6 +42,7 @@ pub struct Plan {
     pub limits: Limits,
     pub procedures: Vec<Procedure>,
     pub requirements: Vec<Requirement>,
+    pub decision_rule: DecisionRule,
     pub report: Report,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
@@ -107,6 +114,8 @@ pub struct Striker {
     pub velocity: f64,
     /// Distance to the structure at the start, m, at least 0.
     pub gap: f64,
+    /// Acceleration along its way, m/s²: gn of a weight that falls.
+    pub gravity: f64,
 }
 
 /// Closed intervals (SI); an absent bound is infinite, so that `lo <= x && x <= hi` is the whole test.
@@ -183,6 +192,8 @@ pub enum ProcedureKind {
     Impact(Impact),
     Shake(Shake),
     Cycle(Cycle),
+    Unload(Unload),
+    Escalate(Escalate),
     Move(Move),
     /// A person looks at the specimen.
     Inspect {
@@ -200,6 +211,8 @@ impl ProcedureKind {
             Self::Impact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
+            Self::Unload(_) => "unload",
+            Self::Escalate(_) => "escalate",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
         }
@@ -214,6 +227,8 @@ impl ProcedureKind {
             Self::Impact(impact) => Some(impact.specimen),
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
+            Self::Unload(unload) => Some(unload.specimen),
+            Self::Escalate(escalate) => Some(escalate.blow.specimen),
             Self::Move(_) | Self::Inspect { .. } => None,
         }
     }
@@ -306,6 +321,8 @@ pub enum Contact {
 pub enum Until {
     /// The first step end with Ẋs ≤ 0 and Ẋ ≤ 0.
     StrikerStop,
+    /// Striker and structure are apart for good.
+    Rebound,
     /// The whole `duration`.
     Duration,
 }
@@ -345,6 +362,41 @@ pub struct Condition {
     pub dimension: Dimension,
 }
 
+impl Condition {
+    /// Adds every result that it reads, each once.
+    pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
+        self.value.collect_references(into);
+        match &self.test {
+            Test::Compare { limit, .. } => limit.collect_references(into),
+            Test::Within { target, tolerance, .. } => {
+                target.collect_references(into);
+                tolerance.collect_references(into);
+            }
+        }
+    }
+}
+
+/// How a value is held against a limit (ILAC-G8:09/2019).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DecisionRule {
+    /// The value decides, whatever its uncertainty (simple acceptance).
+    #[default]
+    Simple,
+    /// Between the value and the limit a guard band w = U = 2u must be left: within it nothing is decided.
+    Guarded,
+}
+
+impl DecisionRule {
+    /// The word of the language.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Simple => "simple",
+            Self::Guarded => "guarded",
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub enum Test {
     Compare {
@@ -375,111 +427,6 @@ pub struct Report {
     pub figures: Vec<Figure>,
     pub formats: Vec<Format>,
     pub sign: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Figure {
-    pub kind: FigureKind,
-    pub procedure: ProcedureId,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum FigureKind {
-    /// Displacement of structure and striker against virtual time (paper Fig. 9–11, 16).
-    Displacement,
-    /// Striker's velocity (paper Fig. 16).
-    StrikerVelocity,
-    /// Structure's and striker's velocity on one axis.
-    Velocity,
-    ContactForce,
-    ForceDisplacement,
-    Energy,
-    /// Command against measurement.
-    Tracking,
-    DampingFit,
-    /// Difference of displacement between floors against virtual time.
-    Drift,
-    /// Storey shear against drift.
-    Hysteresis,
-    BaseShear,
-    /// Shapes of the natural modes.
-    Modes,
-    /// Acceleration of the ground as it was applied.
-    Ground,
-    /// Largest forces against the displacements of them, amplitude by amplitude.
-    Backbone,
-    /// Energy of each cycle.
-    CycleEnergy,
-    /// Secant stiffness of each cycle.
-    StiffnessDegradation,
-}
-
-impl FigureKind {
-    /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 16] = [
-        Self::Displacement,
-        Self::StrikerVelocity,
-        Self::Velocity,
-        Self::ContactForce,
-        Self::ForceDisplacement,
-        Self::Energy,
-        Self::Tracking,
-        Self::DampingFit,
-        Self::Drift,
-        Self::Hysteresis,
-        Self::BaseShear,
-        Self::Modes,
-        Self::Ground,
-        Self::Backbone,
-        Self::CycleEnergy,
-        Self::StiffnessDegradation,
-    ];
-
-    /// Name in `figures = [...]` and in file names.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Displacement => "displacement",
-            Self::StrikerVelocity => "striker_velocity",
-            Self::Velocity => "velocity",
-            Self::ContactForce => "contact_force",
-            Self::ForceDisplacement => "force_displacement",
-            Self::Energy => "energy",
-            Self::Tracking => "tracking",
-            Self::DampingFit => "damping_fit",
-            Self::Drift => "drift",
-            Self::Hysteresis => "hysteresis",
-            Self::BaseShear => "base_shear",
-            Self::Modes => "modes",
-            Self::Ground => "ground",
-            Self::Backbone => "backbone",
-            Self::CycleEnergy => "cycle_energy",
-            Self::StiffnessDegradation => "stiffness_degradation",
-        }
-    }
-
-    /// The figures a procedure can draw, in the order of a report.
-    #[must_use]
-    pub const fn of(kind: &ProcedureKind) -> &'static [FigureKind] {
-        match kind {
-            ProcedureKind::StiffnessRamp(_) => &[Self::ForceDisplacement],
-            ProcedureKind::DampingSweep(_) => &[Self::DampingFit],
-            ProcedureKind::Impact(_) => &[
-                Self::Displacement,
-                Self::Velocity,
-                Self::StrikerVelocity,
-                Self::ContactForce,
-                Self::ForceDisplacement,
-                Self::Energy,
-                Self::Tracking,
-            ],
-            ProcedureKind::Shake(_) => {
-                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
-            }
-            ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
-            ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -47,6 +47,7 @@ pub const UNITS: &[UnitName] = &[
     unit("psi", POUND_FORCE / (0.0254 * 0.0254), Dimension::PRESSURE, false, "pound-force per square inch"),
     unit("ksi", 1e3 * POUND_FORCE / (0.0254 * 0.0254), Dimension::PRESSURE, false, "thousand psi"),
     unit("rad", 1.0, Dimension::NUMBER, false, "radian, a plain number"),
+    unit("deg", std::f64::consts::PI / 180.0, Dimension::NUMBER, false, "degree of arc, a plain number"),
     unit("%", 0.01, Dimension::NUMBER, false, "hundredth"),
     unit("1", 1.0, Dimension::NUMBER, false, "one, as in `1/s`"),
 ];

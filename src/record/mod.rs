@@ -2,6 +2,7 @@
 //! certificates are functions of it.
 
 mod cycle;
+mod escalate;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,7 @@ use crate::mechanics::monitor::Tracking;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
+pub use escalate::{Blow, EscalateHistory};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -98,6 +100,7 @@ pub enum History {
     Impact(ImpactHistory),
     Shake(ShakeHistory),
     Cycle(CycleHistory),
+    Escalate(EscalateHistory),
     Move(Vec<RampStep>),
     Inspect,
 }

@@ -29,7 +29,20 @@ pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, sess
         let history = ImpactHistory { steps: Vec::new(), time_step: 0.0, critical_time_step: 0.0 };
         return Performed { results: results(None, None, &history), history: History::Impact(history), stop };
     };
-    let mut strike = Strike::new(&setting);
+    let Blown { history, results, stop } = blow(plan, &setting, 0, session);
+    Performed { results, history: History::Impact(history), stop }
+}
+
+/// One blow, as far as it went.
+pub(super) struct Blown {
+    pub history: ImpactHistory,
+    pub results: Vec<NamedResult>,
+    pub stop: Option<Stop>,
+}
+
+/// The blow of a striker from where the rig is now; `before` steps of the procedure are done already.
+pub(super) fn blow(plan: &Impact, setting: &Setting, before: u64, session: &mut Session<'_>) -> Blown {
+    let mut strike = Strike::new(setting, before);
     let stop = strike.run(plan, session).err();
     let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
     let worst = strike.watch.worst;
@@ -38,7 +51,7 @@ pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, sess
     }
     let history =
         ImpactHistory { steps: strike.steps, time_step: setting.input.time_step, critical_time_step: setting.critical_time_step };
-    Performed { results: results(summary.as_ref(), worst, &history), history: History::Impact(history), stop }
+    Blown { results: results(summary.as_ref(), worst, &history), history, stop }
 }
 
 /// Everything known before the first step.
@@ -53,7 +66,12 @@ pub(super) struct Setting {
 }
 
 impl Setting {
-    fn evaluate(plan: &Impact, striker: &Striker, inputs: &mut Inputs<'_>, session: &Session<'_>) -> Result<Self, Stop> {
+    pub(super) fn evaluate(
+        plan: &Impact,
+        striker: &Striker,
+        inputs: &mut Inputs<'_>,
+        session: &Session<'_>,
+    ) -> Result<Self, Stop> {
         let mass = inputs.positive("mass", &plan.mass, Dimension::MASS)?;
         let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
         let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));
@@ -82,6 +100,7 @@ impl Setting {
             striker_mass: striker.mass,
             striker_velocity: striker.velocity,
             gap: striker.gap,
+            gravity: striker.gravity,
             time_step,
             max_tangent_ratio,
             law,

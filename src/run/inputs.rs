@@ -16,6 +16,11 @@ impl<'record> Inputs<'record> {
         Self { results, recorded: Vec::new() }
     }
 
+    /// Where its formulas find results.
+    pub(super) fn results(&self) -> &'record dyn Results {
+        self.results
+    }
+
     pub(super) fn into_recorded(self) -> Vec<(&'static str, Estimate, Dimension)> {
         self.recorded
     }

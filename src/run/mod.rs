@@ -5,6 +5,9 @@ mod cycle;
 mod cycle_tests;
 mod damping_sweep;
 pub mod driven;
+mod escalate;
+#[cfg(test)]
+mod escalate_tests;
 mod gate;
 mod impact;
 #[cfg(test)]
@@ -18,6 +21,8 @@ mod results;
 #[cfg(test)]
 mod rig_fault_tests;
 mod samples;
+#[cfg(test)]
+mod sequence_tests;
 mod session;
 mod shake;
 mod shake_results;
@@ -30,6 +35,7 @@ pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod triggers;
+mod unload;
 mod watch;
 
 pub use damping_sweep::MOST_SAMPLES;
@@ -232,6 +238,8 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, inputs, session),
+        ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
+        ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),
     }

@@ -6,7 +6,7 @@ use super::stop::Stop;
 use super::{Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
-use crate::plan::{Plan, Procedure, ProcedureKind};
+use crate::plan::{Impact, Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
 
@@ -230,17 +230,22 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
             let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
             Some(once * u64::from(ramp.repeats))
         }
-        ProcedureKind::DampingSweep(_) => None,
-        ProcedureKind::Impact(impact) => {
-            let critical = critical_time_step(impact.mass.constant()?, impact.stiffness.constant()?);
-            let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-            let ratio = impact.duration.constant()? / time_step;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
-            Some(ratio.ceil() as u64)
+        ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) => None,
+        ProcedureKind::Impact(impact) => steps_of_blow(impact),
+        ProcedureKind::Escalate(escalate) => {
+            Some(steps_of_blow(&escalate.blow)?.saturating_mul(escalate.velocities.len() as u64))
         }
         ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
     }
+}
+
+fn steps_of_blow(impact: &Impact) -> Option<u64> {
+    let critical = critical_time_step(impact.mass.constant()?, impact.stiffness.constant()?);
+    let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+    let ratio = impact.duration.constant()? / time_step;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
+    Some(ratio.ceil() as u64)
 }

@@ -15,15 +15,18 @@ use crate::record::ImpactStep;
 
 pub(super) struct Strike {
     setting: Setting,
+    before: u64,
     pub steps: Vec<ImpactStep>,
     pub summary: SummaryBuilder,
     pub watch: Watch,
 }
 
 impl Strike {
-    pub(super) fn new(setting: &Setting) -> Self {
+    /// `before` steps of the procedure are done already.
+    pub(super) fn new(setting: &Setting, before: u64) -> Self {
         Self {
             setting: *setting,
+            before,
             steps: room_for(setting.steps),
             summary: SummaryBuilder::new(&setting.input),
             watch: Watch::default(),
@@ -48,7 +51,7 @@ impl Strike {
             let tracking = monitor.take(target, measured, restoring_force);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;
-            if plan.until == Until::StrikerStop && solver.finished() {
+            if over(plan.until, &solver) {
                 break;
             }
             if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
@@ -67,7 +70,7 @@ impl Strike {
         session.guard.check_energy_error(error)?;
         session.guard.check_tracking(share, tracking.nrms_error)?;
         session.step_done(&StepReport {
-            step: state.step,
+            step: self.before + state.step,
             time: state.time,
             command: state.target,
             displacement: state.measured_displacement,
@@ -102,6 +105,15 @@ impl Strike {
             energies: state.energies,
             tracking,
         });
+    }
+}
+
+/// Whether the run has come to its end before its duration.
+fn over(until: Until, solver: &ImpactSolver) -> bool {
+    match until {
+        Until::StrikerStop => solver.finished(),
+        Until::Rebound => solver.rebounded(),
+        Until::Duration => false,
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, Impact, Integrator, Limits, Link, Plan, Procedure, ProcedureKind, Report, RigPlan, Settle,
-    Specimen, StiffnessRamp, Striker, Until, VirtualLink,
+    Behaviour, Calibration, Contact, DecisionRule, Impact, Integrator, Limits, Link, Plan, Procedure, ProcedureKind, Report,
+    RigPlan, Settle, Specimen, StiffnessRamp, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -27,6 +27,7 @@ pub(crate) fn empty_plan() -> Plan {
         limits: Limits::NONE,
         procedures: Vec::new(),
         requirements: Vec::new(),
+        decision_rule: DecisionRule::Simple,
         report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
         files: Vec::new(),
         settings: Vec::new(),
@@ -45,7 +46,7 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
             damping: 0.0,
             coulomb: 0.0,
         }],
-        strikers: vec![Striker { name: "pendulum".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0 }],
+        strikers: vec![Striker { name: "pendulum".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
         procedures: procedures.into_iter().enumerate().map(named).collect(),
         ..empty_plan()
     }

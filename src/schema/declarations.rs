@@ -50,10 +50,20 @@ pub(super) const STRIKER: BlockKind = BlockKind {
     procedure: false,
     fields: &[
         Field::quantity("mass", Dimension::MASS, "mass of the striker").required("mass = 20 kg").above_zero(),
-        Field::quantity("velocity", Dimension::VELOCITY, "velocity at the start, towards the structure; or `drop_height`")
-            .above_zero()
-            .or_said("sqrt(2 gn * drop_height)"),
+        Field::quantity(
+            "velocity",
+            Dimension::VELOCITY,
+            "velocity at the start, towards the structure; or `drop_height`, or `arm` and `angle`",
+        )
+        .above_zero()
+        .or_said("sqrt(2 gn * drop_height), or sqrt(2 gn * arm * (1 - cos(angle)))"),
         Field::quantity("drop_height", Dimension::LENGTH, "height of fall that gives the velocity").above_zero(),
+        Field::quantity("arm", Dimension::LENGTH, "length of a pendulum, to its centre of mass").above_zero(),
+        Field::quantity("angle", Dimension::NUMBER, "from which a pendulum is let go, measured from where it hangs")
+            .above_zero_up_to(std::f64::consts::PI),
+        Field::quantity("gravity", Dimension::ACCELERATION, "acceleration along its way: `1 gn` for a weight that falls")
+            .or(0.0, "m/s^2")
+            .at_least_zero(),
         Field::quantity("gap", Dimension::LENGTH, "distance to the structure at the start").or(0.0, "mm").at_least_zero(),
     ],
     exports: &[

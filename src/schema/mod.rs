@@ -16,6 +16,7 @@ mod reference;
 mod report;
 mod results;
 mod rig;
+mod sequences;
 mod types;
 
 pub use functions::{FUNCTIONS, FunctionKind};
@@ -35,6 +36,8 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::IMPACT,
     &cyclic::CYCLE,
     &frames::SHAKE,
+    &sequences::ESCALATE,
+    &sequences::UNLOAD,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,

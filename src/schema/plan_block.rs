@@ -29,8 +29,11 @@ pub(super) const PLAN: BlockKind = BlockKind {
         Field::choice(
             "decision_rule",
             &[
-                Variant::word("simple", "the value is held against the limit as it is"),
-                Variant::later("guarded", "the limit is narrowed by the uncertainty"),
+                Variant::word("simple", "the value decides, whatever its uncertainty"),
+                Variant::word(
+                    "guarded",
+                    "a value passes or fails only if it is further from its limit than its expanded uncertainty U = 2u, and is inconclusive else",
+                ),
             ],
             "how a value is held against a limit",
         )

@@ -132,6 +132,7 @@ pub(super) const IMPACT: BlockKind = BlockKind {
             "until",
             &[
                 Variant::word("striker_stop", "neither striker nor structure moves on"),
+                Variant::word("rebound", "striker and structure are apart for good"),
                 Variant::word("duration", "the whole `duration`"),
             ],
             "when the run ends",

@@ -134,6 +134,7 @@ fn takes(field: &Field) -> String {
         FieldType::Choice(_) => "a choice".to_owned(),
         FieldType::Choices(_) => "a list of choices".to_owned(),
         FieldType::Reference(kind) => format!("the name of a `{}`", super::block(kind).words()),
+        FieldType::Condition => "a condition, as in `require`".to_owned(),
         FieldType::Figures => "a list of `figure(PROCEDURE)`".to_owned(),
     }
 }

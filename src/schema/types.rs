@@ -16,6 +16,8 @@ pub enum Kind {
     Ground,
     Shake,
     Cycle,
+    Unload,
+    Escalate,
     Move,
     Inspect,
     Report,
@@ -100,6 +102,8 @@ pub enum FieldType {
     Reference(Kind),
     /// A list of `figure(procedure)`.
     Figures,
+    /// Conditions on the results of a blow, as in `require`.
+    Condition,
 }
 
 impl FieldType {
@@ -270,6 +274,10 @@ impl Field {
         Self::new(name, FieldType::Figures, doc)
     }
 
+    pub(super) const fn condition(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Condition, doc)
+    }
+
     /// Must stand; the example is a line that is right.
     pub(super) const fn required(mut self, example: &'static str) -> Self {
         self.need = Need::Required;
@@ -364,10 +372,6 @@ impl Variant {
 
     pub(super) const fn with(name: &'static str, arguments: &'static [Field], doc: &'static str) -> Self {
         Self { name, arguments, doc, available: true }
-    }
-
-    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
-        Self { name, arguments: &[], doc, available: false }
     }
 
     #[must_use]

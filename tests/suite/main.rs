@@ -17,4 +17,5 @@ mod reference;
 mod rehearse;
 mod serve;
 mod shake;
+mod specimens_page;
 mod sweep;

@@ -1,8 +1,11 @@
 //! The numerics against closed forms, an independent event-driven solution and the reference results.
 
 mod contact;
+mod falling;
 mod frame;
 mod identification;
 mod methods;
+mod portal;
 mod reference;
+mod specimens;
 mod support;

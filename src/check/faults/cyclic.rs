@@ -23,3 +23,29 @@ pub fn no_use_with_rate(field: &str, span: Span, rate: Span) -> Diagnostic {
         .at(rate, "moved without stopping")
         .help(format!("leave out `{field}`, or `rate`"))
 }
+
+pub fn blow_on_blow(head: Span, before: &str, before_at: Span) -> Diagnostic {
+    Diagnostic::new(Code::BlowOnBlow, format!("this blow begins where `{before}` ended: under load, and at rest"))
+        .at(head, "begins there")
+        .at(before_at, "ends near its largest displacement")
+        .help("take the load off in between: `unload rest { }`")
+}
+
+pub fn levels_twice(again: &str, span: Span, first_field: &str, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("the blows are given twice: by `{first_field}` and by `{again}`"))
+        .at(span, "again here")
+        .at(first, "first here")
+        .help("remove one of them")
+}
+
+pub fn levels_do_not_rise(field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::LevelsDoNotRise, format!("the `{field}` do not rise from each blow to the next"))
+        .at(span, "some blow is no harder than the one before")
+        .help("put them in order, so that the first that fails is the least that does")
+}
+
+pub fn condition_without_blow(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::ConditionWithoutBlow, format!("`{text}` reads no result of a blow: it is the same after every one"))
+        .at(span, "holds always, or never")
+        .help("name a result of the blow, such as `max_displacement < 20 mm`")
+}

@@ -115,8 +115,9 @@ pub fn argument_twice(name: &str, span: Span, first: Span) -> Diagnostic {
         .help("remove one of them")
 }
 
-pub fn velocity_twice(span: Span, first: Span) -> Diagnostic {
-    Diagnostic::new(Code::Duplicate, "the velocity is given twice: by `velocity` and by `drop_height`")
+/// Both by the fields that give it, as they were written.
+pub fn velocity_twice(again: &str, span: Span, first_field: &str, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("the velocity is given twice: by `{first_field}` and by `{again}`"))
         .at(span, "again here")
         .at(first, "first here")
         .help("remove one of them")

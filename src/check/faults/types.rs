@@ -105,8 +105,8 @@ pub fn condition_for_number(span: Span, operator: &str) -> Diagnostic {
         .help("conditions stand only in `require`; two of them are joined with `and`")
 }
 
-pub fn condition_wanted(span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, "`require` wants a condition")
+pub fn condition_wanted(wanted_by: &str, span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{wanted_by}` wants a condition"))
         .at(span, "a value, not a condition")
         .help(format!("compare it, as in `{text} < …`"))
 }

@@ -29,7 +29,6 @@ fn each_fault_is_said_once_at_its_place() {
         ("move m { to = 1 mm\n to = 2 mm }", "E208 to"),
         ("striker b { velocity = 1 m/s }", "E209 striker b"),
         ("study q { runs = 3 }\nlet a = q.runs", "E211 study"),
-        ("report { formats = [html, pdf] }", "E211 pdf"),
         ("striker { mass = 1 kg\n velocity = 1 m/s }", "E212 striker"),
         ("impact h { striker = ball\n duration = 1 s\n contact = limit(1 N, 2 N) }", "E213 2 N"),
         ("striker b { mass = 3 mm\n velocity = 1 m/s }", "E301 3 mm"),

@@ -219,6 +219,7 @@ impl FrameImpactSolver {
             damping: frame.energies.damping,
             contact_loss: before.contact_loss + force * striker_moved - given * way,
             indentation: before.indentation + dented,
+            weight: 0.0,
             error: 0.0,
         };
         energies.error = self.input_energy + frame.energies.input

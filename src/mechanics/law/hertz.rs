@@ -81,7 +81,7 @@ impl HertzContact {
 
     /// The midpoint rule over parts of the step: it keeps the energy balance to rounding whatever the force is.
     fn follow(&self, bodies: &Bodies, start: &Start) -> Advance {
-        let Bodies { mass, damping, striker_mass, time_step } = *bodies;
+        let Bodies { mass, damping, striker_mass, gravity, time_step } = *bodies;
         let tangent = start.tangent_stiffness;
         let parts = (time_step / self.part).ceil().max(1.0);
         let duration = time_step / parts;
@@ -97,7 +97,8 @@ impl HertzContact {
             done += 1.0;
             let depth = xs - structure.displacement - indentation;
             let unpushed = (mass * structure.velocity - half * structure.restoring_force) / inertia;
-            let way = duration * (vs - unpushed);
+            let falling = vs + half * gravity;
+            let way = duration * (falling - unpushed);
             let mut force = self.solve(depth, way, yielding, duration);
             let over = force > self.force_limit;
             if over {
@@ -105,7 +106,7 @@ impl HertzContact {
                 limited = true;
             }
             let mean_velocity = unpushed + half * force / inertia;
-            let mean_striker = vs - half * force / striker_mass;
+            let mean_striker = falling - half * force / striker_mass;
             let (moved, striker_moved) = (duration * mean_velocity, duration * mean_striker);
             structure.displacement += moved;
             structure.velocity = 2.0 * mean_velocity - structure.velocity;
@@ -152,7 +153,8 @@ impl HertzContact {
             return None;
         }
         let to = from.free(bodies.mass, bodies.damping, start.tangent_stiffness, bodies.time_step);
-        let striker = start.striker_displacement + bodies.time_step * start.striker_velocity;
+        let striker_velocity = start.striker_velocity + bodies.gravity * bodies.time_step;
+        let striker = start.striker_displacement + 0.5 * bodies.time_step * (start.striker_velocity + striker_velocity);
         if gap(&to, striker) < 0.0 {
             return None;
         }
@@ -160,7 +162,7 @@ impl HertzContact {
         Some(Advance {
             structure: to,
             striker_displacement: striker,
-            striker_velocity: start.striker_velocity,
+            striker_velocity,
             state: StepState::Free,
             contact_force: 0.0,
             indentation: start.indentation,

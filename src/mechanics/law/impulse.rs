@@ -26,25 +26,28 @@ impl ImpulseContact {
 impl Law for ImpulseContact {
     #[inline]
     fn advance(&mut self, bodies: &Bodies, start: &Start) -> Advance {
-        let Bodies { mass, damping, striker_mass, time_step } = *bodies;
+        let Bodies { mass, damping, striker_mass, gravity, time_step } = *bodies;
         let from = start.structure;
         let tangent = start.tangent_stiffness;
         let balance = from.balance(mass, damping, tangent, time_step);
 
         let mut state = StepState::Free;
         let mut force = 0.0;
-        let mut striker_velocity = start.striker_velocity;
+        // Ms Ẍs = Ms g − F: what the striker would have at the end with no contact.
+        let falling = start.striker_velocity + gravity * time_step;
+        let mut striker_velocity = falling;
         let mut structure = None;
         // No tolerance: δp was stored as this very difference, so that a surface at rest on its dent touches it.
         if start.striker_displacement - from.displacement >= start.indentation {
-            let closing = from.velocity - start.striker_velocity;
+            // Eq. (4) with the weight: F₁ = Ms g + (Ms/Δt)(Ẋs − Ẋs₁) is (Ms/Δt)(Ẋs + gΔt − Ẋs₁).
+            let closing = from.velocity - falling;
             let load = balance.load - striker_mass / time_step * closing - 0.5 * striker_mass * from.acceleration;
             let joined = from.follow(load / (balance.inertia + 0.5 * striker_mass), tangent, time_step);
-            let needed = striker_mass / time_step * (start.striker_velocity - joined.velocity);
+            let needed = striker_mass / time_step * (falling - joined.velocity);
             if needed > self.force_limit {
                 state = StepState::Limit;
                 force = self.force_limit;
-                striker_velocity = start.striker_velocity - force * time_step / striker_mass;
+                striker_velocity = falling - force * time_step / striker_mass;
             } else if needed >= 0.0 {
                 state = StepState::Contact;
                 force = needed;

@@ -20,6 +20,8 @@ pub struct Bodies {
     pub damping: f64,
     /// Ms, kg
     pub striker_mass: f64,
+    /// g of Ms Ẍs = Ms g − F, m/s²; 0 of a striker that does not fall.
+    pub gravity: f64,
     /// Δt, s
     pub time_step: f64,
 }

@@ -85,21 +85,23 @@ fn locate(end: f64, mut reached: impl FnMut(f64) -> bool) -> f64 {
 impl RestitutionContact {
     /// Both bodies apart, to the next impact or to the end of the step. True if there was an impact.
     fn fly(&mut self, bodies: &Bodies, tangent: f64, course: &mut Course, may_bounce: bool) -> bool {
-        let Bodies { mass, damping, .. } = *bodies;
+        let Bodies { mass, damping, gravity, .. } = *bodies;
         let from = course.structure;
         let (overlap, striker_velocity, left) = (course.overlap, course.striker_velocity, course.left);
         let free = |duration: f64| from.free(mass, damping, tangent, duration);
         // Xs − X > 0 divided by the time flown, so that the touch at the start of a flight is no root of it.
-        let closed =
-            |duration: f64| overlap / duration + striker_velocity - 0.5 * (from.velocity + free(duration).velocity) > 0.0;
+        let closed = |duration: f64| {
+            let flown = striker_velocity + 0.5 * gravity * duration;
+            overlap / duration + flown - 0.5 * (from.velocity + free(duration).velocity) > 0.0
+        };
         let touching_and_closing = overlap == 0.0 && striker_velocity > from.velocity;
         if !touching_and_closing {
             if !closed(left) {
-                course.go(bodies, free(left), striker_velocity, left);
+                course.go(bodies, free(left), striker_velocity + gravity * left, left);
                 return false;
             }
             let instant = locate(left, closed);
-            course.go(bodies, free(instant), striker_velocity, instant);
+            course.go(bodies, free(instant), striker_velocity + gravity * instant, instant);
             course.overlap = 0.0;
         }
         // The chord met the striker but the structure speeds away from it: they graze, and nothing passes.
@@ -112,40 +114,47 @@ impl RestitutionContact {
 
     /// An impact: the bodies part with what restitution leaves them, or go on as one.
     fn collide(&mut self, bodies: &Bodies, course: &mut Course, may_bounce: bool) {
-        let Bodies { mass, striker_mass, time_step, .. } = *bodies;
+        let Bodies { mass, striker_mass, gravity, time_step, .. } = *bodies;
         let reduced_mass = mass * striker_mass / (mass + striker_mass);
         let closing = course.striker_velocity - course.structure.velocity;
         course.strike(bodies, reduced_mass * (1.0 + self.coefficient) * closing);
         course.loss += 0.5 * reduced_mass * (1.0 - self.coefficient * self.coefficient) * closing * closing;
 
-        // The striker flies straight: the structure's deceleration brings them together again.
+        // The striker falls with g alone: the structure's deceleration, and its own fall, bring them together again.
         let separation = self.coefficient * closing;
-        let deceleration = -course.structure.acceleration;
+        let deceleration = gravity - course.structure.acceleration;
         let dies_out = 2.0 * separation <= deceleration * SHORTEST_FLIGHT * time_step;
         if dies_out || !may_bounce {
             course.strike(bodies, -reduced_mass * separation);
             course.loss += 0.5 * reduced_mass * separation * separation;
             course.striker_velocity = course.structure.velocity;
             course.structure.acceleration *= mass / (mass + striker_mass);
+            course.structure.acceleration += striker_mass / (mass + striker_mass) * gravity;
             self.joined = true;
         }
     }
 
     /// Both bodies as one, to the end of the step or to the instant the contact would pull.
     fn ride(&mut self, bodies: &Bodies, tangent: f64, course: &mut Course) {
-        let Bodies { mass, damping, striker_mass, .. } = *bodies;
+        let Bodies { mass, damping, striker_mass, gravity, .. } = *bodies;
         let from = course.structure;
-        let together = |duration: f64| from.free(mass + striker_mass, damping, tangent, duration);
+        let both = mass + striker_mass;
+        let weight = striker_mass * gravity;
+        let together = |duration: f64| {
+            let balance = from.balance(both, damping, tangent, duration);
+            from.follow((balance.load + weight) / balance.inertia, tangent, duration)
+        };
         let mut duration = course.left;
         let mut to = together(duration);
-        // F = −Ms Ẍ: it pulls where the pair speeds up.
-        if to.acceleration > 0.0 {
-            duration = locate(duration, |duration| together(duration).acceleration > 0.0);
+        // F = Ms (g − Ẍ): it pulls where the pair speeds up by more than g.
+        if to.acceleration > gravity {
+            duration = locate(duration, |duration| together(duration).acceleration > gravity);
             to = together(duration);
-            to.acceleration *= (mass + striker_mass) / mass;
+            to.acceleration *= both / mass;
+            to.acceleration -= weight / mass;
             self.joined = false;
         }
-        course.impulse += striker_mass * (from.velocity - to.velocity);
+        course.impulse += weight * duration + striker_mass * (from.velocity - to.velocity);
         course.go(bodies, to, to.velocity, duration);
         course.overlap = 0.0;
     }

@@ -89,12 +89,16 @@ fn specimen_table(specimen: &Specimen) -> Block {
 }
 
 fn striker_table(striker: &Striker) -> Block {
-    described(vec![
+    let mut rows = vec![
         ("mass", number::stated(striker.mass, Dimension::MASS)),
         ("velocity at the start", number::stated(striker.velocity, Dimension::VELOCITY)),
         ("energy", number::stated(0.5 * striker.mass * striker.velocity * striker.velocity, Dimension::ENERGY)),
         ("gap at the start", number::stated(striker.gap, Dimension::LENGTH)),
-    ])
+    ];
+    if striker.gravity != 0.0 {
+        rows.push(("acceleration along its way", number::stated(striker.gravity, Dimension::ACCELERATION)));
+    }
+    described(rows)
 }
 
 pub(super) fn settling(settle: Settle) -> String {

@@ -3,6 +3,7 @@
 
 use super::super::document::{Block, Column, Style, Table, Text, Verdict as Stated};
 use super::super::{Run, amendment, deviations, number, summary};
+use crate::plan::DecisionRule;
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
@@ -77,21 +78,35 @@ pub(super) fn requirements(run: &Run<'_>, body: &mut Vec<Block>) {
         Column::numbers("Margin"),
         Column::short("Verdict"),
     ];
-    body.push(Block::Table(Table { columns, rows: run.assessment.requirements.iter().flat_map(rows).collect() }));
+    let requirements = run.assessment.requirements.iter();
+    body.push(Block::Table(Table {
+        columns,
+        rows: requirements.flat_map(|requirement| rows(requirement, run.assessment.rule)).collect(),
+    }));
     body.push(Block::note(rule(run)));
 }
 
-/// The decision rule in words, and what the columns are.
+/// The decision rule in words with the risk it takes, and what the columns are.
 fn rule(run: &Run<'_>) -> String {
-    let rule = run.plan.particulars.iter().find(|(name, _)| *name == "decision_rule").map_or("simple", |(_, text)| text);
+    let rule = match run.assessment.rule {
+        DecisionRule::Simple => {
+            "Decision rule: simple acceptance (ILAC-G8:09/2019). The value alone is held against the limit, whatever its \
+             uncertainty: for a value at its limit a wrong decision is as likely as a right one."
+        }
+        DecisionRule::Guarded => {
+            "Decision rule: guarded (after ILAC-G8:09/2019), guard band w = U = 2u of the distance between value and limit. A value \
+             passes if it keeps the limit by at least w, fails if it misses it by more than w, and is inconclusive between: a wrong \
+             pass or fail has a probability below 2.5\u{a0}%. A value of which no uncertainty is known is held against the limit as \
+             it is."
+        }
+    };
     format!(
-        "Decision rule: {rule}. With the rule “simple” the value alone is held against the limit, whatever its uncertainty. \
-         U = 2u is the expanded uncertainty (k = 2) where a measured result carries one. Margin is the distance inside the \
+        "{rule} U = 2u is the expanded uncertainty (k = 2) where a measured result carries one. Margin is the distance inside the \
          limit; a negative margin is the distance by which it is missed."
     )
 }
 
-fn rows(requirement: &RequirementOutcome) -> Vec<Vec<Text>> {
+fn rows(requirement: &RequirementOutcome, rule: DecisionRule) -> Vec<Vec<Text>> {
     if requirement.conditions.is_empty() {
         let none = || Text::from("—");
         return vec![vec![requirement.label.as_str().into(), none(), none(), none(), word(requirement.verdict)]];
@@ -102,11 +117,17 @@ fn rows(requirement: &RequirementOutcome) -> Vec<Vec<Text>> {
         if let Some(reason) = &condition.reason {
             name = name.line().soft(reason);
         }
+        let margin = number::margin(condition).map_or_else(|| "—".into(), Text::from);
+        let margin = match (rule, number::guard_band(condition)) {
+            (DecisionRule::Simple, _) => margin,
+            (DecisionRule::Guarded, Some(band)) => margin.line().soft(format!("w = {band}")),
+            (DecisionRule::Guarded, None) => margin.line().soft("u unknown"),
+        };
         vec![
             name,
             number::value(condition).map_or_else(|| Text::missing("no value"), Text::from),
             number::bound(condition).into(),
-            number::margin(condition).map_or_else(|| "—".into(), Text::from),
+            margin,
             word(condition.verdict),
         ]
     };

@@ -2,6 +2,7 @@
 //! built once for every form it is set in. Knows no HTML and no paper.
 
 mod appendix;
+mod blows;
 mod conditions;
 mod contact_log;
 mod cycles;

@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{contact_log, cycles, frames, words};
+use super::{blows, contact_log, cycles, frames, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -40,6 +40,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             }
             History::Cycle(history) => cycles::table(history, body),
             History::Shake(history) => frames::shaken(run, index, procedure, history, body),
+            History::Escalate(history) => blows::table(history, body),
             History::Move(_) | History::Inspect => {}
         }
     }
@@ -62,7 +63,7 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 
 /// Lists whose numbers stand in a table of their own are not printed twice.
 fn table(procedure: &ProcedureRecord) -> Block {
-    let tabled = matches!(procedure.history, History::Cycle(_) | History::Shake(_));
+    let tabled = matches!(procedure.history, History::Cycle(_) | History::Escalate(_) | History::Shake(_));
     let results = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
     let columns = vec![
         Column::words("Result", 1),
@@ -191,8 +192,8 @@ fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impa
 /// Where the striker's energy was at the end of the run.
 fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
     let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else { return };
-    let input = first.energies.striker;
     let e = last.energies;
+    let input = first.energies.striker + e.weight;
     let parts = [
         ("striker, kinetic", e.striker),
         ("structure, kinetic", e.structure),
@@ -205,7 +206,8 @@ fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
         let share = if input > 0.0 { percent(energy / input) } else { "—".to_owned() };
         vec![name.into(), number::text_beside(energy, input, Dimension::ENERGY).into(), share.into()]
     };
-    let input_row = vec!["input, ½MsV₀²".into(), number::text(input, Dimension::ENERGY).into(), "100\u{a0}%".into()];
+    let given = if e.weight == 0.0 { "input, ½MsV₀²" } else { "input, ½MsV₀² and the work of the weight" };
+    let input_row = vec![given.into(), number::text(input, Dimension::ENERGY).into(), "100\u{a0}%".into()];
     let columns = vec![
         Column::words("Energy balance at the end of the run", 1),
         Column::numbers("Energy"),

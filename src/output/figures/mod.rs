@@ -2,6 +2,7 @@
 //! the certificate prints below them. Knows no HTML.
 
 mod axis;
+mod blows;
 mod canvas;
 mod chart;
 mod cyclic;
@@ -83,6 +84,19 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares line."),
+        ),
+        (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.history.steps.is_empty()) => return None,
+        (History::Escalate(history), FigureKind::ForceDisplacement) => (
+            blows::force_displacement(history),
+            format!("{name}: restoring force against computed displacement, blow over blow; lighter lines are earlier blows."),
+        ),
+        (History::Escalate(history), FigureKind::Displacement) => (
+            blows::displacement(history),
+            format!("{name}: displacement against the virtual time of each blow; lighter lines are earlier blows."),
+        ),
+        (History::Escalate(history), FigureKind::Blows) => (
+            blows::blows(history),
+            format!("{name}: largest displacement of each blow, and where the specimen rested after it, against its energy."),
         ),
         (History::Cycle(history), _) if history.cycles.is_empty() => return None,
         (History::Cycle(history), FigureKind::ForceDisplacement) => (

@@ -46,6 +46,7 @@ impl Summary {
                 head: real.sealed.as_ref().map(|(_, head)| head.clone()),
             }),
             verdict: assessment.verdict.name(),
+            decision_rule: assessment.rule.name(),
             standing: standing::of(run).name(),
             missing: standing::missing(run),
             outcome: OutcomeSummary { kind, reason },
@@ -154,6 +155,7 @@ fn requirement(requirement: &RequirementOutcome) -> RequirementSummary {
         margin: deciding.as_ref().and_then(|c| c.margin),
         unit: deciding.as_ref().map(|c| c.unit.clone()),
         u: deciding.as_ref().and_then(|c| c.u),
+        guard_band: deciding.as_ref().and_then(|c| c.guard_band),
         condition: deciding.map(|c| c.condition),
         conditions,
     }
@@ -174,6 +176,7 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
         margin: outcome.margin.and_then(finite),
         unit: si_unit(outcome.dimension),
         u: outcome.uncertainty.and_then(finite),
+        guard_band: outcome.guard_band.and_then(finite),
         reason: outcome.reason.clone(),
     }
 }

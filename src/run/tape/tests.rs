@@ -228,6 +228,11 @@ fn measured(record: &Record) -> String {
                 }
             }
             History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
+            History::Escalate(history) => {
+                for step in history.blows.iter().flat_map(|blow| &blow.history.steps) {
+                    writeln!(told, "{:?} {:?} {:?}", step.command, step.velocity, step.restoring_force).unwrap();
+                }
+            }
             History::Cycle(history) => {
                 for step in &history.steps {
                     writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();

@@ -8,9 +8,9 @@ use psd::mechanics::identification::LineFit;
 use psd::mechanics::monitor::Tracking;
 use psd::output::{Provenance, Run};
 use psd::plan::{
-    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, Figure, FigureKind, Impact, InspectTrigger, Integrator,
-    Interval, Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement, RigPlan, Settle, Specimen,
-    StiffnessRamp, Striker, Test, Until, VirtualLink,
+    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure, FigureKind, Impact,
+    InspectTrigger, Integrator, Interval, Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement,
+    RigPlan, Settle, Specimen, StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
 use psd::record::{
@@ -333,7 +333,7 @@ fn plan() -> Plan {
             damping: 4.0,
             coulomb: 0.3,
         }],
-        strikers: vec![Striker { name: "pendulum".into(), mass: STRIKER_MASS, velocity: 1.0, gap: 0.0 }],
+        strikers: vec![Striker { name: "pendulum".into(), mass: STRIKER_MASS, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
         grounds: Vec::new(),
         rig: RigPlan {
             name: "rehearsal".into(),
@@ -348,6 +348,7 @@ fn plan() -> Plan {
             ..Limits::NONE
         },
         procedures: procedures.into_iter().map(|(name, kind)| Procedure { name: name.into(), kind }).collect(),
+        decision_rule: DecisionRule::Simple,
         requirements: vec![
             Requirement {
                 label: "stays in travel".into(),
@@ -387,11 +388,13 @@ fn assessment(largest: f64, error: f64) -> Assessment {
             uncertainty,
             bound: Some(Bound::Compare { comparison: Comparison::LessEqual, limit }),
             margin: Some(limit - value),
+            guard_band: None,
             reason: None,
         }],
     };
     Assessment {
         verdict: Verdict::Pass,
+        rule: DecisionRule::Simple,
         requirements: vec![
             outcome("stays in travel", "hit.max_displacement <= 170 mm", largest, 0.17, Some(0.000_2), Dimension::LENGTH),
             outcome("energy closes", "abs(hit.energy_error) <= 0.01", error.abs(), 0.01, None, Dimension::NUMBER),

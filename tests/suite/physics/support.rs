@@ -15,6 +15,7 @@ pub fn impact(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> Imp
         striker_mass: 10.0,
         striker_velocity: 1.0,
         gap: 0.0,
+        gravity: 0.0,
         time_step,
         max_tangent_ratio: 2.0,
         law,

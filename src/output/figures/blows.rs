@@ -1,0 +1,95 @@
+//! Charts of blows of rising energy: each blow's path and motion over each other, and what came of each against its
+//! energy. In: the history. Out: [`Chart`]s in SI.
+
+use super::chart::{Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
+use crate::formula::ResultValue;
+use crate::quantity::Dimension;
+use crate::quantity::display::stated;
+use crate::record::{Blow, EscalateHistory, ImpactStep};
+
+/// Restoring force against displacement, blow over blow.
+pub(super) fn force_displacement(history: &EscalateHistory) -> Chart {
+    over_each_other(
+        history,
+        Quantity::along("Displacement X", Dimension::LENGTH),
+        Quantity::of("Restoring force R", Dimension::FORCE),
+        |step| (step.command, step.restoring_force),
+    )
+}
+
+/// Displacement against the time of each blow.
+pub(super) fn displacement(history: &EscalateHistory) -> Chart {
+    let of = |step: &ImpactStep| (step.time, step.command);
+    over_each_other(history, Quantity::time(), Quantity::of("Displacement X", Dimension::LENGTH), of)
+}
+
+/// Largest displacement, and where the specimen then rested, against the energy of the blow.
+pub(super) fn blows(history: &EscalateHistory) -> Chart {
+    let largest = |blow: &Blow| match blow.results.iter().find(|result| result.name == "max_displacement")?.value {
+        ResultValue::Number { value, .. } => value,
+        ResultValue::List(_) => None,
+    };
+    let peaks = history.blows.iter().filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
+    let rests = history.blows.iter().filter_map(|blow| Some((blow.energy, blow.rest?.0))).collect();
+    let failed = history.blows.iter().filter(|blow| blow.held == Some(false));
+    let failed: Vec<(f64, f64)> = failed.filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
+    let mut series = vec![
+        Series {
+            label: "largest displacement".to_owned(),
+            points: peaks,
+            style: Style { marker: Some(Marker::Disc(3.6)), ..Style::line(palette::BLUE, 1.6, SOLID) },
+        },
+        Series {
+            label: "at rest after it".to_owned(),
+            points: rests,
+            style: Style { marker: Some(Marker::Ring(4.0)), ..Style::line(palette::GREEN, 1.4, DASHED) },
+        },
+    ];
+    if !failed.is_empty() {
+        series.push(Series {
+            label: "condition no longer held".to_owned(),
+            points: failed,
+            style: Style::marker(palette::VERMILION, Marker::Ring(7.0)),
+        });
+    }
+    Chart {
+        x: Quantity::along("Energy of the blow", Dimension::ENERGY),
+        y: Quantity::of("Displacement X", Dimension::LENGTH),
+        bands: Vec::new(),
+        series,
+        references: Vec::new(),
+    }
+}
+
+/// Earlier blows lighter, the last one in a colour of its own; the first and the last bear their energies.
+fn over_each_other(history: &EscalateHistory, x: Quantity, y: Quantity, of: impl Fn(&ImpactStep) -> (f64, f64)) -> Chart {
+    let last = history.blows.len().saturating_sub(1);
+    let series = history.blows.iter().enumerate().map(|(index, blow)| Series {
+        label: if index == 0 || index == last { format!("blow {}, {}", index + 1, energy(blow)) } else { String::new() },
+        points: blow.history.steps.iter().map(&of).collect(),
+        style: if index == last {
+            Style::line(palette::VERMILION, 2.0, SOLID)
+        } else {
+            Style::line(shade(index, last), 1.5, SOLID)
+        },
+    });
+    Chart { x, y, bands: Vec::new(), series: series.collect(), references: Vec::new() }
+}
+
+fn energy(blow: &Blow) -> String {
+    stated(blow.energy, Dimension::ENERGY)
+}
+
+/// From the light blue of the first to the dark one of the last but one.
+fn shade(index: usize, last: usize) -> Colour {
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
+    let share = if last > 1 { index as f64 / (last - 1) as f64 } else { 1.0 };
+    let mix = |from: u8, to: u8| {
+        let value = f64::from(from) + share * (f64::from(to) - f64::from(from));
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two bytes")]
+        let byte = value.round() as u8;
+        byte
+    };
+    let (light, dark) = (palette::SKY, palette::BLUE);
+    (mix(light.0, dark.0), mix(light.1, dark.1), mix(light.2, dark.2))
+}

@@ -1,0 +1,114 @@
+//! Figures of a report: which there are, and what each procedure can draw.
+
+use super::ProcedureKind;
+use crate::formula::ProcedureId;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Figure {
+    pub kind: FigureKind,
+    pub procedure: ProcedureId,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FigureKind {
+    /// Displacement of structure and striker against virtual time (paper Fig. 9–11, 16).
+    Displacement,
+    /// Striker's velocity (paper Fig. 16).
+    StrikerVelocity,
+    /// Structure's and striker's velocity on one axis.
+    Velocity,
+    ContactForce,
+    ForceDisplacement,
+    Energy,
+    /// Command against measurement.
+    Tracking,
+    DampingFit,
+    /// Difference of displacement between floors against virtual time.
+    Drift,
+    /// Storey shear against drift.
+    Hysteresis,
+    BaseShear,
+    /// Shapes of the natural modes.
+    Modes,
+    /// Acceleration of the ground as it was applied.
+    Ground,
+    /// Largest forces against the displacements of them, amplitude by amplitude.
+    Backbone,
+    /// Energy of each cycle.
+    CycleEnergy,
+    /// Secant stiffness of each cycle.
+    StiffnessDegradation,
+    /// What each blow of a rising row came to, against its energy.
+    Blows,
+}
+
+impl FigureKind {
+    /// Every figure there is, in the order of the reference.
+    pub const ALL: [Self; 17] = [
+        Self::Displacement,
+        Self::StrikerVelocity,
+        Self::Velocity,
+        Self::ContactForce,
+        Self::ForceDisplacement,
+        Self::Energy,
+        Self::Tracking,
+        Self::DampingFit,
+        Self::Drift,
+        Self::Hysteresis,
+        Self::BaseShear,
+        Self::Modes,
+        Self::Ground,
+        Self::Backbone,
+        Self::CycleEnergy,
+        Self::StiffnessDegradation,
+        Self::Blows,
+    ];
+
+    /// Name in `figures = [...]` and in file names.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::StrikerVelocity => "striker_velocity",
+            Self::Velocity => "velocity",
+            Self::ContactForce => "contact_force",
+            Self::ForceDisplacement => "force_displacement",
+            Self::Energy => "energy",
+            Self::Tracking => "tracking",
+            Self::DampingFit => "damping_fit",
+            Self::Drift => "drift",
+            Self::Hysteresis => "hysteresis",
+            Self::BaseShear => "base_shear",
+            Self::Modes => "modes",
+            Self::Ground => "ground",
+            Self::Backbone => "backbone",
+            Self::CycleEnergy => "cycle_energy",
+            Self::StiffnessDegradation => "stiffness_degradation",
+            Self::Blows => "blows",
+        }
+    }
+
+    /// The figures a procedure can draw, in the order of a report.
+    #[must_use]
+    pub const fn of(kind: &ProcedureKind) -> &'static [FigureKind] {
+        match kind {
+            ProcedureKind::StiffnessRamp(_) => &[Self::ForceDisplacement],
+            ProcedureKind::DampingSweep(_) => &[Self::DampingFit],
+            ProcedureKind::Impact(_) => &[
+                Self::Displacement,
+                Self::Velocity,
+                Self::StrikerVelocity,
+                Self::ContactForce,
+                Self::ForceDisplacement,
+                Self::Energy,
+                Self::Tracking,
+            ],
+            ProcedureKind::Shake(_) => {
+                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
+            }
+            ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
+            ProcedureKind::Escalate(_) => &[Self::Blows, Self::ForceDisplacement, Self::Displacement],
+            ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! `escalate`: blows of rising energy on one specimen. In: the blow, its levels, the condition. Out: every blow as an impact
+//! of its own, and which was the last that passed. Each decision follows from results, and they from recorded answers.
+
+use super::Performed;
+use super::impact::{Setting, blow};
+use super::inputs::Inputs;
+use super::results::result;
+use super::session::Session;
+use super::stop::Stop;
+use super::unload::to_rest;
+use crate::formula::{ProcedureId, ResultReference, ResultValue, Results};
+use crate::mechanics::impact::ImpactInput;
+use crate::plan::{Between, Escalate, Plan};
+use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult};
+use crate::verdict::{Verdict, assess_condition};
+
+pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let mut history = EscalateHistory::default();
+    let stop = run(plan, whole, inputs, session, &mut history).err();
+    Performed { results: results(&history), history: History::Escalate(history), stop }
+}
+
+fn run(
+    plan: &Escalate,
+    whole: &Plan,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+    history: &mut EscalateHistory,
+) -> Result<(), Stop> {
+    let setting = Setting::evaluate(&plan.blow, &whole.strikers[plan.blow.striker], inputs, session)?;
+    let velocities = inputs.list("speeds", &plan.velocities)?;
+    if let Some(value) = velocities.iter().copied().find(|velocity| !(*velocity > 0.0 && velocity.is_finite())) {
+        return Err(Stop::BadInput { field: "speeds", value, wanted: "greater than 0".into() });
+    }
+    let home = session.commanded();
+    let mut done = 0;
+    for (index, striker_velocity) in velocities.iter().copied().enumerate() {
+        let setting = Setting { input: ImpactInput { striker_velocity, ..setting.input }, ..setting };
+        let energy = setting.input.striker_energy();
+        let blown = blow(&plan.blow, &setting, done, session);
+        done += blown.history.steps.last().map_or(0, |last| last.step);
+        let over = blown.stop.is_none();
+        let known = OfBlow { own: plan.own, blow: &blown.results, before: inputs.results() };
+        let held = over.then(|| {
+            plan.condition.iter().all(|part| assess_condition(part, whole.decision_rule, &known).verdict == Verdict::Pass)
+        });
+        history.blows.push(Blow {
+            velocity: striker_velocity,
+            energy,
+            results: blown.results,
+            history: blown.history,
+            held,
+            rest: None,
+        });
+        if let Some(stop) = blown.stop {
+            return Err(stop);
+        }
+        let rest = bring(plan.between, home, &setting, &mut done, session)?;
+        if let Some(blow) = history.blows.last_mut() {
+            blow.rest = Some(rest);
+        }
+        let told = readable(energy, Dimension::ENERGY);
+        if held == Some(false) {
+            let text = format!("blow {} of {told}: the condition no longer holds", index + 1);
+            session.event(EventKind::Remark, text);
+            return Ok(());
+        }
+        if plan.inspect_between && index + 1 < velocities.len() {
+            session.inspect(&format!("after blow {} of {told}", index + 1))?;
+        }
+    }
+    session.event(EventKind::Remark, "the condition held after every blow of the list".to_owned());
+    Ok(())
+}
+
+/// To where the next blow begins: displacement (m) and force (N) there.
+fn bring(between: Between, home: f64, setting: &Setting, done: &mut u64, session: &mut Session<'_>) -> Result<(f64, f64), Stop> {
+    match between {
+        Between::Stay => session.read(),
+        Between::Home => {
+            session.go_to(home, None)?;
+            let (displacement, force) = session.read()?;
+            *done += 1;
+            let time = session.guard.time();
+            session.measured(*done, time, displacement, force)?;
+            Ok((displacement, force))
+        }
+        Between::Unload => {
+            let mut steps = Vec::new();
+            let rest = to_rest(setting.input.stiffness, None, None, *done, session, &mut steps)?;
+            *done += steps.len() as u64;
+            Ok((rest.displacement, rest.force))
+        }
+    }
+}
+
+/// The results of the blow that is just over, by the procedure they will belong to, and those before it.
+struct OfBlow<'a> {
+    own: ProcedureId,
+    blow: &'a [NamedResult],
+    before: &'a dyn Results,
+}
+
+impl Results for OfBlow<'_> {
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        if reference.procedure == self.own {
+            return self.blow.iter().find(|result| result.name == reference.name).map(|result| result.value.clone());
+        }
+        self.before.result(reference)
+    }
+}
+
+/// A number among the results of a blow.
+fn number(blow: &Blow, name: &str) -> Option<f64> {
+    match blow.results.iter().find(|result| result.name == name)?.value {
+        ResultValue::Number { value, .. } => value,
+        ResultValue::List(_) => None,
+    }
+}
+
+/// In the order of the reference.
+fn results(history: &EscalateHistory) -> Vec<NamedResult> {
+    let blows = &history.blows;
+    let of = |name: &str| blows.iter().map(|blow| number(blow, name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
+    let list = |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension };
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
+    let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;
+    let passed = blows.iter().rev().find(|blow| blow.held == Some(true)).map(|blow| blow.energy);
+    let failed = blows.iter().find(|blow| blow.held == Some(false)).map(|blow| blow.energy);
+    let some = |values: Vec<f64>| values.into_iter().filter(|value| value.is_finite());
+    let rest = blows.last().and_then(|blow| blow.rest).map(|(displacement, _)| displacement);
+    let rests = blows.iter().map(|blow| blow.rest.map_or(f64::NAN, |(displacement, _)| displacement)).collect();
+    let absorbed = some(of("absorbed_energy")).reduce(|sum, energy| sum + energy);
+    vec![
+        result("blows", Dimension::NUMBER, Some(count(None))),
+        result("passed", Dimension::NUMBER, Some(count(Some(true)))),
+        result("last_passed_energy", Dimension::ENERGY, passed),
+        result("first_failed_energy", Dimension::ENERGY, failed),
+        result("max_displacement", Dimension::LENGTH, some(of("max_displacement")).reduce(f64::max)),
+        result("residual_displacement", Dimension::LENGTH, rest),
+        result("absorbed_energy", Dimension::ENERGY, absorbed),
+        list("velocities", Dimension::VELOCITY, blows.iter().map(|blow| blow.velocity).collect()),
+        list("blow_energies", Dimension::ENERGY, blows.iter().map(|blow| blow.energy).collect()),
+        list("max_displacements", Dimension::LENGTH, of("max_displacement")),
+        list("residual_displacements", Dimension::LENGTH, rests),
+        list("absorbed_energies", Dimension::ENERGY, of("absorbed_energy")),
+        list("impulses", Dimension::IMPULSE, of("impulse")),
+        list("energy_errors", Dimension::NUMBER, of("energy_error")),
+    ]
+}

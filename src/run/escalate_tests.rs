@@ -1,0 +1,130 @@
+//! Blows of rising energy, as run on a virtual rig.
+
+use super::testing::{elastic_plan, impact, number, run_unwatched};
+use crate::formula::Formula::{self, Constant};
+use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use crate::plan::{Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Test, Unload};
+use crate::quantity::Dimension;
+use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
+
+fn below(limit: f64) -> Condition {
+    let value = Formula::Result(ResultReference { procedure: ProcedureId(0), name: "max_displacement", part: Part::Value });
+    let test = Test::Compare { comparison: Comparison::Less, limit: Constant(limit) };
+    Condition { text: String::new(), value, test, dimension: Dimension::LENGTH }
+}
+
+fn blow() -> Impact {
+    Impact { time_step: Constant(2e-4), duration: Constant(0.4), ..impact(Constant(2e4)) }
+}
+
+fn rising(velocities: &[f64], limit: f64, between: Between) -> Escalate {
+    Escalate {
+        own: ProcedureId(0),
+        blow: blow(),
+        velocities: velocities.iter().copied().map(Constant).collect(),
+        condition: vec![below(limit)],
+        between,
+        inspect_between: false,
+    }
+}
+
+/// K 20 kN/m; yields at 200 N, 10 mm.
+fn yielding(procedures: Vec<ProcedureKind>) -> Plan {
+    let mut plan = elastic_plan(2e4, procedures);
+    plan.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 2e4, yield_force: 200.0, hardening: 0.05 });
+    plan
+}
+
+fn history(record: &Record) -> &EscalateHistory {
+    match &record.procedures[0].history {
+        History::Escalate(history) => history,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn list(record: &Record, name: &str) -> Vec<f64> {
+    match &record.procedures[0].result(name).unwrap().value {
+        ResultValue::List(values) => values.clone(),
+        other @ ResultValue::Number { .. } => panic!("{other:?}"),
+    }
+}
+
+/// Each blow is the impact that the plan could have written out, one unload after the other.
+#[test]
+fn every_blow_is_an_impact_of_its_own() {
+    let velocities = [0.3, 0.6, 0.9];
+    let record = run_unwatched(&yielding(vec![ProcedureKind::Escalate(rising(&velocities, 1.0, Between::Unload))]));
+    assert_eq!(record.outcome, Outcome::Completed);
+    let unload = ProcedureKind::Unload(Unload { specimen: 0, stiffness: Constant(2e4), within: None, speed: None });
+    let mut written = Vec::new();
+    for _ in velocities {
+        written.extend([ProcedureKind::Impact(blow()), unload.clone()]);
+    }
+    let mut plan = yielding(written);
+    for (index, velocity) in velocities.into_iter().enumerate() {
+        let striker = crate::plan::Striker { velocity, ..plan.strikers[0].clone() };
+        plan.strikers.push(striker);
+        if let ProcedureKind::Impact(blow) = &mut plan.procedures[2 * index].kind {
+            blow.striker = index + 1;
+        }
+    }
+    let apart = run_unwatched(&plan);
+    for (index, blow) in history(&record).blows.iter().enumerate() {
+        assert_eq!(blow.results, apart.procedures[2 * index].results, "blow {index}");
+        let rest = number(&apart, 2 * index + 1, "residual_displacement").0;
+        assert_eq!(blow.rest.map(|rest| rest.0), rest);
+    }
+    assert_eq!(list(&record, "velocities"), velocities);
+    let peaks = list(&record, "max_displacements");
+    assert_eq!(number(&record, 0, "max_displacement").0, Some(peaks[2]));
+    assert!(peaks.windows(2).all(|pair| pair[0] < pair[1]));
+}
+
+/// An elastic specimen on a sticking blow: X = v Ms/√(K(M + Ms)), so that the level that fails can be reckoned.
+#[test]
+fn it_ends_with_the_first_blow_that_fails() {
+    let velocities = [0.2, 0.4, 0.6, 0.8, 1.0];
+    let mut plan = rising(&velocities, 0.0150, Between::Home);
+    plan.blow.contact = crate::plan::Contact::Restitution { coefficient: Constant(0.0) };
+    let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(plan)]));
+    let reckoned = |velocity: f64| velocity * 10.0 / (2e4_f64 * 11.0).sqrt();
+    let fails = velocities.iter().position(|velocity| reckoned(*velocity) >= 0.0150).unwrap();
+    assert_eq!(fails, 3);
+    for (peak, velocity) in list(&record, "max_displacements").iter().zip(velocities) {
+        assert!((peak / reckoned(velocity) - 1.0).abs() < 1e-3);
+    }
+    let energy = |velocity: f64| Some(0.5 * 10.0 * velocity * velocity);
+    assert_eq!((number(&record, 0, "blows").0, number(&record, 0, "passed").0), (Some(4.0), Some(3.0)));
+    assert_eq!(number(&record, 0, "last_passed_energy").0, energy(0.6));
+    assert_eq!(number(&record, 0, "first_failed_energy").0, energy(0.8));
+    assert!(record.events.iter().any(|event| event.text == "blow 4 of 3.200 J: the condition no longer holds"));
+}
+
+#[test]
+fn the_list_bounds_it() {
+    let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(rising(&[0.1, 0.2], 1.0, Between::Home))]));
+    assert_eq!(number(&record, 0, "first_failed_energy").0, None);
+    assert_eq!((number(&record, 0, "blows").0, number(&record, 0, "passed").0), (Some(2.0), Some(2.0)));
+    assert!(record.events.iter().any(|event| event.text == "the condition held after every blow of the list"));
+    assert!(number(&record, 0, "residual_displacement").0.unwrap().abs() < 1e-15);
+}
+
+#[test]
+fn a_person_looks_between_two_blows() {
+    let plan = Escalate { inspect_between: true, ..rising(&[0.1, 0.2, 0.3], 1.0, Between::Unload) };
+    let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(plan)]));
+    let looks = record.events.iter().filter(|event| event.kind == EventKind::Inspection);
+    let looks: Vec<&str> = looks.map(|event| event.text.as_str()).collect();
+    assert_eq!(looks, ["after blow 1 of 50.00 mJ", "after blow 2 of 200.0 mJ"]);
+}
+
+#[test]
+fn a_limit_in_a_blow_ends_it_and_keeps_what_there_is() {
+    let mut plan = yielding(vec![ProcedureKind::Escalate(rising(&[0.3, 2.0], 1.0, Between::Unload))]);
+    plan.limits.displacement = crate::plan::Interval { low: -1.0, high: 0.02 };
+    let record = run_unwatched(&plan);
+    assert!(matches!(record.outcome, Outcome::Aborted { .. }));
+    let blows = &history(&record).blows;
+    assert_eq!((blows.len(), blows[0].held, blows[1].held), (2, Some(true), None));
+    assert_eq!(number(&record, 0, "passed").0, Some(1.0));
+}

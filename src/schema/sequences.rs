@@ -1,0 +1,98 @@
+//! Several blows on one specimen: `escalate`, and `unload` between blows.
+
+use super::methods::TRUTH;
+use super::procedures::IMPACT;
+use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind, Variant};
+use crate::quantity::Dimension;
+
+pub(super) const UNLOAD: BlockKind =
+    BlockKind {
+        kind: Kind::Unload,
+        keyword: &["unload"],
+        naming: Naming::Named,
+        procedure: true,
+        fields: &[
+            Field::reference("specimen", Kind::Specimen, "what is unloaded").or_said("the only one declared"),
+            Field::quantity("stiffness", Dimension::STIFFNESS, "with which the force is expected to fall")
+                .above_zero()
+                .required_on(RigKind::Real, "stiffness = k0.stiffness", "the behaviour's initial stiffness"),
+            Field::quantity("within", Dimension::FORCE, "largest force that counts as none")
+                .above_zero()
+                .or_said("a thousandth of the force at the start, or what noise and resolution can tell"),
+            Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own"),
+        ],
+        exports: &[],
+        results: &[
+            ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen rests"),
+            ResultKind::new("residual_force", Dimension::FORCE, "what it still carries there"),
+        ],
+        example: "unload rest { }",
+        doc: "Takes the load off: moves to where the restoring force is none",
+    };
+
+/// What an `escalate` has besides the fields of an impact.
+const OWN: [Field; 6] = [
+    Field::quantities("speeds", Dimension::VELOCITY, "velocity of the striker in each blow; or `drop_heights`, or `energies`")
+        .above_zero()
+        .or_said("what the heights or energies give"),
+    Field::quantities("drop_heights", Dimension::LENGTH, "height of fall of each blow").above_zero(),
+    Field::quantities("energies", Dimension::ENERGY, "energy of each blow").above_zero(),
+    Field::condition("while", "what must hold of the results of a blow, by their own names, for the next to follow")
+        .required("while = max_displacement < 20 mm"),
+    Field::choice(
+        "between",
+        &[
+            Variant::word("unload", "to where the restoring force is none"),
+            Variant::word("home", "back to where the first blow began"),
+            Variant::word("stay", "nowhere: the next blow begins where this one ended, under its load"),
+        ],
+        "where the specimen is brought between two blows, and after the last",
+    )
+    .or_said("unload"),
+    Field::choice("inspect_between", TRUTH, "whether a person looks at the specimen between two blows").or_said("false"),
+];
+
+const FIELDS: [Field; OWN.len() + IMPACT.fields.len()] = {
+    let mut all = [OWN[0]; OWN.len() + IMPACT.fields.len()];
+    let mut at = 0;
+    while at < all.len() {
+        all[at] = if at < OWN.len() { OWN[at] } else { IMPACT.fields[at - OWN.len()] };
+        at += 1;
+    }
+    all
+};
+
+pub(super) const ESCALATE: BlockKind = BlockKind {
+    kind: Kind::Escalate,
+    keyword: &["escalate"],
+    naming: Naming::Named,
+    procedure: true,
+    fields: &FIELDS,
+    exports: &[],
+    results: &[
+        ResultKind::count("blows", "number of blows, the one that failed among them"),
+        ResultKind::count("passed", "number of blows after which the condition held"),
+        ResultKind::new("last_passed_energy", Dimension::ENERGY, "energy of the last blow after which it held"),
+        ResultKind::new("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
+        ResultKind::new("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
+        ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),
+        ResultKind::new(
+            "absorbed_energy",
+            Dimension::ENERGY,
+            "sum over the blows of what each absorbed up to its largest displacement",
+        ),
+        ResultKind::list("velocities", Dimension::VELOCITY, "velocity of the striker in each blow"),
+        ResultKind::list("blow_energies", Dimension::ENERGY, "energy of the striker in each blow"),
+        ResultKind::list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
+        ResultKind::list("residual_displacements", Dimension::LENGTH, "where the specimen was brought to after each blow"),
+        ResultKind::list(
+            "absorbed_energies",
+            Dimension::ENERGY,
+            "what each blow put into the specimen up to its largest displacement",
+        ),
+        ResultKind::list("impulses", Dimension::IMPULSE, "impulse of each blow"),
+        ResultKind::list("energy_errors", Dimension::NUMBER, "what the energy balance of each blow misses, over its input"),
+    ],
+    example: "escalate rising {\n  striker  = pendulum\n  speeds   = [0.5, 1, 1.5] m/s\n  while    = max_displacement < 20 mm\n  duration = 50 ms\n}",
+    doc: "Blows of rising energy on one specimen, until a condition on the last blow no longer holds or the list ends",
+};

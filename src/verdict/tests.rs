@@ -1,0 +1,192 @@
+//! Verdicts at and about their limits, by both rules of decision.
+
+use super::*;
+use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use crate::record::{History, NamedResult, ProcedureRecord};
+use crate::rig::Identity;
+
+fn record(outcome: Outcome) -> Record {
+    let number = |name, value, uncertainty| NamedResult {
+        name,
+        value: ResultValue::Number { value, uncertainty },
+        dimension: Dimension::LENGTH,
+    };
+    Record {
+        rig: Identity {
+            name: String::new(),
+            model: String::new(),
+            serial: String::new(),
+            firmware: String::new(),
+            boot: None,
+            simulated: true,
+        },
+        procedures: vec![ProcedureRecord {
+            name: "hit".to_owned(),
+            kind: "impact",
+            complete: true,
+            inputs: Vec::new(),
+            results: vec![number("max_displacement", Some(8.0), Some(0.1)), number("stop_time", None, None)],
+            history: History::Inspect,
+        }],
+        events: Vec::new(),
+        outcome,
+    }
+}
+
+fn result(name: &'static str) -> Formula {
+    Formula::Result(ResultReference { procedure: ProcedureId(0), name, part: Part::Value })
+}
+
+fn condition(value: Formula, test: Test) -> Condition {
+    Condition { text: "as written".to_owned(), value, test, dimension: Dimension::LENGTH }
+}
+
+fn compare(comparison: Comparison, limit: f64) -> Test {
+    Test::Compare { comparison, limit: Formula::Constant(limit) }
+}
+
+fn outcome_of(test: Test) -> ConditionOutcome {
+    assess_condition(&condition(result("max_displacement"), test), DecisionRule::Simple, &record(Outcome::Completed))
+}
+
+#[test]
+fn a_comparison_passes_or_fails_with_its_margin_and_uncertainty() {
+    let met = outcome_of(compare(Comparison::LessEqual, 8.5));
+    assert_eq!((met.verdict, met.margin), (Verdict::Pass, Some(0.5)));
+    assert!((met.uncertainty.unwrap() - 0.1).abs() < 1e-12);
+    let missed = outcome_of(compare(Comparison::Greater, 8.0));
+    assert_eq!((missed.verdict, missed.margin), (Verdict::Fail, Some(0.0)));
+    let equal = outcome_of(compare(Comparison::Equal, 7.0));
+    assert_eq!((equal.verdict, equal.margin), (Verdict::Fail, Some(-1.0)));
+}
+
+#[test]
+fn a_relative_tolerance_is_of_the_size_of_the_target() {
+    let within = |target, tolerance, relative| {
+        outcome_of(Test::Within { target: Formula::Constant(target), tolerance: Formula::Constant(tolerance), relative })
+    };
+    let near = within(10.0, 0.25, true);
+    assert_eq!((near.verdict, near.margin), (Verdict::Pass, Some(0.5)));
+    assert_eq!(near.bound, Some(Bound::Within { target: 10.0, tolerance: 2.5 }));
+    assert_eq!(within(10.0, 0.25, false).verdict, Verdict::Fail);
+    assert_eq!(within(-10.0, 1.9, true).verdict, Verdict::Pass);
+}
+
+#[test]
+fn a_missing_result_is_inconclusive_and_says_so() {
+    let outcome = assess_condition(
+        &condition(result("stop_time"), compare(Comparison::Less, 1.0)),
+        DecisionRule::Guarded,
+        &record(Outcome::Completed),
+    );
+    assert_eq!((outcome.verdict, outcome.value, outcome.margin), (Verdict::Inconclusive, None, None));
+    assert!(outcome.reason.unwrap().contains("stop_time"));
+    assert_eq!(outcome.bound, Some(Bound::Compare { comparison: Comparison::Less, limit: 1.0 }));
+}
+
+#[test]
+fn the_whole_takes_its_worst_part_and_the_end_of_the_run() {
+    let mut plan = crate::run::testing::empty_plan();
+    let requirement = |limit| Requirement {
+        label: "travel".to_owned(),
+        conditions: vec![condition(result("max_displacement"), compare(Comparison::Less, limit))],
+    };
+    assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Pass);
+    plan.requirements = vec![requirement(9.0), requirement(7.0)];
+    let assessed = assess(&plan, &record(Outcome::Completed));
+    assert_eq!(assessed.verdict, Verdict::Fail);
+    assert_eq!(assessed.requirements[0].verdict, Verdict::Pass);
+    let stopped = assess(&plan, &record(Outcome::Aborted { reason: String::new() }));
+    assert_eq!((stopped.verdict, stopped.requirements[1].verdict), (Verdict::Aborted, Verdict::Fail));
+    assert_eq!(assess(&plan, &record(Outcome::Faulted { reason: String::new() })).verdict, Verdict::Error);
+}
+
+/// Of 8.0 with u = 0.125: w = 0.25, and every number here is exact in binary.
+fn guarded(test: Test) -> ConditionOutcome {
+    let mut record = record(Outcome::Completed);
+    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: Some(0.125) };
+    assess_condition(&condition(result("max_displacement"), test), DecisionRule::Guarded, &record)
+}
+
+#[test]
+fn between_pass_and_fail_lies_a_guard_band_of_two_standard_uncertainties() {
+    use Comparison::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
+    use Verdict::{Fail, Inconclusive, Pass};
+    let cases = [
+        // At least w inside: pass, at exactly w only where the limit itself would do.
+        (LessEqual, 8.25, Pass),
+        (Less, 8.25, Inconclusive),
+        (Less, 8.375, Pass),
+        (LessEqual, 8.125, Inconclusive),
+        (LessEqual, 8.0, Inconclusive),
+        // Outside by exactly w is not more than w.
+        (LessEqual, 7.75, Inconclusive),
+        (LessEqual, 7.625, Fail),
+        (GreaterEqual, 7.75, Pass),
+        (Greater, 7.75, Inconclusive),
+        (Greater, 7.625, Pass),
+        (GreaterEqual, 8.25, Inconclusive),
+        (GreaterEqual, 8.375, Fail),
+        // Nothing uncertain is proven equal, and only what lies apart is proven unequal.
+        (Equal, 8.0, Inconclusive),
+        (Equal, 8.375, Fail),
+        (NotEqual, 8.25, Inconclusive),
+        (NotEqual, 8.375, Pass),
+    ];
+    for (comparison, limit, verdict) in cases {
+        let outcome = guarded(compare(comparison, limit));
+        assert_eq!((outcome.verdict, outcome.guard_band), (verdict, Some(0.25)), "8 {comparison:?} {limit}");
+        assert_eq!(outcome.reason.is_some(), verdict == Inconclusive);
+    }
+}
+
+#[test]
+fn a_tolerance_narrower_than_the_band_is_never_kept() {
+    let within = |target, tolerance, relative| {
+        let test = Test::Within { target: Formula::Constant(target), tolerance: Formula::Constant(tolerance), relative };
+        guarded(test).verdict
+    };
+    assert_eq!(within(8.0, 0.25, false), Verdict::Pass);
+    assert_eq!(within(8.0, 0.125, false), Verdict::Inconclusive);
+    assert_eq!([8.5, 7.5].map(|target| within(target, 0.75, false)), [Verdict::Pass; 2]);
+    assert_eq!([8.5, 7.5].map(|target| within(target, 0.25, false)), [Verdict::Inconclusive; 2]);
+    assert_eq!([8.5, 7.5].map(|target| within(target, 0.125, false)), [Verdict::Fail; 2]);
+    assert_eq!(within(10.0, 0.225, true), Verdict::Pass);
+    assert_eq!(within(10.0, 0.2, true), Verdict::Inconclusive);
+}
+
+#[test]
+fn without_an_uncertainty_the_value_decides_under_either_rule() {
+    let mut record = record(Outcome::Completed);
+    for uncertainty in [None, Some(0.0)] {
+        record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty };
+        let at = |limit| {
+            let condition = condition(result("max_displacement"), compare(Comparison::LessEqual, limit));
+            assess_condition(&condition, DecisionRule::Guarded, &record)
+        };
+        assert_eq!((at(8.0).verdict, at(8.0).guard_band), (Verdict::Pass, None));
+        assert_eq!(at(7.999).verdict, Verdict::Fail);
+    }
+}
+
+#[test]
+fn a_limit_that_was_measured_widens_the_band_and_the_same_result_on_both_sides_does_not() {
+    let limit = |factor: f64| {
+        let product = Formula::Binary(
+            crate::formula::Operator::Multiply,
+            Box::new(Formula::Constant(factor)),
+            Box::new(result("max_displacement")),
+        );
+        guarded(Test::Compare { comparison: Comparison::LessEqual, limit: product })
+    };
+    // 8 ≤ 2·8: the distance is the result itself, and so is its uncertainty. 8 ≤ 3·8: twice that.
+    assert_eq!([2.0, 3.0].map(|factor| limit(factor).guard_band), [Some(0.25), Some(0.5)]);
+    assert_eq!((limit(1.0).guard_band, limit(1.0).verdict), (None, Verdict::Pass));
+}
+
+#[test]
+fn the_simple_rule_knows_no_band() {
+    let outcome = outcome_of(compare(Comparison::LessEqual, 8.0));
+    assert_eq!((outcome.verdict, outcome.guard_band), (Verdict::Pass, None));
+    assert!(outcome.uncertainty.is_some());
+}
