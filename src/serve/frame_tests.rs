@@ -17,7 +17,7 @@ fn served<T: Send>(limits: Limits, client: impl FnOnce(SocketAddr) -> T + Send) 
     let settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
     let mut rig = VirtualFrame::new("frame", VirtualLink::default(), settle, &frame(), 1.0);
     let protocol = Protocol::GenericClient { stiffness: frame().stiffness.concat() };
-    served_on(&mut rig, protocol, limits, client)
+    served_on(&mut rig, &protocol, limits, client)
 }
 
 /// As OpenSees sends them for two degrees of freedom.

@@ -25,12 +25,12 @@ fn spring() -> VirtualRig {
 
 /// Serves the spring once while `client` talks, and gives what both say.
 fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(SocketAddr) -> T + Send) -> (T, Session) {
-    served_on(&mut spring(), protocol, limits, client)
+    served_on(&mut spring(), &protocol, limits, client)
 }
 
 pub(super) fn served_on<T: Send>(
     rig: &mut dyn Rig,
-    protocol: Protocol,
+    protocol: &Protocol,
     limits: Limits,
     client: impl FnOnce(SocketAddr) -> T + Send,
 ) -> (T, Session) {
@@ -47,7 +47,7 @@ pub(super) fn served_on<T: Send>(
         };
         let mut nobody = Unwatched;
         let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
-        serve(&listener, &protocol, &mut specimen, true, &|| false, &mut told).unwrap();
+        serve(&listener, protocol, &mut specimen, true, &|| false, &mut told).unwrap();
         let [session] = sessions.try_into().expect("one session");
         (client.join().unwrap(), session)
     })
