@@ -66,8 +66,7 @@ fn write_variants(text: &mut String, variants: &[Variant], depth: usize, written
             (false, true) => "(a, b, …)".to_owned(),
             (false, false) => format!("({})", names.join(", ")),
         };
-        let later = if variant.available { "" } else { " (not in this version)" };
-        let _ = writeln!(text, "{indent}- `{}{brackets}`: {}{later}", variant.name, variant.doc);
+        let _ = writeln!(text, "{indent}- `{}{brackets}`: {}", variant.name, variant.doc);
         let signature = [vec![variant.name], names].concat();
         if written.contains(&signature) {
             let _ = writeln!(text, "{indent}  - as above");

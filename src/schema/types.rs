@@ -189,7 +189,6 @@ pub struct Variant {
     pub name: &'static str,
     pub arguments: &'static [Field],
     pub doc: &'static str,
-    pub available: bool,
 }
 
 impl BlockKind {
@@ -367,11 +366,11 @@ impl Field {
 
 impl Variant {
     pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
-        Self { name, arguments: &[], doc, available: true }
+        Self { name, arguments: &[], doc }
     }
 
     pub(super) const fn with(name: &'static str, arguments: &'static [Field], doc: &'static str) -> Self {
-        Self { name, arguments, doc, available: true }
+        Self { name, arguments, doc }
     }
 
     #[must_use]

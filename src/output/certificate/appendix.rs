@@ -2,16 +2,17 @@
 //! run. Out: blocks, and the plan's files to go with them.
 
 use super::super::document::{Attachment, Block, Text};
-use super::super::{RealRun, Run, safe_path};
+use super::super::{RealRun, Run, plan_files};
 use super::pairs;
+use crate::inert;
 use crate::plan::PlanFile;
 
 /// Plan, provenance, statements, signatures.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Plan as run"));
-    for file in &run.plan.files {
+    for (file, kept) in run.plan.files.iter().zip(plan_files(run.plan)) {
         body.push(Block::part(file.name.as_str()));
-        printed(file, body);
+        printed(file, &kept.path, body);
     }
     body.push(Block::section("Provenance"));
     body.push(provenance(run));
@@ -43,9 +44,10 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
 }
 
 /// A file of the language whole; of data the first lines, for a record has thousands.
-fn printed(file: &PlanFile, body: &mut Vec<Block>) {
+fn printed(file: &PlanFile, kept: &str, body: &mut Vec<Block>) {
     const FIRST: usize = 8;
-    let lines: Vec<String> = file.text.lines().map(str::to_owned).collect();
+    // A tab is seen as the blanks that it stands for.
+    let lines: Vec<String> = file.text.lines().map(|line| inert::printed(&line.replace('\t', "    "))).collect();
     let left = lines.len().saturating_sub(FIRST);
     let is_plan = file.name.rsplit('.').next().is_some_and(|ending| ending.eq_ignore_ascii_case("psd"));
     if is_plan || left <= FIRST {
@@ -54,13 +56,13 @@ fn printed(file: &PlanFile, body: &mut Vec<Block>) {
     }
     body.push(Block::Code { lines: lines.into_iter().take(FIRST).collect() });
     let text = Text::from(format!("and {left} more lines; the whole file is "));
-    body.push(Block::note(text.code(format!("plan/{}", safe_path(&file.name))).and(" in the folder of the run.")));
+    body.push(Block::note(text.code(kept).and(" in the folder of the run.")));
 }
 
 /// The plan and every file it used, under the names that they have in the run folder.
 pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
-    let attached = |file: &PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
-    run.plan.files.iter().map(attached).collect()
+    let named = plan_files(run.plan).into_iter().zip(&run.plan.files);
+    named.map(|(named, file)| Attachment { name: named.path, text: file.text.clone() }).collect()
 }
 
 fn provenance(run: &Run<'_>) -> Block {
