@@ -21,6 +21,7 @@ pub enum Kind {
     Move,
     Inspect,
     Report,
+    Golden,
     /// A known word of the language that this version does not carry out.
     Later,
 }
@@ -102,6 +103,12 @@ pub enum FieldType {
     Reference(Kind),
     /// A list of `figure(procedure)`.
     Figures,
+    /// A result of a procedure: `hit.stop_time`.
+    ResultName,
+    /// A column of a table: `hit.displacement_m`, or `displacement_m` of every table.
+    ColumnName,
+    /// How near a number must be: in its own unit, or in `%` of its size.
+    Tolerance,
     /// Conditions on the results of a blow, as in `require`.
     Condition,
 }
@@ -189,7 +196,6 @@ pub struct Variant {
     pub name: &'static str,
     pub arguments: &'static [Field],
     pub doc: &'static str,
-    pub available: bool,
 }
 
 impl BlockKind {
@@ -218,6 +224,10 @@ impl BlockKind {
 impl Field {
     const fn new(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
         Self { name, ty, need: Need::Optional, range: Range::ANY, example: "", doc, available: true, real_rig_only: false }
+    }
+
+    pub(super) const fn of_type(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
+        Self::new(name, ty, doc)
     }
 
     pub(super) const fn text(name: &'static str, doc: &'static str) -> Self {
@@ -367,11 +377,11 @@ impl Field {
 
 impl Variant {
     pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
-        Self { name, arguments: &[], doc, available: true }
+        Self { name, arguments: &[], doc }
     }
 
     pub(super) const fn with(name: &'static str, arguments: &'static [Field], doc: &'static str) -> Self {
-        Self { name, arguments, doc, available: true }
+        Self { name, arguments, doc }
     }
 
     #[must_use]

@@ -2,7 +2,9 @@
 //! talked at. What needs a program of the system is skipped without it, and fails where `PSD_REQUIRE_SYSTEM=1`.
 
 mod amended;
+mod certificate;
 mod disk;
+mod golden;
 mod killed;
 mod lost;
 mod needs;
