@@ -16,6 +16,7 @@ fn sweep(velocities: &[f64]) -> DampingSweep {
         specimen: 0,
         velocities: velocities.iter().copied().map(Formula::Constant).collect(),
         stroke: constant(1e-3),
+        about: None,
         stiffness: result_of(0, "stiffness"),
         rate: None,
     }

@@ -147,6 +147,7 @@ fn plan() -> Plan {
         specimen: 0,
         velocities: vec![crate::formula::Formula::Constant(0.01), crate::formula::Formula::Constant(0.02)],
         stroke: crate::formula::Formula::Constant(1e-3),
+        about: None,
         stiffness: result_of(0, "stiffness"),
         rate: Some(crate::formula::Formula::Constant(60.0)),
     };
