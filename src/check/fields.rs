@@ -95,7 +95,8 @@ impl<'a> Checker<'a> {
             (None, Kind::Limits) => Reads::Nothing("a limit"),
             (None, _) => Reads::Nothing("this field"),
         };
-        let critical = matches!(declared.kind.kind, Kind::Impact | Kind::Escalate) && declared.block.fields[entry].key.node == "time_step";
+        let critical =
+            matches!(declared.kind.kind, Kind::Impact | Kind::Escalate) && declared.block.fields[entry].key.node == "time_step";
         Place { entry: Some((block, entry)), reads, critical }
     }
 

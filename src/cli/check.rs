@@ -41,7 +41,7 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
         }
     }
     if arguments.format == Format::Json {
-        give(&format!("{:#}\n", json::document(&found)))?;
+        give(&json::text(&found))?;
     }
     Ok(exit)
 }

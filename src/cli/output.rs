@@ -4,16 +4,17 @@
 use std::io::{ErrorKind, Write as _};
 
 use super::exit::Failure;
+use crate::inert;
 
-/// Tells a person. Nobody listening is no reason to fail.
+/// Tells a person. Nobody listening is no reason to fail. Nothing but colours reaches a terminal as a command.
 pub fn tell(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(inert::terminal(text).as_bytes());
 }
 
-/// Gives a result.
+/// Gives a result, as [`tell`] does.
 pub fn give(text: &str) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout.write_all(inert::terminal(text).as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Stdout(error)),
         _ => Ok(()),
     }

@@ -24,7 +24,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
-            give(&format!("{:#}\n", json::document(&plan_file::diagnostics(&checked, &arguments.plan))))?;
+            give(&json::text(&plan_file::diagnostics(&checked, &arguments.plan)))?;
         }
         return Ok(Exit::Wrong);
     };

@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::exit::Failure;
 use super::loader::plain;
+use crate::inert;
 use crate::output::OutputFile;
 
 /// An empty folder that belongs to this run.
@@ -20,7 +21,7 @@ impl RunFolder {
     pub fn create(out: Option<&Path>, plan: &Path) -> Result<Self, Failure> {
         match out {
             Some(path) => Self::named(path),
-            None => Self::numbered(Path::new("runs"), &plan.file_stem().unwrap_or_default().to_string_lossy()),
+            None => Self::numbered(Path::new("runs"), &inert::file_part(&plan.file_stem().unwrap_or_default().to_string_lossy())),
         }
     }
 

@@ -7,6 +7,8 @@ use std::ops::Range;
 use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use super::Diagnostic;
+use crate::inert::steers;
+pub use crate::inert::{escape, one_line};
 use crate::source::{FileId, Position, SourceFile, Sources};
 
 /// Characters of a line that are shown.
@@ -124,7 +126,7 @@ fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
         for (offset, character) in body[window.clone()].char_indices() {
             let offset = line_start + window.start + offset;
             mark(places, &mut moved, offset, shown.len());
-            push_escaped(&mut shown, character, true);
+            push_shown(&mut shown, character);
         }
         // Whatever lies past the window ends at its end.
         for (place, moved) in places.iter().zip(&mut moved).filter(|(place, _)| inside(place)) {
@@ -167,30 +169,8 @@ fn window(body: &str, first: usize) -> Range<usize> {
     start..nth(start, WIDEST_LINE)
 }
 
-/// Text that cannot steer a terminal: control, C1 and direction characters become `\u{1b}`. Newlines stay.
-#[must_use]
-pub fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        if character == '\n' {
-            escaped.push('\n');
-        } else {
-            push_escaped(&mut escaped, character, false);
-        }
-    }
-    escaped
-}
-
-/// [`escape`] for what must stay on its line: newlines become `\u{a}`.
-#[must_use]
-pub fn one_line(text: &str) -> String {
-    escape(text).replace('\n', "\\u{a}")
-}
-
-fn push_escaped(text: &mut String, character: char, keep_tab: bool) {
-    let steers = character.is_control()
-        || matches!(character, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{e0000}'..='\u{e007f}');
-    if steers && !(keep_tab && character == '\t') {
+fn push_shown(text: &mut String, character: char) {
+    if steers(character) && character != '\t' {
         text.extend(character.escape_unicode());
     } else {
         text.push(character);

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::render::severity_name;
 use super::{Diagnostic, Label};
+use crate::inert;
 use crate::source::{Sources, Span};
 
 /// Name of the format, in the document's `schema`.
@@ -16,6 +17,12 @@ pub fn document(diagnostics: &[Value]) -> Value {
     let count = |severity: &str| diagnostics.iter().filter(|diagnostic| diagnostic["severity"] == severity).count();
     let (errors, warnings) = (count("error"), count("warning"));
     json!({ "schema": SCHEMA, "errors": errors, "warnings": warnings, "diagnostics": diagnostics })
+}
+
+/// The document as it is printed: indented, and no text of a plan in it steers a terminal.
+#[must_use]
+pub fn text(diagnostics: &[Value]) -> String {
+    inert::json(&format!("{:#}\n", document(diagnostics)))
 }
 
 /// One diagnostic. `plan` names the file of a diagnostic without a place; `folder` is put before every file's name.

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::standing::Standing;
 use super::{Run, deviations, number, standing, summary};
+use crate::inert::one_line;
 use crate::plan::DecisionRule;
 use crate::run::rehearsal;
 use crate::verdict::{ConditionOutcome, Verdict};
@@ -17,7 +18,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         text,
         "{}  {}{}",
         paint(run.assessment.verdict, &run.assessment.verdict.name().to_uppercase()),
-        printable(&run.plan.title),
+        one_line(&run.plan.title),
         standing_text(&standing::of(run), rehearsal::told(run.plan).is_some())
     );
     if run.assessment.requirements.is_empty() {
@@ -28,7 +29,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         .requirements
         .iter()
         .map(|requirement| {
-            let name = printable(&requirement.label);
+            let name = one_line(&requirement.label);
             let Some(deciding) = summary::governing(requirement) else {
                 return [requirement.verdict.name().to_owned(), name, String::new(), String::new(), String::new()];
             };
@@ -37,7 +38,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
                 || deciding.reason.clone().unwrap_or_default(),
                 |margin| format!("margin {margin}{}", band(deciding, run.assessment.rule)),
             );
-            [requirement.verdict.name().to_owned(), name, value, number::bound(deciding), printable(&margin)]
+            [requirement.verdict.name().to_owned(), name, value, number::bound(deciding), one_line(&margin)]
         })
         .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
@@ -50,7 +51,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     }
     text.push_str(rule(run));
     for deviation in deviations::of(run) {
-        let _ = writeln!(text, "  note: {}", printable(&deviation));
+        let _ = writeln!(text, "  note: {}", one_line(&deviation));
     }
     let _ = writeln!(text, "  run {}", run.provenance.run_id);
     text
@@ -84,13 +85,8 @@ fn standing_text(standing: &Standing, rehearsed: bool) -> String {
         Standing::Rehearsal if rehearsed => "  (REHEARSAL: not the test of the plan)".to_owned(),
         Standing::Rehearsal => "  (simulated rig: rehearsal)".to_owned(),
         Standing::Incomplete => "  (INCOMPLETE)".to_owned(),
-        Standing::NotCertifiable { missing } => format!("  (NOT CERTIFIABLE: lacks {})", printable(&missing.join(", "))),
+        Standing::NotCertifiable { missing } => format!("  (NOT CERTIFIABLE: lacks {})", one_line(&missing.join(", "))),
     }
-}
-
-/// A label on one line and without control characters: a plan's text must not drive a terminal.
-fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 fn padded(text: &str, width: usize) -> String {

@@ -14,7 +14,10 @@ pub mod standing;
 pub mod summary;
 mod tables;
 
-use crate::plan::{Format, Plan};
+use std::collections::BTreeSet;
+
+use crate::inert;
+use crate::plan::{Format, Plan, PlanFile};
 use crate::record::Record;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
@@ -104,7 +107,8 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     if html || pdf {
         let report = certificate::document(run, &figures);
         if html {
-            files.push(OutputFile { path: "certificate.html".to_owned(), bytes: document::html::html(&report).into_bytes() });
+            let page = inert::page(&document::html::html(&report));
+            files.push(OutputFile { path: "certificate.html".to_owned(), bytes: page.into_bytes() });
         }
         if pdf {
             let bytes = document::pdf::pdf(&report).map_err(OutputError::Pdf)?;
@@ -117,14 +121,27 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
         files.push(OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() });
     }
-    files.extend(
-        run.plan
-            .files
-            .iter()
-            .map(|file| OutputFile { path: format!("plan/{}", safe_path(&file.name)), bytes: file.text.clone().into_bytes() }),
-    );
+    files.extend(plan_files(run.plan));
+    tell_apart(&mut files);
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// The texts of the plan and of what it used, under the names that they have in the run folder.
+fn plan_files(plan: &Plan) -> Vec<OutputFile> {
+    let file = |file: &PlanFile| OutputFile { path: format!("plan/{}", safe_path(&file.name)), bytes: file.text.clone().into() };
+    let mut files: Vec<OutputFile> = plan.files.iter().map(file).collect();
+    tell_apart(&mut files);
+    files
+}
+
+/// The figures of a run in vectors, for a page: `figures/NAME_FIGURE.svg`.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let drawn = figures::all(run)?.into_iter();
+    Ok(drawn.map(|figure| OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() }).collect())
 }
 
 /// The table of a client that drove the rig.
@@ -146,23 +163,33 @@ fn wants(plan: &Plan, format: Format) -> bool {
     plan.report.formats.is_empty() || plan.report.formats.contains(&format)
 }
 
-/// A relative path that cannot leave the run folder: no empty, `.` or `..` part, no drive, no control character.
+/// A relative path that cannot leave the run folder, each of its parts a plain name on every system.
 fn safe_path(name: &str) -> String {
-    let parts: Vec<String> = name
-        .split(['/', '\\'])
-        .filter(|part| !matches!(*part, "" | "." | ".."))
-        .map(|part| {
-            part.chars()
-                .map(|c| if c.is_control() || matches!(c, ':' | '*' | '?' | '"' | '<' | '>' | '|') { '_' } else { c })
-                .collect()
-        })
-        .collect();
+    let parts = name.split(['/', '\\']).filter(|part| !matches!(*part, "" | "." | ".."));
+    let parts: Vec<String> = parts.map(inert::file_part).collect();
     if parts.is_empty() { "plan.psd".to_owned() } else { parts.join("/") }
+}
+
+/// Paths that differ only in the size of their letters are one file on many systems: the later one gets a number.
+fn tell_apart(files: &mut [OutputFile]) {
+    let mut seen = BTreeSet::new();
+    for file in files {
+        let own = file.path.clone();
+        let (stem, ending) = match own.rsplit_once('.') {
+            Some((stem, ending)) if !ending.contains('/') => (stem, format!(".{ending}")),
+            _ => (own.as_str(), String::new()),
+        };
+        let mut number = 1;
+        while !seen.insert(file.path.to_lowercase()) {
+            number += 1;
+            file.path = format!("{stem}-{number}{ending}");
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::safe_path;
+    use super::{OutputFile, safe_path, tell_apart};
 
     #[test]
     fn a_path_never_leaves_the_run_folder() {
@@ -170,5 +197,13 @@ mod tests {
         assert_eq!(safe_path("../../etc/passwd"), "etc/passwd");
         assert_eq!(safe_path("C:\\plans\\a\n.psd"), "C_/plans/a_.psd");
         assert_eq!(safe_path(".."), "plan.psd");
+    }
+    #[test]
+    fn no_two_files_are_one_where_the_size_of_letters_says_nothing() {
+        let mut files = ["tables/hit.csv", "tables/Hit.csv", "tables/HIT-2.csv", "plan/a", "plan/A"]
+            .map(|path| OutputFile { path: path.to_owned(), bytes: Vec::new() });
+        tell_apart(&mut files);
+        let paths = files.map(|file| file.path);
+        assert_eq!(paths, ["tables/hit.csv", "tables/Hit-2.csv", "tables/HIT-2-2.csv", "plan/a", "plan/A-2"]);
     }
 }

@@ -10,6 +10,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::ser::SerializeMap as _;
 
+use crate::inert;
+
 pub(super) use of_run::{event_kind, governing};
 
 /// Name and version of the format; a change that breaks a reader raises the number.
@@ -245,7 +247,7 @@ impl Summary {
     /// # Errors
     /// Never in practice: every value is a plain number or text.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string_pretty(self).map(|json| json + "\n")
+        serde_json::to_string_pretty(self).map(|json| inert::json(&json) + "\n")
     }
 
     /// The JSON Schema of `psd.summary/1`, as committed in `grammar/summary.schema.json`.

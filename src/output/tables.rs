@@ -7,6 +7,7 @@ mod cyclic;
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
 
 use super::{OutputError, OutputFile, Run, wants};
+use crate::inert;
 use crate::plan::Format;
 use crate::record::{History, ImpactStep, ProcedureRecord, RampStep, SweepStep};
 use crate::run::driven::DrivenStep;
@@ -35,11 +36,12 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
 
 /// One table in the formats the plan asks for.
 fn written(run: &Run<'_>, name: &str, mut frame: DataFrame, files: &mut Vec<OutputFile>) -> Result<(), PolarsError> {
+    let stem = inert::file_part(name);
     if wants(run.plan, Format::Csv) {
-        files.push(OutputFile { path: format!("tables/{name}.csv"), bytes: csv(&mut frame)? });
+        files.push(OutputFile { path: format!("tables/{stem}.csv"), bytes: csv(&mut frame)? });
     }
     if wants(run.plan, Format::Parquet) {
-        files.push(OutputFile { path: format!("tables/{name}.parquet"), bytes: parquet(&mut frame)? });
+        files.push(OutputFile { path: format!("tables/{stem}.parquet"), bytes: parquet(&mut frame)? });
     }
     Ok(())
 }
@@ -156,23 +158,5 @@ fn integers<T>(name: &str, steps: &[T], read: fn(&T) -> u64) -> Column {
 }
 
 fn texts<T>(name: &str, steps: &[T], read: fn(&T) -> &'static str) -> Column {
-    Column::new(name.into(), steps.iter().map(|step| inert(read(step))).collect::<Vec<String>>())
-}
-
-/// A text cell that no spreadsheet takes for a formula: one that starts like a formula gets a leading `'`.
-fn inert(cell: &str) -> String {
-    if cell.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{cell}") } else { cell.to_owned() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::inert;
-
-    #[test]
-    fn a_cell_that_starts_like_a_formula_becomes_text() {
-        for hostile in ["=1+1", "+1", "-1", "@sum", "\tx", "\rx"] {
-            assert_eq!(inert(hostile), format!("'{hostile}"));
-        }
-        assert_eq!(inert("contact"), "contact");
-    }
+    Column::new(name.into(), steps.iter().map(|step| inert::cell(read(step))).collect::<Vec<String>>())
 }

@@ -43,7 +43,9 @@ fn run(
         done += blown.history.steps.last().map_or(0, |last| last.step);
         let over = blown.stop.is_none();
         let known = OfBlow { own: plan.own, blow: &blown.results, before: inputs.results() };
-        let held = over.then(|| plan.condition.iter().all(|part| assess_condition(part, whole.decision_rule, &known).verdict == Verdict::Pass));
+        let held = over.then(|| {
+            plan.condition.iter().all(|part| assess_condition(part, whole.decision_rule, &known).verdict == Verdict::Pass)
+        });
         history.blows.push(Blow {
             velocity: striker_velocity,
             energy,
@@ -74,13 +76,7 @@ fn run(
 }
 
 /// To where the next blow begins: displacement (m) and force (N) there.
-fn bring(
-    between: Between,
-    home: f64,
-    setting: &Setting,
-    done: &mut u64,
-    session: &mut Session<'_>,
-) -> Result<(f64, f64), Stop> {
+fn bring(between: Between, home: f64, setting: &Setting, done: &mut u64, session: &mut Session<'_>) -> Result<(f64, f64), Stop> {
     match between {
         Between::Stay => session.read(),
         Between::Home => {

@@ -8,8 +8,7 @@ use crate::quantity::Dimension;
 use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
 
 fn below(limit: f64) -> Condition {
-    let value =
-        Formula::Result(ResultReference { procedure: ProcedureId(0), name: "max_displacement", part: Part::Value });
+    let value = Formula::Result(ResultReference { procedure: ProcedureId(0), name: "max_displacement", part: Part::Value });
     let test = Test::Compare { comparison: Comparison::Less, limit: Constant(limit) };
     Condition { text: String::new(), value, test, dimension: Dimension::LENGTH }
 }

@@ -66,7 +66,12 @@ pub(super) struct Setting {
 }
 
 impl Setting {
-    pub(super) fn evaluate(plan: &Impact, striker: &Striker, inputs: &mut Inputs<'_>, session: &Session<'_>) -> Result<Self, Stop> {
+    pub(super) fn evaluate(
+        plan: &Impact,
+        striker: &Striker,
+        inputs: &mut Inputs<'_>,
+        session: &Session<'_>,
+    ) -> Result<Self, Stop> {
         let mass = inputs.positive("mass", &plan.mass, Dimension::MASS)?;
         let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
         let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));

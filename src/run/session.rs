@@ -218,7 +218,7 @@ fn steps(kind: &ProcedureKind) -> Option<u64> {
         ProcedureKind::Impact(impact) => steps_of_blow(impact),
         ProcedureKind::Escalate(escalate) => {
             Some(steps_of_blow(&escalate.blow)?.saturating_mul(escalate.velocities.len() as u64))
-        },
+        }
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),

@@ -42,12 +42,7 @@ pub(super) fn perform(plan: &Unload, inputs: &mut Inputs<'_>, session: &mut Sess
     Performed { history: History::Move(steps), results, stop: outcome.err() }
 }
 
-fn go(
-    plan: &Unload,
-    inputs: &mut Inputs<'_>,
-    session: &mut Session<'_>,
-    steps: &mut Vec<RampStep>,
-) -> Result<Rest, Stop> {
+fn go(plan: &Unload, inputs: &mut Inputs<'_>, session: &mut Session<'_>, steps: &mut Vec<RampStep>) -> Result<Rest, Stop> {
     let stiffness = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS)?;
     let within = plan.within.as_ref().map(|within| inputs.positive("within", within, Dimension::FORCE)).transpose()?;
     let speed = inputs.speed(plan.speed.as_ref())?;

@@ -5,31 +5,30 @@ use super::procedures::IMPACT;
 use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind, Variant};
 use crate::quantity::Dimension;
 
-pub(super) const UNLOAD: BlockKind = BlockKind {
-    kind: Kind::Unload,
-    keyword: &["unload"],
-    naming: Naming::Named,
-    procedure: true,
-    fields: &[
-        Field::reference("specimen", Kind::Specimen, "what is unloaded").or_said("the only one declared"),
-        Field::quantity("stiffness", Dimension::STIFFNESS, "with which the force is expected to fall").above_zero().required_on(
-            RigKind::Real,
-            "stiffness = k0.stiffness",
-            "the behaviour's initial stiffness",
-        ),
-        Field::quantity("within", Dimension::FORCE, "largest force that counts as none")
-            .above_zero()
-            .or_said("a thousandth of the force at the start, or what noise and resolution can tell"),
-        Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own"),
-    ],
-    exports: &[],
-    results: &[
-        ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen rests"),
-        ResultKind::new("residual_force", Dimension::FORCE, "what it still carries there"),
-    ],
-    example: "unload rest { }",
-    doc: "Takes the load off: moves to where the restoring force is none",
-};
+pub(super) const UNLOAD: BlockKind =
+    BlockKind {
+        kind: Kind::Unload,
+        keyword: &["unload"],
+        naming: Naming::Named,
+        procedure: true,
+        fields: &[
+            Field::reference("specimen", Kind::Specimen, "what is unloaded").or_said("the only one declared"),
+            Field::quantity("stiffness", Dimension::STIFFNESS, "with which the force is expected to fall")
+                .above_zero()
+                .required_on(RigKind::Real, "stiffness = k0.stiffness", "the behaviour's initial stiffness"),
+            Field::quantity("within", Dimension::FORCE, "largest force that counts as none")
+                .above_zero()
+                .or_said("a thousandth of the force at the start, or what noise and resolution can tell"),
+            Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own"),
+        ],
+        exports: &[],
+        results: &[
+            ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen rests"),
+            ResultKind::new("residual_force", Dimension::FORCE, "what it still carries there"),
+        ],
+        example: "unload rest { }",
+        doc: "Takes the load off: moves to where the restoring force is none",
+    };
 
 /// What an `escalate` has besides the fields of an impact.
 const OWN: [Field; 6] = [
@@ -77,12 +76,20 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ResultKind::new("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
         ResultKind::new("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
         ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),
-        ResultKind::new("absorbed_energy", Dimension::ENERGY, "sum over the blows of what each absorbed up to its largest displacement"),
+        ResultKind::new(
+            "absorbed_energy",
+            Dimension::ENERGY,
+            "sum over the blows of what each absorbed up to its largest displacement",
+        ),
         ResultKind::list("velocities", Dimension::VELOCITY, "velocity of the striker in each blow"),
         ResultKind::list("blow_energies", Dimension::ENERGY, "energy of the striker in each blow"),
         ResultKind::list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
         ResultKind::list("residual_displacements", Dimension::LENGTH, "where the specimen was brought to after each blow"),
-        ResultKind::list("absorbed_energies", Dimension::ENERGY, "what each blow put into the specimen up to its largest displacement"),
+        ResultKind::list(
+            "absorbed_energies",
+            Dimension::ENERGY,
+            "what each blow put into the specimen up to its largest displacement",
+        ),
         ResultKind::list("impulses", Dimension::IMPULSE, "impulse of each blow"),
         ResultKind::list("energy_errors", Dimension::NUMBER, "what the energy balance of each blow misses, over its input"),
     ],

@@ -379,10 +379,6 @@ impl Variant {
         Self { name, arguments, doc, available: true }
     }
 
-    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
-        Self { name, arguments: &[], doc, available: false }
-    }
-
     #[must_use]
     pub fn argument(&self, name: &str) -> Option<&'static Field> {
         self.arguments.iter().find(|argument| argument.name == name)

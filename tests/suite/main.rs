@@ -16,4 +16,5 @@ mod plans;
 mod reference;
 mod rehearse;
 mod serve;
+mod specimens_page;
 mod sweep;

@@ -1,6 +1,7 @@
 //! What a run leaves: the bytes of every output, read back as their readers would.
 
 mod fixture;
+mod hostile;
 mod real;
 
 use std::io::Cursor;

@@ -5,5 +5,7 @@ mod falling;
 mod frame;
 mod identification;
 mod methods;
+mod portal;
 mod reference;
+mod specimens;
 mod support;

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::cli::provenance::sha256;
-use crate::diagnostic::excerpt::escape;
+use crate::inert::{self, one_line};
 use crate::output::{Amendment, Amends, Change, Provenance};
 use crate::plan::Plan;
 use crate::schema::{self, FieldType, Kind};
@@ -62,7 +62,7 @@ impl AmendmentFile {
 
     /// Its bytes.
     pub fn json(&self) -> String {
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+        inert::json(&serde_json::to_string_pretty(self).unwrap_or_default()) + "\n"
     }
 
     /// The id of the report of a run with the first `count` amendments.
@@ -96,7 +96,10 @@ pub fn amended(plan: &mut Plan, provenance: &mut Provenance, file: &AmendmentFil
     let mut amendments = Vec::new();
     for (before, one) in file.amendments.iter().enumerate() {
         if one.replaces != file.id(&provenance.run_id, before) {
-            return Err(format!("`{AMENDMENT}` takes the place of report {}, which is none of this run", escape(&one.replaces)));
+            return Err(format!(
+                "`{AMENDMENT}` takes the place of report {}, which is none of this run",
+                one_line(&one.replaces)
+            ));
         }
         let mut changes = Vec::new();
         for (field, text) in &one.particulars {

@@ -2,15 +2,18 @@
 //! run. Out: blocks, and the plan's files to go with them.
 
 use super::super::document::{Attachment, Block, Text};
-use super::super::{RealRun, Run, safe_path};
+use super::super::{RealRun, Run, plan_files};
 use super::pairs;
+use crate::inert;
 
 /// Plan, provenance, statements, signatures.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Plan as run"));
     for file in &run.plan.files {
         body.push(Block::part(file.name.as_str()));
-        body.push(Block::Code { lines: file.text.lines().map(str::to_owned).collect() });
+        // A tab is seen as the blanks that it stands for.
+        let lines = file.text.lines().map(|line| inert::printed(&line.replace('\t', "    ")));
+        body.push(Block::Code { lines: lines.collect() });
     }
     body.push(Block::section("Provenance"));
     body.push(provenance(run));
@@ -43,9 +46,8 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
 
 /// The plan and every file it used, under the names that they have in the run folder.
 pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
-    let attached =
-        |file: &crate::plan::PlanFile| Attachment { name: format!("plan/{}", safe_path(&file.name)), text: file.text.clone() };
-    run.plan.files.iter().map(attached).collect()
+    let named = plan_files(run.plan).into_iter().zip(&run.plan.files);
+    named.map(|(named, file)| Attachment { name: named.path, text: file.text.clone() }).collect()
 }
 
 fn provenance(run: &Run<'_>) -> Block {

@@ -15,6 +15,7 @@ mod results;
 use super::Run;
 use super::document::{Block, Document, Figure, Text};
 use super::figures::Drawn;
+use crate::inert;
 
 /// The whole report.
 pub(super) fn document(run: &Run<'_>, figures: &[Drawn]) -> Document {
@@ -43,7 +44,7 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn]) -> Document {
         title: title(run).into(),
         replaces: head::replaced(run),
         id: run.provenance.report_id().to_owned(),
-        date: run.provenance.date.clone(),
+        date: run.provenance.date.as_deref().map(inert::printed),
         front: particulars::front(run),
         verdict: head::verdict(run),
         marks: marks::boxed(run),

@@ -3,6 +3,8 @@
 
 use serde::Serialize;
 
+use crate::inert;
+
 /// What a piece of text is; how that looks is the renderer's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -102,14 +104,7 @@ impl From<String> for Text {
 
 /// Without what steers a printer or turns the direction of reading: a label must not read otherwise than it is written.
 pub(in crate::output) fn printable(text: &str) -> String {
-    text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
-}
-
-/// Control characters, marks of direction, and code points that are no characters.
-fn steers(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}' | '\u{fdd0}'..='\u{fdef}')
-        || u32::from(c) & 0xfffe == 0xfffe
+    inert::printed(text)
 }
 
 #[cfg(test)]

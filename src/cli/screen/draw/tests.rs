@@ -104,3 +104,23 @@ fn every_size_is_drawn() {
         assert_eq!(drawn.lines().count(), usize::from(size.1), "{size:?}");
     }
 }
+
+/// Whatever a plan, a person or a rig says, in every place of the screen where it is shown.
+#[test]
+fn hostile_labels_stand_where_they_are_shown() {
+    let labels: Vec<String> = serde_json::from_str(include_str!("../../../../tests/hostile_labels.json")).unwrap();
+    for label in labels {
+        let mut hostile = model();
+        (hostile.title, hostile.rig) = (label.clone(), label.clone());
+        if let Some(running) = &mut hostile.procedure {
+            running.name = label.clone();
+        }
+        for event in &mut hostile.events {
+            (event.text, event.procedure) = (label.clone(), Some(label.clone()));
+        }
+        let mut dialogue = Dialogue::new(Some(label.clone()));
+        dialogue.ask(&label);
+        let picture = picture((120, 40), &dialogue, &hostile);
+        assert!(!picture.chars().any(|c| crate::inert::steers(c) && c != '\n'), "{label:?}:\n{picture}");
+    }
+}

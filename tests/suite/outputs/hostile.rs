@@ -1,0 +1,255 @@
+//! Labels that want to be something else, in every sink: page, terminal, tables, JSON, file names, manifest, record. Each
+//! must come out as a text that stands there.
+
+use psd::check::{Checked, LoadFault, Loader, Options, check};
+use psd::diagnostic::{json, render};
+use psd::inert;
+use psd::output::{OutputFile, console, everything};
+use psd::plan::Format;
+use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
+use psd::record::{EventKind, Outcome};
+use rayon::prelude::*;
+
+use super::fixture::{Finished, finished};
+
+/// The labels, and one longer than any that a person writes.
+fn labels() -> Vec<String> {
+    let mut labels: Vec<String> = serde_json::from_str(include_str!("../../hostile_labels.json")).unwrap();
+    labels.push("long ".repeat(20_000));
+    labels.push("=".repeat(5_000));
+    labels
+}
+
+/// A run with the label wherever a text from outside can stand.
+fn run_with(label: &str) -> Finished {
+    let mut finished = finished();
+    let own = || label.to_owned();
+    finished.plan.title = own();
+    finished.plan.report.title = Some(own());
+    finished.plan.report.sign = vec![own(), own()];
+    finished.plan.report.figures.clear();
+    finished.plan.report.formats = vec![Format::Html, Format::Csv];
+    for field in ["customer", "operator", "laboratory", "specimen_id", "deviations", "notes", "date"] {
+        finished.plan.particulars.push((field, own()));
+    }
+    finished.plan.settings.push((own(), own()));
+    finished.plan.rig.name = own();
+    for file in &mut finished.plan.files {
+        file.name = own();
+        file.text = own();
+    }
+    for (requirement, outcome) in finished.plan.requirements.iter_mut().zip(&mut finished.assessment.requirements) {
+        requirement.label = own();
+        outcome.label = own();
+        for condition in &mut outcome.conditions {
+            condition.text = own();
+            condition.reason = Some(own());
+        }
+    }
+    let rig = &mut finished.record.rig;
+    (rig.name, rig.model, rig.serial, rig.firmware) = (own(), own(), own(), own());
+    for (event, kind) in finished.record.events.iter_mut().zip([EventKind::Fault, EventKind::Inspection]) {
+        (event.kind, event.text) = (kind, own());
+    }
+    finished.record.outcome = Outcome::Aborted { reason: own() };
+    finished.provenance.date = Some(own());
+    finished
+}
+
+fn files_of(finished: &Finished) -> Vec<OutputFile> {
+    everything(&finished.run()).unwrap()
+}
+
+fn text<'a>(files: &'a [OutputFile], path: &str) -> &'a str {
+    str::from_utf8(&files.iter().find(|file| file.path == path).unwrap().bytes).unwrap()
+}
+
+/// What of a text would steer, newlines apart.
+fn steering(text: &str) -> String {
+    text.chars().filter(|c| inert::steers(*c) && *c != '\n').collect()
+}
+
+/// The tags of a page, each with the names of its attributes.
+fn tags(page: &str) -> Vec<String> {
+    let names = |tag: &str| {
+        let mut outside = String::new();
+        for (at, part) in tag.split('"').enumerate() {
+            outside.push_str(if at % 2 == 0 { part } else { "" });
+        }
+        outside
+    };
+    page.split('<').skip(1).map(|after| names(after.split('>').next().unwrap())).collect()
+}
+
+#[test]
+fn no_label_is_markup_on_a_page() {
+    let plain = tags(text(&files_of(&run_with("a plain label")), "certificate.html"));
+    assert!(plain.len() > 200);
+    labels().par_iter().for_each(|label| {
+        let files = files_of(&run_with(label));
+        let page = text(&files, "certificate.html");
+        assert_eq!(steering(page), "", "{label:?}");
+        // A label without letters may be told as missing, and one of lines is more lines of the plan.
+        if !label.trim().is_empty() && !label.contains(['\n', '\r', '\u{85}', '\u{2028}', '\u{2029}', '\u{b}', '\u{c}']) {
+            let tags = tags(page);
+            assert!(tags == plain, "{label:?}");
+        }
+        for forbidden in ["<script", "<img src=x", "<!--", "src=\"http", "href=", "@import", "url("] {
+            assert!(!page.contains(forbidden), "{label:?}: {forbidden}");
+        }
+    });
+}
+
+/// Every text goes to paper as data: typst would fail on markup that makes no sense, and a form made for archives takes no
+/// script and no link.
+#[test]
+fn no_label_is_markup_on_paper() {
+    let paper = |label: &str| {
+        let mut finished = run_with(label);
+        finished.plan.report.formats = vec![Format::Pdf];
+        finished.provenance.date = Some("2026-05-31".to_owned());
+        files_of(&finished).into_iter().find(|file| file.path == "certificate.pdf").unwrap().bytes
+    };
+    // Each kind once: paper takes its time.
+    let marks = [
+        "#eval",
+        "<script",
+        "</style",
+        "[31m",
+        "\u{202e}",
+        "\u{e0041}",
+        "\u{0}",
+        "\u{2028}",
+        "\u{ffff}",
+        "CON",
+        "long ",
+        "\u{301}",
+    ];
+    let all = labels();
+    let of = |mark: &&str| all.iter().find(|label| label.contains(*mark)).unwrap().chars().take(2000).collect::<String>();
+    let labels: Vec<String> = marks.iter().map(of).collect();
+    labels.par_iter().for_each(|label| {
+        let bytes = paper(label);
+        let holds = |word: &[u8]| bytes.windows(word.len()).any(|found| found == word);
+        assert!(bytes.starts_with(b"%PDF-1.7") && holds(b"<pdfaid:part>3"), "{label:?}");
+        for forbidden in [b"/JavaScript".as_slice(), b"/Launch", b"/OpenAction", b"/URI"] {
+            assert!(!holds(forbidden), "{label:?}");
+        }
+    });
+    assert!(paper(&labels[0]) == paper(&labels[0]), "the same bytes again");
+}
+
+#[test]
+fn no_label_steers_a_terminal_or_makes_another_line() {
+    let lines = |label: &str| console::verdict_text(&run_with(label).run(), false).lines().count();
+    let plain = lines("a plain label");
+    for label in labels() {
+        let told = console::verdict_text(&run_with(&label).run(), true);
+        assert_eq!(steering(&inert::terminal(&told).replace("\u{1b}[", "")), "", "{label:?}");
+        assert_eq!(steering(&console::verdict_text(&run_with(&label).run(), false)), "", "{label:?}");
+        assert!(lines(&label) <= plain, "{label:?}");
+        assert_eq!(steering(&inert::one_line(&label)), "");
+        let gated = inert::terminal(&label);
+        assert!(steering(&gated).chars().all(|c| matches!(c, '\u{1b}' | '\t')), "{label:?}: {gated:?}");
+    }
+}
+
+#[test]
+fn no_label_is_lost_or_loose_in_json() {
+    for label in labels() {
+        let files = files_of(&run_with(&label));
+        let summary = text(&files, "summary.json");
+        assert_eq!(steering(summary), "", "{label:?}");
+        let value: serde_json::Value = serde_json::from_str(summary).unwrap();
+        assert_eq!(value["plan"]["title"], label.as_str());
+        assert_eq!(value["requirements"][0]["name"], label.as_str());
+        assert_eq!(value["outcome"]["reason"], label.as_str());
+    }
+}
+
+#[test]
+fn no_label_is_a_formula_in_a_table() {
+    for label in labels() {
+        let cell = inert::cell(&label);
+        assert!(!cell.trim_start().starts_with(['=', '+', '-', '@', '\t', '\r', '\u{ff1d}']), "{label:?}");
+        assert_eq!(steering(&cell), "");
+        assert!(!cell.contains('\n'));
+    }
+    // Numbers are numbers, also those below zero.
+    let files = files_of(&run_with("x"));
+    let table = text(&files, "tables/hit.csv");
+    assert!(table.lines().skip(1).any(|line| line.split(',').any(|cell| cell.starts_with('-'))) && !table.contains('\''));
+}
+
+#[test]
+fn no_label_is_another_place_or_another_line_of_the_manifest() {
+    for label in labels() {
+        let mut finished = run_with(&label);
+        finished.plan.files[0].text = "first".to_owned();
+        for (at, name) in ["con", "Hit", "hit"].into_iter().enumerate() {
+            finished.record.procedures[at].name = name.to_owned();
+        }
+        let files = files_of(&finished);
+        let mut seen = std::collections::BTreeSet::new();
+        for file in &files {
+            assert!(seen.insert(file.path.to_lowercase()), "{label:?}: {} twice", file.path);
+            for part in file.path.split('/') {
+                // One that was cut and then numbered is longer than one that is cut.
+                assert!(inert::file_part(part) == part || (100..256).contains(&part.len()), "{label:?}: {}", file.path);
+            }
+            assert!(
+                ["plan/", "tables/", "certificate.", "summary.json", "manifest.sha256"]
+                    .iter()
+                    .any(|own| file.path.starts_with(own))
+            );
+        }
+        assert!(seen.contains("tables/con-.csv") && seen.contains("tables/hit.csv") && seen.contains("tables/hit-2.csv"));
+        assert_eq!(text(&files, "manifest.sha256").lines().count(), files.len() - 1, "{label:?}");
+    }
+}
+
+struct Nothing;
+
+impl Loader for Nothing {
+    fn load(&self, _: &str) -> Result<String, LoadFault> {
+        Err(LoadFault::NotFound)
+    }
+}
+
+#[test]
+fn no_label_steers_a_terminal_from_a_diagnostic() {
+    for label in labels() {
+        let quoted = label.replace('\\', "\\\\").replace('"', "\\\"");
+        for plan in
+            [label.clone(), format!("plan \"{quoted}\" {{ customr = \"{quoted}\" }}\nuse \"{quoted}\"\nparam x = {label}\n")]
+        {
+            let Checked { diagnostics, sources, .. } = check("plan.psd", &plan, &Nothing, &Options::default());
+            let told = render::render_all(&diagnostics, &sources, &render::Appearance::plain());
+            assert_eq!(steering(&told), "", "{label:?}: {told}");
+            let found: Vec<_> = diagnostics.iter().map(|found| json::diagnostic(found, &sources, &label, "")).collect();
+            let document = json::text(&found);
+            assert_eq!(steering(&document), "", "{label:?}");
+            let read: serde_json::Value = serde_json::from_str(&document).unwrap();
+            assert_eq!(read["diagnostics"].as_array().unwrap().len(), diagnostics.len());
+        }
+    }
+}
+
+#[test]
+fn no_label_is_another_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal.psdj");
+    let mut journal = Journal::create(Box::new(FileStorage::create(&path).unwrap()), Durability::Buffered);
+    journal.append(EntryKind::Header, &serde_json::json!({})).unwrap();
+    let labels: Vec<String> = labels().into_iter().map(|label| label.chars().take(8192).collect()).collect();
+    for label in &labels {
+        journal.append(EntryKind::Event, &serde_json::json!({ "text": label })).unwrap();
+    }
+    journal.promise().unwrap();
+    drop(journal);
+    let bytes = std::fs::read(&path).unwrap();
+    assert!(bytes.iter().all(|byte| (b' '..=b'~').contains(byte) || *byte == b'\n'));
+    let found = recover(&bytes).unwrap();
+    let texts: Vec<&str> = found.lines[1..].iter().map(|line| line.body["text"].as_str().unwrap()).collect();
+    assert_eq!(texts, labels);
+}
