@@ -16,7 +16,11 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     ResultKind::new("max_displacement", Dimension::LENGTH, "largest size of the measured displacement"),
     ResultKind::new("loop_energy", Dimension::ENERGY, "energy of the hysteresis loop, with `return = true`"),
     ResultKind::new("relaxation", Dimension::FORCE, "mean loss of force during a pause"),
-    ResultKind::new("tangent_stiffness", Dimension::STIFFNESS, "secant of the last outward step: the tangent where the ramp ended"),
+    ResultKind::new(
+        "tangent_stiffness",
+        Dimension::STIFFNESS,
+        "secant of the last outward step: the tangent where the ramp ended",
+    ),
     ResultKind::measured("yield_force", Dimension::FORCE, "force at the knee of a bilinear fit"),
     ResultKind::measured("yield_displacement", Dimension::LENGTH, "displacement at the knee of a bilinear fit"),
     ResultKind::measured("hardened_stiffness", Dimension::STIFFNESS, "slope past the knee of a bilinear fit"),

@@ -230,9 +230,7 @@ fn measured(record: &Record) -> String {
             }
             History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
             History::Escalate(history) => {
-                for step in history.blows.iter().flat_map(|blow| &blow.history.steps) {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.velocity, step.restoring_force).unwrap();
-                }
+                writeln!(told, "{:?}", history.blows.iter().map(|blow| (&blow.results, blow.rest)).collect::<Vec<_>>()).unwrap();
             }
             History::Cycle(history) => {
                 for step in &history.steps {
