@@ -1,6 +1,7 @@
 //! What every part of the check shares: the files, the scope, the faults so far, and values already worked out.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use super::Loader;
 use super::data::DataFile;
@@ -8,6 +9,7 @@ use super::faults::names as fault;
 use super::scope::Scope;
 use crate::diagnostic::Diagnostic;
 use crate::formula::{Formula, ProcedureId};
+use crate::plan::Frame;
 use crate::quantity::Dimension;
 use crate::source::{Sources, Span};
 use crate::syntax::ast::Expr;
@@ -67,6 +69,8 @@ pub struct Checker<'a> {
     pub loader: &'a dyn Loader,
     /// Data files that the plan names, each once.
     pub data: Vec<DataFile>,
+    /// Frames of the specimens that have storeys, by their blocks; None of one with a fault.
+    pub frames: BTreeMap<usize, Option<Rc<Frame>>>,
     pub faults: Vec<Diagnostic>,
     /// Whether names may be missing because a used file could not be read.
     pub names_lost: bool,
@@ -89,7 +93,8 @@ impl<'a> Checker<'a> {
         names_lost: bool,
     ) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
-        Self { sources, scope, loader, data: Vec::new(), faults, names_lost, unread, known, used, real_rig: None, stack }
+        let (data, frames) = (Vec::new(), BTreeMap::new());
+        Self { sources, scope, loader, data, frames, faults, names_lost, unread, known, used, real_rig: None, stack }
     }
 
     /// Notes a fault; returns None, so that a caller can leave with it.

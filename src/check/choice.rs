@@ -60,9 +60,6 @@ impl<'a> Checker<'a> {
         let Some(variant) = variants.iter().find(|variant| variant.name == name) else {
             return self.fail(fault::unknown_variant(field, name, span, variants));
         };
-        if !variant.available {
-            return self.fail(fault::variant_of_later_version(field, variant, span, variants));
-        }
         let (placed, rest) = self.place_arguments(variant, arguments, written.span)?;
         Some(Chosen { variant, arguments: placed, rest })
     }

@@ -3,8 +3,10 @@
 
 use super::checker::{Checker, Place, Shape, Typed, literal};
 use super::faults::{types as fault, values};
+use super::frame;
 use crate::formula::{Formula, Operator};
 use crate::quantity::{Dimension, Exponent};
+use crate::schema::Kind;
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
 
@@ -115,7 +117,25 @@ impl<'a> Checker<'a> {
             };
             return Some(Typed { shape: Shape::Number, formula: part.clone(), ..list });
         }
+        if let Some(length) = self.length_of(&list.formula)
+            && place_in_list >= length
+        {
+            return self.fail(values::no_such_entry(index.span, place_in_list, length));
+        }
         Some(Typed { shape: Shape::Number, formula: Formula::Index(Box::new(list.formula.clone()), place_in_list), ..list })
+    }
+
+    /// Entries of a list that the run gives, where the plan tells: a frame has one for each storey.
+    fn length_of(&mut self, list: &Formula) -> Option<usize> {
+        let block = self.procedure(list.as_result()?.procedure)?;
+        if self.scope.blocks[block].kind.kind != Kind::Shake {
+            return None;
+        }
+        let known = self.faults.len();
+        let specimen = self.specimen_block(block);
+        // What is wrong with the specimen is said in its place.
+        self.faults.truncate(known);
+        frame::frame(self, specimen?).map(|frame| frame.degrees_of_freedom())
     }
 
     /// A number known before the run becomes a constant; one that is not finite is a fault.

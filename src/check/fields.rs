@@ -52,12 +52,12 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A storeyed specimen is of a later version, which is said already; it needs no behaviour besides.
+    /// What stands in place of a field that is required otherwise: storeys or matrices of a behaviour.
     fn replaced(&self, block: usize, field: &str) -> bool {
         let declared = &self.scope.blocks[block];
         let has = |name: &str| declared.block.fields.iter().any(|entry| entry.key.node == name);
         match declared.kind.kind {
-            Kind::Specimen => field == "behaviour" && has("storeys"),
+            Kind::Specimen => field == "behaviour" && super::frame::FIELDS.iter().any(|frame| has(frame)),
             // What a load cell alone lacks is said in its place.
             Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
             _ => false,
@@ -91,12 +91,13 @@ impl<'a> Checker<'a> {
             (Some(procedure), _) => Reads::Before(procedure),
             (None, Kind::Specimen) => Reads::Nothing("a specimen"),
             (None, Kind::Striker) => Reads::Nothing("a striker"),
+            (None, Kind::Ground) => Reads::Nothing("a ground motion"),
             (None, Kind::Rig) => Reads::Nothing("a rig"),
             (None, Kind::Limits) => Reads::Nothing("a limit"),
             (None, _) => Reads::Nothing("this field"),
         };
-        let critical =
-            matches!(declared.kind.kind, Kind::Impact | Kind::Escalate) && declared.block.fields[entry].key.node == "time_step";
+        let critical = matches!(declared.kind.kind, Kind::Impact | Kind::Escalate | Kind::Shake)
+            && declared.block.fields[entry].key.node == "time_step";
         Place { entry: Some((block, entry)), reads, critical }
     }
 

@@ -105,7 +105,7 @@ fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
     })
 }
 
-fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> {
+pub fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> {
     let Some((entry, _)) = checker.given(block, "inspect") else { return Some(Vec::new()) };
     let place = checker.place(block, entry);
     let chosen = checker.choices(block, "inspect")?;

@@ -5,7 +5,7 @@ use super::checker::Checker;
 use super::faults::methods as fault;
 use super::impact::time_step_before_the_run;
 use crate::mechanics::method::longest_stable_step;
-use crate::plan::{Contact, Impact, Integrator, Specimen};
+use crate::plan::{Behaviour, Contact, Impact, Integrator, Specimen};
 
 /// The integrator a block names, else the tangent form.
 pub fn integrator(checker: &mut Checker, block: usize) -> Option<Integrator> {
@@ -42,7 +42,7 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Op
     let (Some(step), Some(mass)) = (time_step_before_the_run(impact), impact.mass.constant()) else { return };
     let virtual_rig = checker.real_rig.is_none();
     let specimen = specimen.filter(|_| virtual_rig).and_then(|specimen| specimen.behaviour.as_ref());
-    let behaves = specimen.map_or(0.0, crate::plan::Behaviour::initial_stiffness);
+    let behaves = specimen.map_or(0.0, Behaviour::initial_stiffness);
     let assumed = impact.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
     let shortfall = assumed.map_or(0.0, |assumed| behaves - assumed);

@@ -15,12 +15,16 @@ mod escalate;
 mod expression;
 mod faults;
 mod fields;
+mod frame;
+mod ground;
+mod ground_record;
 mod impact;
 mod imports;
 mod inspect;
 mod integrator;
 mod limits;
 mod literal;
+mod matrix;
 mod move_block;
 mod names;
 mod parameters;
@@ -31,6 +35,7 @@ mod report;
 mod require;
 mod rig;
 mod scope;
+mod shake;
 mod specimen;
 mod stiffness_ramp;
 mod striker;
@@ -40,12 +45,13 @@ mod tests;
 mod unload;
 mod warnings;
 
+pub use ground_record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
 pub use imports::{DEEPEST, MOST_FILES};
 pub use literal::MOST_ENTRIES;
 pub use stiffness_ramp::MOST_READINGS;
 
 use crate::diagnostic::Diagnostic;
-use crate::plan::{Plan, PlanFile, Procedure, ProcedureKind};
+use crate::plan::{Plan, PlanFile, Procedure, ProcedureKind, Specimen};
 use crate::schema::Kind;
 use crate::source::{FileId, Sources, Span};
 use checker::Checker;
@@ -128,11 +134,13 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     let specimens: Vec<_> =
         of_kind(checker, Kind::Specimen).into_iter().map(|block| specimen::specimen(checker, block)).collect();
     let strikers: Vec<_> = of_kind(checker, Kind::Striker).into_iter().map(|block| striker::striker(checker, block)).collect();
+    let grounds: Vec<_> = of_kind(checker, Kind::Ground).into_iter().map(|block| ground::ground(checker, block)).collect();
     let mut rig = rig::rig_of_run(checker, options.rig.as_deref());
     let limits = checker.limits(rig.as_ref().and_then(|rig| rig.limits));
     real_rig::complete(checker, rig.as_mut(), limits.as_ref());
     let procedures = procedures::procedures(checker);
     procedures::hold_specimen(checker, &procedures);
+    procedures::hold_axes(checker, &procedures, &specimens);
     if let Some(limits) = &limits {
         limits::hold_targets(checker, limits);
         limits::hold_cycles(checker, &procedures, limits);
@@ -142,6 +150,12 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             let striker = strikers.get(impact.striker).and_then(Option::as_ref);
             warnings::impact(checker, *block, impact, striker);
             integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
+        }
+        if let Some(Procedure { kind: ProcedureKind::Shake(shaking), .. }) = procedure
+            && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(shaking.specimen)
+            && let Some(Some(ground)) = grounds.get(shaking.ground)
+        {
+            shake::judge(checker, *block, shaking, frame, ground);
         }
     }
     let requirements = checker.requirements();
@@ -165,6 +179,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         parameters,
         specimens: specimens.into_iter().collect::<Option<_>>()?,
         strikers: strikers.into_iter().collect::<Option<_>>()?,
+        grounds: grounds.into_iter().collect::<Option<_>>()?,
         rig: rig?.plan,
         limits: limits?.limits,
         procedures: by_place.into_iter().collect::<Option<_>>()?,

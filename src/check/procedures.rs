@@ -1,9 +1,9 @@
 //! What is run, in the order written, and on which specimen.
 
 use super::checker::Checker;
-use super::faults::{names, whole as fault};
-use super::{cycle, damping_sweep, escalate, impact, inspect, move_block, stiffness_ramp, unload};
-use crate::plan::Procedure;
+use super::faults::{frames, names, whole as fault};
+use super::{cycle, damping_sweep, escalate, impact, inspect, move_block, shake, stiffness_ramp, unload};
+use crate::plan::{Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
 
@@ -19,6 +19,7 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
         Kind::StiffnessRamp => stiffness_ramp::stiffness_ramp(checker, block),
         Kind::DampingSweep => damping_sweep::damping_sweep(checker, block),
         Kind::Impact => impact::impact(checker, block),
+        Kind::Shake => shake::shake(checker, block),
         Kind::Cycle => cycle::cycle(checker, block),
         Kind::Escalate => escalate::escalate(checker, block),
         Kind::Unload => unload::unload(checker, block),
@@ -45,6 +46,31 @@ pub fn hold_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedu
             };
             let fault = fault::another_specimen(name(specimen), span, name(first), first_span);
             checker.faults.push(fault);
+        }
+    }
+}
+
+/// What drives one actuator cannot drive the several of a frame, and a real rig has one.
+pub fn hold_axes(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], specimens: &[Option<Specimen>]) {
+    let on_rig = procedures.iter().find_map(|(_, procedure)| procedure.as_ref()?.kind.specimen()).unwrap_or(0);
+    let Some(Some(specimen)) = specimens.get(on_rig) else { return };
+    let axes = specimen.degrees_of_freedom();
+    if axes == 1 {
+        return;
+    }
+    let declared = checker.scope.of_kind(Kind::Specimen).nth(on_rig).map(|(_, block)| block.block.head);
+    for (block, procedure) in procedures {
+        let Some(procedure) = procedure else { continue };
+        let head = checker.scope.blocks[*block].block.head;
+        match procedure.kind {
+            ProcedureKind::Shake(_) if checker.real_rig.is_some() => {
+                checker.faults.push(frames::frame_on_real_rig(&specimen.name, axes, head));
+            }
+            ProcedureKind::Shake(_) | ProcedureKind::Inspect { .. } => {}
+            _ => {
+                let keyword = procedure.kind.keyword();
+                checker.faults.push(frames::one_degree_of_freedom(keyword, &specimen.name, axes, head, declared));
+            }
         }
     }
 }

@@ -134,7 +134,7 @@ impl<'a> Scope<'a> {
             self.poison(rest, faults);
             return;
         }
-        if library && !matches!(kind.kind, Kind::Specimen | Kind::Striker | Kind::Rig | Kind::Limits) {
+        if library && !matches!(kind.kind, Kind::Specimen | Kind::Striker | Kind::Ground | Kind::Rig | Kind::Limits) {
             faults.push(fault::not_in_library(&kind.words(), block.head));
             self.poison(rest, faults);
             return;

@@ -2,7 +2,8 @@
 
 use super::behaviour::{self, Written};
 use super::checker::Checker;
-use super::faults::{names as fault, specimens};
+use super::faults::{frames, names as fault, specimens};
+use super::frame;
 use super::limits::CheckedLimits;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen};
 use crate::schema::{FieldType, Kind};
@@ -12,13 +13,15 @@ use crate::source::Span;
 pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let declared = &checker.scope.blocks[block];
     let (name, head) = (declared.name, declared.block.head);
+    if frame::is_frame(checker, block) {
+        let frame = frame::frame(checker, block)?;
+        let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
+        return Some(Specimen { name: name?.node.clone(), mass, frame, behaviour: None, damping: 0.0, coulomb: 0.0 });
+    }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {
         // A misspelt field is said already.
-    } else if mass.is_none()
-        && !any_given(checker, block)
-        && !declared.block.fields.iter().any(|entry| entry.key.node == "storeys")
-    {
+    } else if mass.is_none() && !any_given(checker, block) {
         checker.faults.push(fault::missing_field(declared.kind, name, head, "mass", "mass = 0.73 kg"));
     } else if mass.is_none()
         && checker.given(block, "mass").is_none()
@@ -36,7 +39,8 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
-    Some(Specimen { name: name?.node.clone(), mass: mass?, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
+    let frame = None;
+    Some(Specimen { name: name?.node.clone(), mass: mass?, frame, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
@@ -63,6 +67,12 @@ fn own_mass(checker: &mut Checker, block: usize) -> Option<f64> {
 /// The value of `beam.mass`, `beam.stiffness` or another; None where the specimen has a fault that is reported in its place.
 pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -> Option<f64> {
     let declared = &checker.scope.blocks[block];
+    if frame::is_frame(checker, block) {
+        return match name {
+            "mass" => frame::frame(checker, block).map(|frame| frame.total_mass()),
+            _ => checker.fail(frames::no_one_of_its_kind(declared.name, name, asked_at)),
+        };
+    }
     if name == "mass" {
         return mass(checker, block);
     }

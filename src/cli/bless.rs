@@ -69,7 +69,7 @@ fn remove(path: &Path) -> std::io::Result<()> {
 /// Results that a visitor reads and a later run is compared with; not the plan, which lies beside them, and no Parquet.
 fn is_kept(path: &str) -> bool {
     let is = |folder: &str, ending: &str| path.starts_with(folder) && Path::new(path).extension().is_some_and(|e| e == ending);
-    matches!(path, "summary.json" | "certificate.html") || is("figures/", "png") || is("tables/", "csv")
+    matches!(path, "summary.json" | "certificate.html" | "certificate.pdf") || is("figures/", "png") || is("tables/", "csv")
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use crate::plan::{Interval, Plan};
 use crate::record::Record;
-use crate::rig::{DeclaredNoise, EachReading, Identity, OWN_SPEED, Offer, Reading, Rig, RigFault, VirtualRig};
+use crate::rig::{DeclaredNoise, EachReading, Identity, OWN_SPEED, Offer, Reading, Rig, RigFault, virtual_rig};
 use crate::run::{self, Inspection, Observer, StepReport};
 
 /// What one procedure asked of the rig, SI.
@@ -29,18 +29,19 @@ pub struct Reach {
 
 /// The rig. It shares what it notes with the observer that hears which procedure runs.
 pub struct Watched {
-    inner: VirtualRig,
+    inner: Box<dyn Rig>,
     /// Of the rig that it stands for, m/s.
     own_speed: Option<f64>,
     reaches: Rc<RefCell<Vec<Reach>>>,
-    target: f64,
+    /// The last targets, m; before the first every axis is at 0.
+    target: Vec<f64>,
 }
 
 impl Watched {
     /// Runs `plan` on its own virtual rig. `own_speed` is that of the rig that it stands for, m/s.
     pub fn run(plan: &Plan, own_speed: Option<f64>) -> (Record, Vec<Reach>) {
         let reaches = Rc::new(RefCell::new(Vec::new()));
-        let mut rig = Self { inner: VirtualRig::of_plan(plan), own_speed, reaches: Rc::clone(&reaches), target: 0.0 };
+        let mut rig = Self { inner: virtual_rig(plan), own_speed, reaches: Rc::clone(&reaches), target: Vec::new() };
         let record = run::run(plan, &mut rig, &mut Listener { reaches: Rc::clone(&reaches) });
         let noted = reaches.borrow().clone();
         (record, noted)
@@ -54,12 +55,12 @@ impl Watched {
     }
 
     fn note_target(&mut self, targets: &[f64], speed: f64) {
-        let Some(target) = targets.first().copied() else { return };
-        let increment = (target - self.target).abs();
-        self.target = target;
+        let before = self.target.iter().copied().chain(std::iter::repeat(0.0));
+        let increment = targets.iter().zip(before).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+        self.target = targets.to_vec();
         self.note(|reach| {
             reach.moved = true;
-            reach.displacement = widened(reach.displacement, target);
+            reach.displacement = targets.iter().copied().fold(reach.displacement, widened);
             reach.increment = reach.increment.max(increment);
             if increment > 0.0 {
                 reach.speed = reach.speed.max(speed.abs());
@@ -68,12 +69,12 @@ impl Watched {
     }
 
     fn note_reading(&self, reading: &Reading, at_rest: bool) {
-        let (Some(force), Some(displacement)) = (reading.force.first(), reading.displacement.first()) else { return };
         self.note(|reach| {
-            reach.force = widened(reach.force, *force);
-            reach.displacement = widened(reach.displacement, *displacement);
+            reach.force = reading.force.iter().copied().fold(reach.force, widened);
+            reach.displacement = reading.displacement.iter().copied().fold(reach.displacement, widened);
             if at_rest && reach.moved {
-                reach.tracking_error = reach.tracking_error.max((displacement - self.target).abs());
+                let errors = reading.displacement.iter().zip(&self.target).map(|(measured, target)| (measured - target).abs());
+                reach.tracking_error = errors.fold(reach.tracking_error, f64::max);
             }
         });
     }
@@ -173,9 +174,9 @@ impl Observer for Listener {
         });
     }
 
-    fn step_done(&mut self, &StepReport { step, .. }: &StepReport) {
+    fn step_done(&mut self, StepReport { step, .. }: &StepReport) {
         if let Some(reach) = self.reaches.borrow_mut().last_mut() {
-            reach.steps = reach.steps.max(step);
+            reach.steps = reach.steps.max(*step);
         }
     }
 

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use super::columns::columns;
 use super::dry_rig::{Reach, Watched};
 use super::exit::Exit;
+use super::explain_shake;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
@@ -29,9 +30,10 @@ pub enum Explained<'a> {
 impl<'a> Explained<'a> {
     /// Runs the plan dry, where the specimen that it tests has a behaviour or none is tested.
     pub fn of(plan: &'a Plan) -> Self {
-        let tested = plan.procedures.iter().find_map(|procedure| procedure.kind.specimen());
-        match tested.or(Some(0)).and_then(|place| plan.specimens.get(place)) {
-            Some(specimen) if specimen.behaviour.is_none() => Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name },
+        match plan.specimen_on_the_rig() {
+            Some(specimen) if specimen.behaviour.is_none() && specimen.frame.is_none() => {
+                Self::Unknown { specimen: &specimen.name, rig: &plan.rig.name }
+            }
             _ => Self::Dry(Box::new(DryRun::of(plan))),
         }
     }
@@ -112,6 +114,10 @@ impl<'a> DryRun<'a> {
                 && !history.steps.is_empty()
             {
                 section(&format!("{}, impact", procedure.name), impact(history));
+            }
+            if let History::Shake(history) = &procedure.history {
+                section(&format!("{}, modes", procedure.name), explain_shake::modes(history));
+                section(&format!("{}, shake", procedure.name), explain_shake::steps(history));
             }
         }
         section("Limits", self.limits());
@@ -290,6 +296,7 @@ mod tests {
         let specimen = Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
             damping: 0.0,
             coulomb: 0.0,
@@ -317,6 +324,7 @@ mod tests {
             parameters: Vec::new(),
             specimens: vec![specimen],
             strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
+            grounds: Vec::new(),
             rig: RigPlan {
                 name: "noisy".to_owned(),
                 link: Link::Virtual(VirtualLink { noise: 5.0, lag: 0.1, ..VirtualLink::default() }),

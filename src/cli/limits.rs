@@ -24,12 +24,14 @@ pub fn limits() -> Result<Exit, Failure> {
         (check::MOST_FILES, "files of one plan, the plan included"),
         (check::DEEPEST, "files that use files, one inside another"),
         (check::MOST_ENTRIES, "entries of one list or range"),
+        (check::MOST_GROUND_SAMPLES, "samples of one ground motion"),
+        (plan::MOST_STOREYS, "storeys of one frame"),
     ]
     .map(|(bound, what)| (bound.to_string(), what));
     let reckoned = [
         (check::MOST_READINGS, "readings of one stiffness ramp"),
         (run::MOST_SAMPLES, "readings of one stroke of a damping sweep"),
-        (plan::MOST_STEPS, "steps of one impact"),
+        (plan::MOST_STEPS, "steps of one impact, or of a shake times its storeys"),
     ]
     .map(|(bound, what)| (format!("{bound:.0}"), what));
     give(&counted.iter().chain(&reckoned).fold(String::new(), |mut text, (bound, what)| {

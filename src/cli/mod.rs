@@ -12,6 +12,7 @@ mod evidence;
 mod exit;
 mod explain;
 mod explain_plan;
+mod explain_shake;
 mod fmt;
 mod limits;
 mod loader;

@@ -100,6 +100,7 @@ mod tests {
             parameters: Vec::new(),
             specimens: Vec::new(),
             strikers: Vec::new(),
+            grounds: Vec::new(),
             rig: RigPlan { name: "ideal".to_owned(), link, settle, sign: 1.0, calibration: Calibration::default() },
             limits: Limits::NONE,
             procedures: Vec::new(),

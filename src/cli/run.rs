@@ -15,7 +15,7 @@ use super::{plan_file, provenance, real_rig};
 use crate::diagnostic::json;
 use crate::output::{OutputFile, Provenance};
 use crate::plan::{Link, Plan};
-use crate::rig::{VirtualRig, Wish};
+use crate::rig::{Wish, virtual_rig};
 use crate::run::tape::{self, Recorded};
 
 /// Runs one plan.
@@ -72,7 +72,7 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
     let provenance = provenance::of(plan);
     let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let recorded = tape::record(plan, &mut VirtualRig::of_plan(plan), &mut watcher, journal, Box::new(|| None));
+    let recorded = tape::record(plan, virtual_rig(plan).as_mut(), &mut watcher, journal, Box::new(|| None));
     watcher.finish();
     Ok(Ran { folder, provenance, recorded })
 }

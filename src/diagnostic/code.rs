@@ -91,6 +91,15 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E620 GroundRecord Error;
+    E621 BadMatrix Error;
+    E622 StoreyStiffness Error;
+    E623 SpecimenTwice Error;
+    E624 NoStoreys Error;
+    E625 OneDegreeOfFreedom Error;
+    E626 FrameOnRealRig Error;
+    E627 DampingRatios Error;
+    E628 NoOneStiffness Error;
     E630 CornersDoNotFit Error;
     E631 BadTableFile Error;
     E632 BehaviourIncomplete Error;
@@ -110,6 +119,8 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W712 BeyondStability Warning;
+    W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
     W715 TableTooShort Warning;
     W720 BlowOnBlow Warning;

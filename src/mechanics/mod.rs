@@ -7,6 +7,8 @@ pub mod cyclic;
 pub mod damping;
 pub mod energy;
 pub mod frame;
+pub mod frame_properties;
+pub mod ground;
 pub mod identification;
 pub mod impact;
 pub mod integrator;

@@ -22,7 +22,9 @@ pub fn rows(behaviour: &Behaviour, shown: Shown<'_>) -> Vec<(&'static str, Strin
     rows
 }
 
-fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
+/// A behaviour in one text.
+#[must_use]
+pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
     use Dimension as Of;
     let list = |name: &str, values: &[(&str, f64, Dimension)]| {
         let values: Vec<String> = values.iter().map(|(name, value, of)| format!(", {name} {}", shown(*value, *of))).collect();

@@ -10,6 +10,7 @@ mod document;
 mod figures;
 mod manifest;
 mod number;
+mod shake_table;
 pub mod standing;
 pub mod summary;
 mod tables;

@@ -23,6 +23,15 @@ pub enum FigureKind {
     /// Command against measurement.
     Tracking,
     DampingFit,
+    /// Difference of displacement between floors against virtual time.
+    Drift,
+    /// Storey shear against drift.
+    Hysteresis,
+    BaseShear,
+    /// Shapes of the natural modes.
+    Modes,
+    /// Acceleration of the ground as it was applied.
+    Ground,
     /// Largest forces against the displacements of them, amplitude by amplitude.
     Backbone,
     /// Energy of each cycle.
@@ -35,7 +44,7 @@ pub enum FigureKind {
 
 impl FigureKind {
     /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 17] = [
         Self::Displacement,
         Self::StrikerVelocity,
         Self::Velocity,
@@ -44,6 +53,11 @@ impl FigureKind {
         Self::Energy,
         Self::Tracking,
         Self::DampingFit,
+        Self::Drift,
+        Self::Hysteresis,
+        Self::BaseShear,
+        Self::Modes,
+        Self::Ground,
         Self::Backbone,
         Self::CycleEnergy,
         Self::StiffnessDegradation,
@@ -62,6 +76,11 @@ impl FigureKind {
             Self::Energy => "energy",
             Self::Tracking => "tracking",
             Self::DampingFit => "damping_fit",
+            Self::Drift => "drift",
+            Self::Hysteresis => "hysteresis",
+            Self::BaseShear => "base_shear",
+            Self::Modes => "modes",
+            Self::Ground => "ground",
             Self::Backbone => "backbone",
             Self::CycleEnergy => "cycle_energy",
             Self::StiffnessDegradation => "stiffness_degradation",
@@ -84,6 +103,9 @@ impl FigureKind {
                 Self::Energy,
                 Self::Tracking,
             ],
+            ProcedureKind::Shake(_) => {
+                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
+            }
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Escalate(_) => &[Self::Blows, Self::ForceDisplacement, Self::Displacement],
             ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],

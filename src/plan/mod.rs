@@ -5,6 +5,7 @@ mod behaviour;
 mod cycle;
 mod escalate;
 mod figure;
+mod frame;
 mod integrator;
 mod portal;
 mod rig;
@@ -17,6 +18,7 @@ pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unlo
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind};
+pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
 pub use integrator::Integrator;
 pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
@@ -33,6 +35,7 @@ pub struct Plan {
     pub parameters: Vec<Parameter>,
     pub specimens: Vec<Specimen>,
     pub strikers: Vec<Striker>,
+    pub grounds: Vec<Ground>,
     /// The rig this run uses: the one named, else the first virtual one of the plan itself, else an ideal virtual rig.
     pub rig: RigPlan,
     /// The intersection of the plan's limits and the rig's.
@@ -45,6 +48,21 @@ pub struct Plan {
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of name.
     pub settings: Vec<(String, String)>,
+}
+
+impl Plan {
+    /// The specimen that stands on the rig: the one that the first procedure names, else the first.
+    #[must_use]
+    pub fn specimen_on_the_rig(&self) -> Option<&Specimen> {
+        let named = self.procedures.iter().find_map(|procedure| procedure.kind.specimen());
+        self.specimens.get(named.unwrap_or(0))
+    }
+
+    /// Actuators that its rig needs, each with a load cell.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.specimen_on_the_rig().map_or(1, Specimen::degrees_of_freedom)
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,14 +84,24 @@ pub struct Parameter {
 #[derive(Clone, Debug)]
 pub struct Specimen {
     pub name: String,
-    /// Equivalent mass at the struck section, kg.
+    /// Equivalent mass at the struck section, kg; of a frame, all its floors.
     pub mass: f64,
+    /// The storeys, where it has any; each has an actuator and a load cell.
+    pub frame: Option<Frame>,
     /// What a virtual rig bends.
     pub behaviour: Option<Behaviour>,
     /// c of c·v on the virtual load cell while the actuator moves, N·s/m.
     pub damping: f64,
     /// Friction on the virtual load cell, N.
     pub coulomb: f64,
+}
+
+impl Specimen {
+    /// Actuators it takes, each with its load cell.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.frame.as_ref().map_or(1, Frame::degrees_of_freedom)
+    }
 }
 
 /// A computed body: only the structure is on the rig.
@@ -162,6 +190,7 @@ pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
     DampingSweep(DampingSweep),
     Impact(Impact),
+    Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
     Escalate(Escalate),
@@ -180,6 +209,7 @@ impl ProcedureKind {
             Self::StiffnessRamp(_) => "stiffness ramp",
             Self::DampingSweep(_) => "damping sweep",
             Self::Impact(_) => "impact",
+            Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
             Self::Unload(_) => "unload",
             Self::Escalate(_) => "escalate",
@@ -195,6 +225,7 @@ impl ProcedureKind {
             Self::StiffnessRamp(ramp) => Some(ramp.specimen),
             Self::DampingSweep(sweep) => Some(sweep.specimen),
             Self::Impact(impact) => Some(impact.specimen),
+            Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
             Self::Escalate(escalate) => Some(escalate.blow.specimen),

@@ -11,6 +11,8 @@ use crate::formula::{Estimate, ResultReference, ResultValue, Results};
 pub use crate::mechanics::backbone::BilinearFit;
 pub use crate::mechanics::contact::StepState;
 use crate::mechanics::energy::Energies;
+pub use crate::mechanics::frame::{FrameEnergies, Modes};
+use crate::mechanics::frame::{drifts, shears};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 use crate::quantity::Dimension;
@@ -97,6 +99,7 @@ pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),
     Impact(ImpactHistory),
+    Shake(ShakeHistory),
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
     Move(Vec<RampStep>),
@@ -195,6 +198,64 @@ pub struct ImpactStep {
 #[derive(Clone, Debug)]
 pub struct ImpactHistory {
     pub steps: Vec<ImpactStep>,
+    /// s
+    pub time_step: f64,
+    /// s
+    pub critical_time_step: f64,
+}
+
+/// One row of a shake for all floors; step 0 is the start. Displacements are relative to the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShakeStep {
+    pub step: u64,
+    /// Virtual time, s.
+    pub time: f64,
+    /// Rig time, s.
+    pub wall_time: f64,
+    /// m/s², as it was applied.
+    pub ground_acceleration: f64,
+    /// Targets, m.
+    pub command: Vec<f64>,
+    /// Measured, m.
+    pub displacement: Vec<f64>,
+    /// Computed X, m: the target, but under α-OS.
+    pub computed: Vec<f64>,
+    /// m/s
+    pub velocity: Vec<f64>,
+    /// m/s²
+    pub acceleration: Vec<f64>,
+    /// Measured, of each floor, N.
+    pub restoring_force: Vec<f64>,
+    pub energies: FrameEnergies,
+    /// Of all axes together.
+    pub tracking: Tracking,
+}
+
+impl ShakeStep {
+    /// Drift of each storey, m, of the computed displacements.
+    #[must_use]
+    pub fn drift(&self) -> Vec<f64> {
+        let mut drift = vec![0.0; self.computed.len()];
+        drifts(&self.computed, &mut drift);
+        drift
+    }
+
+    /// Shear of each storey, N: the forces of the floors it carries; the first is the base shear.
+    #[must_use]
+    pub fn shear(&self) -> Vec<f64> {
+        let mut shear = vec![0.0; self.restoring_force.len()];
+        shears(&self.restoring_force, &mut shear);
+        shear
+    }
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct ShakeHistory {
+    pub steps: Vec<ShakeStep>,
+    /// None where it did not begin.
+    pub modes: Option<Modes>,
+    /// Fraction of critical damping of each mode.
+    pub damping_ratios: Vec<f64>,
     /// s
     pub time_step: f64,
     /// s

@@ -16,15 +16,18 @@ pub mod safety;
 mod settling;
 #[cfg(test)]
 pub(crate) mod testing;
+mod virtual_frame;
 mod virtual_rig;
 mod wish;
 
 use serde::{Deserialize, Serialize};
 
+use crate::plan::Plan;
 use crate::quantity::{Dimension, display};
 
 pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
+pub use virtual_frame::VirtualFrame;
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
 pub use wish::Wish;
 
@@ -39,6 +42,17 @@ pub struct Identity {
     pub boot: Option<String>,
     /// Nothing real moved.
     pub simulated: bool,
+}
+
+/// The virtual rig of a plan, with an axis for each degree of freedom of the specimen on it; in place of a real rig an ideal
+/// one.
+#[must_use]
+pub fn virtual_rig(plan: &Plan) -> Box<dyn Rig> {
+    let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
+    match plan.specimen_on_the_rig().and_then(|specimen| specimen.frame.as_ref()) {
+        Some(frame) => Box::new(VirtualFrame::new(&plan.rig.name, link, plan.rig.settle, frame, plan.rig.sign)),
+        None => Box::new(VirtualRig::of_plan(plan)),
+    }
 }
 
 /// One reading: measured displacement (m) and restoring force (N) of each degree of freedom.

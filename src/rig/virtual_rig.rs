@@ -72,8 +72,7 @@ impl VirtualRig {
     /// The specimen that stands on the plan's rig: the one that the first procedure names, else the first.
     #[must_use]
     pub fn specimen_of(plan: &Plan) -> Option<&Specimen> {
-        let named = plan.procedures.iter().find_map(|procedure| procedure.kind.specimen());
-        plan.specimens.get(named.unwrap_or(0))
+        plan.specimen_on_the_rig()
     }
 
     /// Target at the rig, m.
@@ -223,7 +222,7 @@ mod tests {
 
     fn specimen(damping: f64, coulomb: f64) -> Specimen {
         let behaviour = Some(Behaviour::Elastic { stiffness: 1000.0 });
-        Specimen { name: "spring".to_owned(), mass: 1.0, behaviour, damping, coulomb }
+        Specimen { name: "spring".to_owned(), mass: 1.0, frame: None, behaviour, damping, coulomb }
     }
 
     fn rig(link: VirtualLink) -> VirtualRig {

@@ -214,6 +214,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
             acceleration: nothing,
             force: self.felt.force,
             energy_error: nothing,
+            others: Vec::new(),
             tracking: None,
             tracking_energy_error: None,
         });

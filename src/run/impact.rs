@@ -45,7 +45,7 @@ pub(super) fn blow(plan: &Impact, setting: &Setting, before: u64, session: &mut 
     let mut strike = Strike::new(setting, before);
     let stop = strike.run(plan, session).err();
     let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
-    let worst = strike.worst_share;
+    let worst = strike.watch.worst;
     if let (Some(summary), None) = (&summary, &stop) {
         remark(summary, plan.until, session);
     }

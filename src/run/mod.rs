@@ -24,6 +24,8 @@ mod samples;
 #[cfg(test)]
 mod sequence_tests;
 mod session;
+mod shake;
+mod shake_results;
 mod stiffness_ramp;
 mod stop;
 mod strike;
@@ -34,6 +36,7 @@ pub(crate) mod testing;
 mod tests;
 mod triggers;
 mod unload;
+mod watch;
 
 pub use damping_sweep::MOST_SAMPLES;
 pub use request::{Parting, Request};
@@ -80,7 +83,7 @@ pub enum Next {
 }
 
 /// The end of a step, for who watches and for the record.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepReport {
     /// Number within its procedure, from 1.
     pub step: u64,
@@ -102,6 +105,32 @@ pub struct StepReport {
     pub tracking: Option<Tracking>,
     /// Its energy error over the energy put into the test so far.
     pub tracking_energy_error: Option<f64>,
+    /// The axes after the first, whose numbers stand above, of a procedure that moves several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<AxisReport>,
+}
+
+/// One axis at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AxisReport {
+    /// m
+    pub command: f64,
+    /// Measured, m.
+    pub displacement: f64,
+    /// Computed, m/s.
+    pub velocity: f64,
+    /// Computed, m/s².
+    pub acceleration: f64,
+    /// Measured, N.
+    pub force: f64,
+}
+
+impl StepReport {
+    /// Target (m), measured displacement (m) and force (N) of every axis.
+    pub fn axes(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+        let others = self.others.iter().map(|axis| (axis.command, axis.displacement, axis.force));
+        std::iter::once((self.command, self.displacement, self.force)).chain(others)
+    }
 }
 
 /// What the person said.
@@ -175,7 +204,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         return Record { events: session.finish(), outcome: stop.outcome(), ..record };
     }
     for procedure in &plan.procedures {
-        session.enter(procedure);
+        session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record);
         let Performed { history, results, stop } = perform(procedure, plan, &mut inputs, &mut session);
         let inputs = inputs.into_recorded();
@@ -207,6 +236,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
+        ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),

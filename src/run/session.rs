@@ -1,6 +1,7 @@
 //! One run as it goes: the guarded rig, who watches, and the events so far. In: what procedures do. Out: events.
 //! It knows no procedure's physics.
 
+use super::shake;
 use super::stop::Stop;
 use super::{Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
@@ -21,7 +22,7 @@ pub(super) struct Session<'run> {
     /// Number of the last step done in this procedure.
     step: Option<u64>,
     /// Where the rig was found, m.
-    home: f64,
+    home: Vec<f64>,
     /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
     /// rig, and has a watchdog as any.
     reckoned: bool,
@@ -37,15 +38,18 @@ impl<'run> Session<'run> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
         let reckoned = rig.identity().simulated && plan.rig.link.as_real().is_none();
-        let guard = if axes == 1 {
+        let wanted = plan.degrees_of_freedom();
+        let guard = if axes == wanted {
             Guard::new(rig, plan.limits)
         } else {
             rig.hold();
-            Err(RigFault::Device(format!("these procedures move one degree of freedom, and the rig has {axes}")))
+            let degrees =
+                |count| if count == 1 { "one degree of freedom".to_owned() } else { format!("{count} degrees of freedom") };
+            Err(RigFault::Device(format!("these procedures move {}, and the rig has {axes}", degrees(wanted))))
         };
         match guard {
             Ok(guard) => {
-                let home = guard.commanded()[0];
+                let home = guard.commanded().to_vec();
                 Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home, reckoned })
             }
             Err(fault) => {
@@ -71,10 +75,10 @@ impl<'run> Session<'run> {
         (&mut self.guard, &mut *self.observer, &mut self.events)
     }
 
-    pub(super) fn enter(&mut self, procedure: &Procedure) {
+    pub(super) fn enter(&mut self, procedure: &Procedure, plan: &Plan) {
         self.procedure = Some(procedure.name.clone());
         self.step = None;
-        self.observer.procedure_started(&procedure.name, procedure.kind.keyword(), steps(&procedure.kind));
+        self.observer.procedure_started(&procedure.name, procedure.kind.keyword(), steps(&procedure.kind, plan));
     }
 
     pub(super) fn leave(&mut self) {
@@ -97,7 +101,8 @@ impl<'run> Session<'run> {
     /// Takes the load off after a stop, inside the same limits; what stands in the way is one more event.
     pub(super) fn unload(&mut self) {
         self.event(EventKind::Hold, UNLOADING.to_owned());
-        let unloaded = self.go_to(self.home, None).and_then(|()| self.read());
+        let home = self.home.clone();
+        let unloaded = self.go_to_all(&home, None).and_then(|()| Ok(self.guard.read()?));
         if let Err(stop) = unloaded {
             self.event(stop.event_kind(), format!("not unloaded: {stop}"));
         }
@@ -145,6 +150,11 @@ impl<'run> Session<'run> {
         }
     }
 
+    /// Whether nothing real is moved, so that what the plan says of the specimen is what the specimen does.
+    pub(super) const fn reckoned(&self) -> bool {
+        self.reckoned
+    }
+
     fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
@@ -174,6 +184,7 @@ impl<'run> Session<'run> {
             acceleration: nothing,
             force,
             energy_error: nothing,
+            others: Vec::new(),
             tracking: None,
             tracking_energy_error: None,
         })
@@ -191,7 +202,12 @@ impl<'run> Session<'run> {
 
     /// Back to `place` (m), as one move or, where increments are limited, as equal ones.
     pub(super) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
-        for target in self.guard.way_to(&[place]) {
+        self.go_to_all(&[place], speed)
+    }
+
+    /// The same of every axis.
+    fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
+        for target in self.guard.way_to(places) {
             self.guard.move_to(&target, speed)?;
         }
         Ok(())
@@ -208,7 +224,7 @@ pub(super) fn first(reading: &Reading) -> (f64, f64) {
 }
 
 /// Upper bound of a procedure's steps, where the plan alone tells.
-fn steps(kind: &ProcedureKind) -> Option<u64> {
+fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => {
             let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
@@ -219,6 +235,7 @@ fn steps(kind: &ProcedureKind) -> Option<u64> {
         ProcedureKind::Escalate(escalate) => {
             Some(steps_of_blow(&escalate.blow)?.saturating_mul(escalate.velocities.len() as u64))
         }
+        ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),

@@ -6,21 +6,19 @@ use super::impact::Setting;
 use super::session::Session;
 use super::stop::Stop;
 use super::triggers::Triggers;
+use super::watch::Watch;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
-use crate::mechanics::monitor::{Monitor, Tracking, WARN};
+use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::mechanics::summary::SummaryBuilder;
 use crate::plan::{Impact, Until};
-use crate::quantity::display::significant;
-use crate::record::{EventKind, ImpactStep};
+use crate::record::ImpactStep;
 
 pub(super) struct Strike {
     setting: Setting,
     before: u64,
     pub steps: Vec<ImpactStep>,
     pub summary: SummaryBuilder,
-    /// Energy error of tracking over the input, the largest by size so far, signed.
-    pub worst_share: Option<f64>,
-    warned: bool,
+    pub watch: Watch,
 }
 
 impl Strike {
@@ -31,8 +29,7 @@ impl Strike {
             before,
             steps: room_for(setting.steps),
             summary: SummaryBuilder::new(&setting.input),
-            worst_share: None,
-            warned: false,
+            watch: Watch::default(),
         }
     }
 
@@ -69,7 +66,7 @@ impl Strike {
         self.take(state, tracking, session);
         let error = error_fraction(state, &self.setting.input);
         let share = tracking.share_of(self.setting.input.striker_energy());
-        self.watch(share, session);
+        self.watch.judge(share, session);
         session.guard.check_energy_error(error)?;
         session.guard.check_tracking(share, tracking.nrms_error)?;
         session.step_done(&StepReport {
@@ -83,23 +80,8 @@ impl Strike {
             energy_error: Some(error),
             tracking: Some(tracking),
             tracking_energy_error: share,
+            others: Vec::new(),
         })
-    }
-
-    /// Says once that tracking makes or takes more energy than the field lets pass unsaid.
-    fn watch(&mut self, share: Option<f64>, session: &mut Session<'_>) {
-        let Some(share) = share else { return };
-        if self.worst_share.is_none_or(|worst| share.abs() > worst.abs()) {
-            self.worst_share = Some(share);
-        }
-        // A limit narrower than the usual one is warned of as early in proportion.
-        let warn = WARN.min(0.4 * session.guard.tracking_energy_limit().high);
-        if share.abs() > warn && !self.warned {
-            self.warned = true;
-            let does = if share < 0.0 { "puts energy into" } else { "takes energy out of" };
-            let text = format!("tracking {does} the test: {} % of the input", significant(100.0 * share.abs(), 2));
-            session.event(EventKind::Remark, text);
-        }
     }
 
     fn take(&mut self, state: &ImpactState, tracking: Tracking, session: &Session<'_>) {

@@ -16,6 +16,7 @@ pub(crate) fn empty_plan() -> Plan {
         parameters: Vec::new(),
         specimens: Vec::new(),
         strikers: Vec::new(),
+        grounds: Vec::new(),
         rig: RigPlan {
             name: "ideal".to_owned(),
             link: Link::Virtual(VirtualLink::default()),
@@ -40,6 +41,7 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
         specimens: vec![Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness }),
             damping: 0.0,
             coulomb: 0.0,

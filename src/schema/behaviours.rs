@@ -3,7 +3,7 @@
 use super::types::{Field, Variant};
 use crate::quantity::Dimension;
 
-const STIFFNESS: Field =
+pub(super) const STIFFNESS: Field =
     Field::quantity("stiffness", Dimension::STIFFNESS, "force over displacement").required("stiffness: 300 kN/m").above_zero();
 
 const YIELD_FORCE: Field =

@@ -1,6 +1,7 @@
 //! What is tested and what strikes it: `specimen` and `striker`.
 
 use super::behaviours::BEHAVIOURS;
+use super::frames::{MASS_MATRIX, STIFFNESS_MATRIX, STOREYS};
 use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind};
 use crate::quantity::Dimension;
 
@@ -25,10 +26,12 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
             .or(0.0, "N*s/m")
             .at_least_zero(),
         Field::quantity("coulomb", Dimension::FORCE, "friction on the virtual load cell").or(0.0, "N").at_least_zero(),
-        Field::later("storeys", "storeys from the ground up"),
+        STOREYS,
+        MASS_MATRIX,
+        STIFFNESS_MATRIX,
     ],
     exports: &[
-        ResultKind::new("mass", Dimension::MASS, "equivalent mass"),
+        ResultKind::new("mass", Dimension::MASS, "equivalent mass; of storeys, all floors together"),
         ResultKind::new("stiffness", Dimension::STIFFNESS, "stiffness of the behaviour at no displacement"),
         ResultKind::new("capacity", Dimension::FORCE, "largest force of a behaviour that has one"),
         ResultKind::new("beam_collapse_load", Dimension::FORCE, "of a portal, W + H of the beam mechanism"),

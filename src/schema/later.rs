@@ -6,7 +6,5 @@ const fn later(keyword: &'static [&'static str], naming: Naming, procedure: bool
     BlockKind { kind: Kind::Later, keyword, naming, procedure, fields: &[], exports: &[], results: &[], example: "", doc }
 }
 
-pub(super) const GROUND: BlockKind = later(&["ground"], Naming::Named, false, "A ground motion record");
-pub(super) const SHAKE: BlockKind = later(&["shake"], Naming::Named, true, "A ground motion on a specimen of storeys");
 pub(super) const STUDY: BlockKind = later(&["study"], Naming::Named, false, "Many runs of one plan");
 pub(super) const GOLDEN: BlockKind = later(&["golden"], Naming::Unnamed, false, "How near a rerun must be");

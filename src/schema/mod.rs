@@ -5,6 +5,7 @@ mod behaviours;
 mod cyclic;
 mod declarations;
 mod devices;
+mod frames;
 mod functions;
 mod later;
 mod limits;
@@ -27,19 +28,19 @@ pub const BLOCKS: &[&BlockKind] = &[
     &plan_block::PLAN,
     &declarations::SPECIMEN,
     &declarations::STRIKER,
+    &frames::GROUND,
     &limits::LIMITS,
     &rig::RIG,
     &procedures::STIFFNESS_RAMP,
     &procedures::DAMPING_SWEEP,
     &procedures::IMPACT,
     &cyclic::CYCLE,
+    &frames::SHAKE,
     &sequences::ESCALATE,
     &sequences::UNLOAD,
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
-    &later::GROUND,
-    &later::SHAKE,
     &later::STUDY,
     &later::GOLDEN,
 ];

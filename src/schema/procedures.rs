@@ -4,7 +4,8 @@ use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
 use super::{methods, results};
 use crate::quantity::Dimension;
 
-const SPECIMEN: Field = Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");
+pub(super) const SPECIMEN: Field =
+    Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");
 
 const SPEED: Field = Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own");
 
@@ -98,6 +99,22 @@ const CONTACTS: &[Variant] = &[
     ),
 ];
 
+pub(super) const INSPECT_TRIGGERS: &[Variant] = &[
+    Variant::with("every", &[Field::count("steps", 1.0, 1e7, "steps between looks").required("20")], "every so many steps"),
+    Variant::with(
+        "force_drop",
+        &[Field::quantity("fraction", Dimension::NUMBER, "of the largest restoring force so far")
+            .required("10 %")
+            .within(0.0, 1.0)],
+        "when the restoring force has fallen",
+    ),
+    Variant::with(
+        "at",
+        &[Field::quantity("time", Dimension::TIME, "virtual time").required("5 ms").at_least_zero()],
+        "at a virtual time",
+    ),
+];
+
 pub(super) const IMPACT: BlockKind = BlockKind {
     kind: Kind::Impact,
     keyword: &["impact"],
@@ -135,29 +152,7 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         Field::quantity("max_tangent_ratio", Dimension::NUMBER, "the tangent stiffness stays in 0 .. this times K0")
             .or(2.0, "")
             .above_zero(),
-        Field::choices(
-            "inspect",
-            &[
-                Variant::with(
-                    "every",
-                    &[Field::count("steps", 1.0, 1e7, "steps between looks").required("20")],
-                    "every so many steps",
-                ),
-                Variant::with(
-                    "force_drop",
-                    &[Field::quantity("fraction", Dimension::NUMBER, "of the largest restoring force so far")
-                        .required("10 %")
-                        .within(0.0, 1.0)],
-                    "when the restoring force has fallen",
-                ),
-                Variant::with(
-                    "at",
-                    &[Field::quantity("time", Dimension::TIME, "virtual time").required("5 ms").at_least_zero()],
-                    "at a virtual time",
-                ),
-            ],
-            "when a person is asked to look",
-        ),
+        Field::choices("inspect", INSPECT_TRIGGERS, "when a person is asked to look"),
     ],
     exports: &[],
     results: results::IMPACT,

@@ -66,8 +66,7 @@ fn write_variants(text: &mut String, variants: &[Variant], depth: usize, written
             (false, true) => "(a, b, …)".to_owned(),
             (false, false) => format!("({})", names.join(", ")),
         };
-        let later = if variant.available { "" } else { " (not in this version)" };
-        let _ = writeln!(text, "{indent}- `{}{brackets}`: {}{later}", variant.name, variant.doc);
+        let _ = writeln!(text, "{indent}- `{}{brackets}`: {}", variant.name, variant.doc);
         let signature = [vec![variant.name], names].concat();
         if written.contains(&signature) {
             let _ = writeln!(text, "{indent}  - as above");
@@ -109,7 +108,8 @@ fn write_values(text: &mut String, head: &str, values: &[ResultKind]) {
     for value in values {
         let unit = if value.dimension == Dimension::NUMBER { String::new() } else { format!("`{}`", si_unit(value.dimension)) };
         let measured = if value.measured { ", with its standard uncertainty `.u`" } else { "" };
-        let _ = writeln!(text, "| `{}` | {unit} | {}{measured} |", value.name, value.doc);
+        let list = if value.list { "; a list" } else { "" };
+        let _ = writeln!(text, "| `{}` | {unit} | {}{measured}{list} |", value.name, value.doc);
     }
 }
 

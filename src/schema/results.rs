@@ -66,3 +66,13 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
     ResultKind::count("steps", "number of steps"),
 ];
+
+pub(super) const SHAKE: &[ResultKind] = &[
+    ResultKind::list("max_displacement", Dimension::LENGTH, "largest size of each floor's displacement, relative to the ground"),
+    ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift"),
+    ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run"),
+    ResultKind::list("periods", Dimension::TIME, "natural periods, longest first"),
+    ResultKind::new("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey"),
+    ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
+    ResultKind::count("steps", "number of steps"),
+];

@@ -13,6 +13,8 @@ pub enum Kind {
     StiffnessRamp,
     DampingSweep,
     Impact,
+    Ground,
+    Shake,
     Cycle,
     Unload,
     Escalate,
@@ -187,7 +189,6 @@ pub struct Variant {
     pub name: &'static str,
     pub arguments: &'static [Field],
     pub doc: &'static str,
-    pub available: bool,
 }
 
 impl BlockKind {
@@ -274,13 +275,6 @@ impl Field {
 
     pub(super) const fn condition(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Condition, doc)
-    }
-
-    /// A known word of a later version.
-    pub(super) const fn later(name: &'static str, doc: &'static str) -> Self {
-        let mut field = Self::new(name, FieldType::Text, doc);
-        field.available = false;
-        field
     }
 
     /// Must stand; the example is a line that is right.
@@ -372,11 +366,11 @@ impl Field {
 
 impl Variant {
     pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
-        Self { name, arguments: &[], doc, available: true }
+        Self { name, arguments: &[], doc }
     }
 
     pub(super) const fn with(name: &'static str, arguments: &'static [Field], doc: &'static str) -> Self {
-        Self { name, arguments, doc, available: true }
+        Self { name, arguments, doc }
     }
 
     #[must_use]

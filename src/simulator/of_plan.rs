@@ -60,8 +60,7 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
 
 /// The specimen that the first procedure names.
 fn specimen(plan: &Plan) -> Option<&Specimen> {
-    let named = plan.procedures.iter().find_map(|procedure| procedure.kind.specimen());
-    plan.specimens.get(named.unwrap_or(0))
+    plan.specimen_on_the_rig()
 }
 
 /// What the cell carries, N.

@@ -16,5 +16,6 @@ mod plans;
 mod reference;
 mod rehearse;
 mod serve;
+mod shake;
 mod specimens_page;
 mod sweep;

@@ -2,6 +2,7 @@
 
 mod fixture;
 mod hostile;
+mod paper;
 mod real;
 
 use std::io::Cursor;

@@ -23,6 +23,12 @@ pub fn minisign() -> bool {
     able("minisign", "say its version", Command::new("minisign").arg("-v"))
 }
 
+/// Whether `qpdf` and poppler's `pdftotext` are here.
+pub fn paper() -> bool {
+    let version = |program: &str, flag: &str| able(program, "run", Command::new(program).arg(flag));
+    version("qpdf", "--version") && version("pdftotext", "-v")
+}
+
 fn able(program: &str, what: &str, proof: &mut Command) -> bool {
     let proven = proof.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
     let missing = match proven {

@@ -45,20 +45,6 @@ pub fn field_of_later_version(kind: &BlockKind, field: &Field, key: &Ident) -> D
         .help(format!("remove `{}`", field.name))
 }
 
-pub fn variant_of_later_version(field: &str, variant: &Variant, span: Span, variants: &[Variant]) -> Diagnostic {
-    let help = if field == "formats" {
-        format!("remove `{}`; `html` is made", variant.name)
-    } else {
-        format!(
-            "in this version `{field}` takes {}",
-            one_of(variants.iter().filter(|other| other.available).map(|other| other.name))
-        )
-    };
-    Diagnostic::new(Code::NotInThisVersion, format!("`{}` is not in this version", variant.name))
-        .at(span, "a word of a later version")
-        .help(help)
-}
-
 /// What is wrong with the words after the keyword, if something is.
 pub fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Diagnostic> {
     let words = kind.words();
@@ -204,7 +190,7 @@ pub fn name_glued_to_unit(name: &str, span: Span, mended: &str) -> Diagnostic {
 }
 
 pub fn unknown_variant(field: &str, name: &str, span: Span, variants: &[Variant]) -> Diagnostic {
-    let known = variants.iter().filter(|variant| variant.available).map(|variant| variant.name);
+    let known = variants.iter().map(|variant| variant.name);
     Diagnostic::new(Code::UnknownVariant, format!("`{field}` knows no `{name}`"))
         .at(span, "unknown word")
         .help(suggestion(name, known))

@@ -137,7 +137,7 @@ pub fn figure_wanted(span: Span, text: &str) -> Diagnostic {
 }
 
 pub fn choice_wanted(field: &str, variants: &[Variant], span: Span, text: &str) -> Diagnostic {
-    let known = one_of(variants.iter().filter(|variant| variant.available).map(|variant| variant.name));
+    let known = one_of(variants.iter().map(|variant| variant.name));
     Diagnostic::new(Code::WrongType, format!("`{field}` wants one of its words, found `{text}`"))
         .at(span, "not one of its words")
         .help(format!("it takes {known}"))

@@ -28,8 +28,7 @@ fn each_fault_is_said_once_at_its_place() {
         ("let a = 1\nlet a = 2", "E208 a"),
         ("move m { to = 1 mm\n to = 2 mm }", "E208 to"),
         ("striker b { velocity = 1 m/s }", "E209 striker b"),
-        ("shake q { ground = g }\nlet a = q.max_drift", "E211 shake"),
-        ("report { formats = [html, pdf] }", "E211 pdf"),
+        ("study q { runs = 3 }\nlet a = q.runs", "E211 study"),
         ("striker { mass = 1 kg\n velocity = 1 m/s }", "E212 striker"),
         ("impact h { striker = ball\n duration = 1 s\n contact = limit(1 N, 2 N) }", "E213 2 N"),
         ("striker b { mass = 3 mm\n velocity = 1 m/s }", "E301 3 mm"),
@@ -92,7 +91,7 @@ fn the_plan_as_a_whole_and_the_command_line() {
 #[test]
 fn nothing_is_said_that_only_follows_from_another_fault() {
     assert_eq!(said("let a = 3 kq\nlet b = a + 2 mm\nmove m { to = b }"), "E204 kq");
-    assert_eq!(said("ground g { record = 1 }\nlet a = g"), "E211 ground");
+    assert_eq!(said("study g { runs = 1 }\nlet a = g"), "E211 study");
     let found = said("let width 3 mm\nmove m { to = width }");
     assert!(found.starts_with("E101") && found.lines().count() == 1, "{found}");
 }

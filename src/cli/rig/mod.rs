@@ -14,7 +14,7 @@ use super::exit::{Exit, Failure};
 use super::plan_file;
 use super::settings::Settings;
 use crate::plan::{Link, Plan};
-use crate::rig::{Rig, VirtualRig, Wish, connect};
+use crate::rig::{Rig, Wish, connect, virtual_rig};
 
 /// Does one of the commands.
 pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
@@ -47,7 +47,7 @@ fn with_rig(
     let Some(plan) = &checked.plan else { return Ok(Exit::Wrong) };
     let wish = Wish::default();
     match &plan.rig.link {
-        Link::Virtual(_) => what(&mut VirtualRig::of_plan(plan), plan, &wish),
+        Link::Virtual(_) => what(virtual_rig(plan).as_mut(), plan, &wish),
         Link::Real(_) => {
             let mut connected = connect(&plan.rig, &plan.limits, &wish)?;
             what(&mut connected.rig, plan, &wish)

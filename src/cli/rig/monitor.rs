@@ -9,7 +9,7 @@ use crate::cli::settings::Settings;
 use crate::cli::watch::Signals;
 use crate::plan::Plan;
 use crate::rig::{Reading, Rig, Wish};
-use crate::run::{Observer as _, StepReport};
+use crate::run::{AxisReport, Observer as _, StepReport};
 
 /// Time from one reading to the next, s.
 const APART: f64 = 0.1;
@@ -44,7 +44,7 @@ pub fn monitor(rig: &mut dyn Rig, plan: &Plan, count: Option<u64>, wish: &Wish, 
     Ok(Exit::Met)
 }
 
-/// The first degree of freedom, as a step that asked for nothing.
+/// Every degree of freedom, as a step that asked for nothing.
 fn step(number: u64, reading: &Reading) -> StepReport {
     let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
     let displacement = first(&reading.displacement);
@@ -57,9 +57,14 @@ fn step(number: u64, reading: &Reading) -> StepReport {
         acceleration: None,
         force: first(&reading.force),
         energy_error: None,
+        others: reading.displacement.iter().zip(&reading.force).skip(1).map(|(x, force)| at_rest(*x, *force)).collect(),
         tracking: None,
         tracking_energy_error: None,
     }
+}
+
+fn at_rest(displacement: f64, force: f64) -> AxisReport {
+    AxisReport { command: displacement, displacement, velocity: 0.0, acceleration: 0.0, force }
 }
 
 /// SI, one column a value; of several degrees of freedom all displacements, then all forces.

@@ -21,7 +21,7 @@ use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::quantity::unit;
 use crate::record::Outcome;
-use crate::rig::{Rig, VirtualRig, Wish};
+use crate::rig::{Rig, VirtualRig, Wish, virtual_rig};
 use crate::run::tape::{self, Wall};
 use crate::serve::{self, Ended, Event, Protocol, Session};
 
@@ -40,9 +40,9 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, wish.clone()).map_err(Failure::Signals)?;
             let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..Circumstances::default() };
             let provenance = provenance::of(plan);
-            let mut rig = VirtualRig::of_plan(plan);
+            let mut rig = virtual_rig(plan);
             let stage = Stage { plan, provenance, circumstances, wall: Box::new(|| None) };
-            on_record(arguments, stage, &mut rig, &mut watcher, &door, protocol, &wish, settings)
+            on_record(arguments, stage, rig.as_mut(), &mut watcher, &door, protocol, &wish, settings)
         }
         Link::Real(_) => {
             let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)?;

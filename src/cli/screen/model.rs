@@ -98,10 +98,20 @@ impl Model {
     }
 
     pub fn step_done(&mut self, report: &StepReport) {
-        self.increment = self.last.map(|last| (report.command - last.command).abs());
-        self.displacement.push(report.time, report.displacement);
-        self.force.push(report.displacement, report.force);
-        self.last = Some(*report);
+        self.increment = self.last.as_ref().map(|last| {
+            let changes = report.axes().zip(last.axes()).map(|((to, ..), (from, ..))| (to - from).abs());
+            changes.fold(0.0, f64::max)
+        });
+        // Of several floors the highest one, and the base shear over the drift of the lowest storey.
+        let highest = report.axes().last().map_or(report.displacement, |(_, displacement, _)| displacement);
+        self.displacement.push(report.time, highest);
+        self.force.push(report.displacement, report.axes().map(|(.., force)| force).sum());
+        self.last = Some(report.clone());
+    }
+
+    /// Axes that the last step moved.
+    pub fn axes(&self) -> usize {
+        self.last.as_ref().map_or(1, |last| 1 + last.others.len())
     }
 
     pub fn event(&mut self, event: &Event) {
@@ -117,22 +127,28 @@ impl Model {
         if on_the_way || self.by_hand.is_some() {
             return None;
         }
-        self.last.map(|last| (last.command - last.displacement).abs())
+        let errors = self.last.iter().flat_map(StepReport::axes).map(|(command, displacement, _)| (command - displacement).abs());
+        errors.reduce(f64::max)
     }
 
     /// The limits of the plan that a step says something of, those that bound nothing left out.
     pub fn limit_rows(&self) -> Vec<LimitRow> {
         let Limits { displacement, force, increment, tracking_error, energy_error, tracking_energy_error, nrms_error, .. } =
             self.limits;
-        let of = |value: fn(&StepReport) -> f64| self.last.as_ref().map(value);
-        let energy = self.last.and_then(|last| last.energy_error).map(f64::abs);
-        let share = self.last.and_then(|last| last.tracking_energy_error).map(f64::abs);
-        let nrms = self.last.and_then(|last| last.tracking).map(|tracking| tracking.nrms_error);
+        // Of several axes the one with the largest size.
+        let of = |value: fn((f64, f64, f64)) -> f64| {
+            let values = self.last.iter().flat_map(StepReport::axes).map(value);
+            values.reduce(|largest, value| if value.abs() > largest.abs() { value } else { largest })
+        };
+        let last = self.last.as_ref();
+        let energy = last.and_then(|last| last.energy_error).map(f64::abs);
+        let share = last.and_then(|last| last.tracking_energy_error).map(f64::abs);
+        let nrms = last.and_then(|last| last.tracking).map(|tracking| tracking.nrms_error);
         let sizes = |limit: Interval| Interval { low: limit.low.max(0.0), ..limit };
         let row = |name, dimension, limit, size, value| LimitRow { name, dimension, limit, size, value };
         [
-            row("displacement", Dimension::LENGTH, displacement, false, of(|step| step.displacement)),
-            row("force", Dimension::FORCE, force, false, of(|step| step.force)),
+            row("displacement", Dimension::LENGTH, displacement, false, of(|(_, displacement, _)| displacement)),
+            row("force", Dimension::FORCE, force, false, of(|(.., force)| force)),
             row("increment", Dimension::LENGTH, sizes(increment), true, self.increment),
             row("tracking error", Dimension::LENGTH, sizes(tracking_error), true, self.tracking_error()),
             row("energy error", Dimension::NUMBER, sizes(energy_error), true, energy),
@@ -175,6 +191,7 @@ pub mod tests {
             acceleration: None,
             force,
             energy_error: Some(-1e-4),
+            others: Vec::new(),
             tracking: None,
             tracking_energy_error: None,
         }

@@ -26,6 +26,7 @@ pub struct Watcher {
 }
 
 /// What the person sees.
+#[expect(clippy::large_enum_variant, reason = "a run has one")]
 enum Face {
     Screen(Screen),
     Bar(Bar),

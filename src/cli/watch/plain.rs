@@ -48,12 +48,16 @@ impl Observer for Bar {
         self.shown = Some(bar);
     }
 
-    fn step_done(&mut self, &StepReport { step, time, displacement, force, .. }: &StepReport) {
+    fn step_done(&mut self, report: &StepReport) {
+        let step = report.step;
         let Some(bar) = &self.shown else { return };
         bar.set_position(step);
         // Most steps are never drawn: words are made for some only.
         if step.is_multiple_of(16) {
-            let (time, displacement) = (readable(time, Dimension::TIME), readable(displacement, Dimension::LENGTH));
+            // Of several axes the highest floor and the base shear tell most.
+            let displacement = report.axes().last().map_or(0.0, |(_, displacement, _)| displacement);
+            let force = report.axes().map(|(.., force)| force).sum();
+            let (time, displacement) = (readable(report.time, Dimension::TIME), readable(displacement, Dimension::LENGTH));
             bar.set_message(format!("{time}  {displacement}  {}", readable(force, Dimension::FORCE)));
         }
     }
@@ -75,7 +79,8 @@ impl Observer for Bar {
 #[derive(Default)]
 pub struct Lines {
     keyword: String,
-    last: Option<StepReport>,
+    /// Number of the last step.
+    last: Option<u64>,
     /// Largest |X|, m, and |R|, N.
     largest: (f64, f64),
 }
@@ -83,7 +88,7 @@ pub struct Lines {
 impl Lines {
     fn line(&self, name: &str) -> String {
         let mut text = format!("  {}: {}", escape(name), self.keyword);
-        if let Some(StepReport { step, .. }) = self.last {
+        if let Some(step) = self.last {
             let steps = if step == 1 { "step" } else { "steps" };
             let (displacement, force) = self.largest;
             let (displacement, force) = (readable(displacement, Dimension::LENGTH), readable(force, Dimension::FORCE));
@@ -100,9 +105,10 @@ impl Observer for Lines {
     }
 
     fn step_done(&mut self, report: &StepReport) {
-        self.last = Some(*report);
-        let (displacement, force) = self.largest;
-        self.largest = (displacement.max(report.displacement.abs()), force.max(report.force.abs()));
+        self.last = Some(report.step);
+        for (_, displacement, force) in report.axes() {
+            self.largest = (self.largest.0.max(displacement.abs()), self.largest.1.max(force.abs()));
+        }
     }
 
     fn procedure_finished(&mut self, name: &str) {

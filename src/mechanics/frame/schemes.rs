@@ -47,7 +47,7 @@ pub(super) struct Schemes {
 
 /// The motion at one instant, and the force and load there.
 #[derive(Clone, Copy)]
-pub(super) struct Instant<'a> {
+pub(super) struct Moment<'a> {
     pub displacement: &'a [f64],
     pub velocity: &'a [f64],
     pub acceleration: &'a [f64],
@@ -175,7 +175,7 @@ impl Schemes {
 
 impl Schemes {
     /// The whole step in tangent form, all but the force that will be read at its end.
-    pub fn foretell(&mut self, from: Instant, load_end: &[f64], to: &mut Course, decide: Decide) {
+    pub fn foretell(&mut self, from: Moment, load_end: &[f64], to: &mut Course, decide: Decide) {
         let time_step = self.time_step;
         let half = 0.5 * time_step;
         let loads = to.acceleration.iter_mut().zip(load_end.iter().zip(from.force));
@@ -205,7 +205,7 @@ impl Schemes {
 
     /// The step of Moreau and Jean (θ = ½): an impulse p = FΔt is a jump of the velocity, M̂(Ẋ₁ − Ẋ) = Δt(½(f₀ + f₁) − R −
     /// CẊ − ½ΔtK_tẊ) + p e_s. The acceleration at its end follows from the force read there.
-    pub fn jump(&mut self, from: Instant, load_end: &[f64], to: &mut Course, decide: Decide) {
+    pub fn jump(&mut self, from: Moment, load_end: &[f64], to: &mut Course, decide: Decide) {
         let time_step = self.time_step;
         let loads = from.load.iter().zip(load_end).zip(from.force);
         for (to, ((load, after), force)) in to.velocity.iter_mut().zip(loads) {
@@ -225,7 +225,7 @@ impl Schemes {
     }
 
     /// Eq. (2d).
-    fn travel(&self, from: Instant, to: &mut Course) {
+    fn travel(&self, from: Moment, to: &mut Course) {
         let half = 0.5 * self.time_step;
         let before = from.displacement.iter().zip(from.velocity);
         for ((to, after), (displacement, velocity)) in to.displacement.iter_mut().zip(&to.velocity).zip(before) {
@@ -234,7 +234,7 @@ impl Schemes {
     }
 
     /// d̃₁ of explicit Newmark and α-OS, and ṽ₁ into `to.velocity`.
-    pub fn impose(&mut self, from: Instant, to: &mut Course) {
+    pub fn impose(&mut self, from: Moment, to: &mut Course) {
         let (time_step, Coefficients { beta, gamma, .. }) = (self.time_step, self.coefficients);
         let before = from.displacement.iter().zip(from.velocity).zip(from.acceleration);
         let after = to.displacement.iter_mut().zip(&mut to.velocity);
@@ -251,7 +251,7 @@ impl Schemes {
     }
 
     /// The end of the step that imposed `to.displacement`, where `read` (N) is the force.
-    pub fn correct(&mut self, from: Instant, load_end: &[f64], read: &[f64], to: &mut Course, decide: Decide) {
+    pub fn correct(&mut self, from: Moment, load_end: &[f64], read: &[f64], to: &mut Course, decide: Decide) {
         let contact_beta = self.contact_beta();
         let (time_step, Coefficients { alpha, beta, gamma }) = (self.time_step, self.coefficients);
         let now = 1.0 + alpha;

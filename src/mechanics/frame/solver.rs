@@ -7,7 +7,7 @@ use super::FrameMatrices;
 use super::band::SymmetricBand;
 use super::energy::{End, FrameEnergies};
 use super::factor::{BandFactor, NotPositiveDefinite};
-use super::schemes::{Course, Decide, Instant, Schemes};
+use super::schemes::{Course, Decide, Moment, Schemes};
 use super::storeys::storeys_of;
 use super::tangents::{StoreyTangents, Tangents};
 use crate::plan::Integrator;
@@ -269,8 +269,8 @@ impl FrameSolver {
 }
 
 impl FrameState {
-    fn instant(&self) -> Instant<'_> {
-        Instant {
+    fn instant(&self) -> Moment<'_> {
+        Moment {
             displacement: &self.displacement,
             velocity: &self.velocity,
             acceleration: &self.acceleration,

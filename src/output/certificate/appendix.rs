@@ -5,15 +5,14 @@ use super::super::document::{Attachment, Block, Text};
 use super::super::{RealRun, Run, plan_files};
 use super::pairs;
 use crate::inert;
+use crate::plan::PlanFile;
 
 /// Plan, provenance, statements, signatures.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Plan as run"));
-    for file in &run.plan.files {
+    for (file, kept) in run.plan.files.iter().zip(plan_files(run.plan)) {
         body.push(Block::part(file.name.as_str()));
-        // A tab is seen as the blanks that it stands for.
-        let lines = file.text.lines().map(|line| inert::printed(&line.replace('\t', "    ")));
-        body.push(Block::Code { lines: lines.collect() });
+        printed(file, &kept.path, body);
     }
     body.push(Block::section("Provenance"));
     body.push(provenance(run));
@@ -42,6 +41,22 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
         let name = |name: &String| Text::from(format!("{name}: name, date and signature"));
         body.push(Block::Signatures { names: run.plan.report.sign.iter().map(name).collect() });
     }
+}
+
+/// A file of the language whole; of data the first lines, for a record has thousands.
+fn printed(file: &PlanFile, kept: &str, body: &mut Vec<Block>) {
+    const FIRST: usize = 8;
+    // A tab is seen as the blanks that it stands for.
+    let lines: Vec<String> = file.text.lines().map(|line| inert::printed(&line.replace('\t', "    "))).collect();
+    let left = lines.len().saturating_sub(FIRST);
+    let is_plan = file.name.rsplit('.').next().is_some_and(|ending| ending.eq_ignore_ascii_case("psd"));
+    if is_plan || left <= FIRST {
+        body.push(Block::Code { lines });
+        return;
+    }
+    body.push(Block::Code { lines: lines.into_iter().take(FIRST).collect() });
+    let text = Text::from(format!("and {left} more lines; the whole file is "));
+    body.push(Block::note(text.code(kept).and(" in the folder of the run.")));
 }
 
 /// The plan and every file it used, under the names that they have in the run folder.

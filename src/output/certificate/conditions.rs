@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Text};
 use super::super::{Run, behaviour, number};
-use super::{described, pairs, particulars};
+use super::{described, frames, pairs, particulars};
 use crate::plan::{Interval, Limits, Settle, Specimen, Striker};
 use crate::quantity::Dimension;
 use crate::record::History;
@@ -20,7 +20,14 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     let stated = |name: String| Text::from(name).soft(" · as the plan states, not measured in this run");
     for specimen in &run.plan.specimens {
         body.push(Block::part(stated(format!("Specimen {}", specimen.name))));
-        body.push(specimen_table(specimen));
+        match &specimen.frame {
+            Some(frame) => frames::structure(frame, body),
+            None => body.push(specimen_table(specimen)),
+        }
+    }
+    for ground in &run.plan.grounds {
+        body.push(Block::part(Text::from(format!("Motion of the ground {}", ground.name)).soft(" · from a file of the plan")));
+        body.push(frames::ground(ground));
     }
     for striker in &run.plan.strikers {
         body.push(Block::part(stated(format!("Striker {}", striker.name))));
@@ -37,9 +44,17 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
 /// Virtual time of each impact beside the time the rig took for it.
 fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
     let told = run.record.procedures.iter().filter_map(|procedure| {
-        let History::Impact(history) = &procedure.history else { return None };
-        let (first, last) = (history.steps.first()?, history.steps.last()?);
-        let (virtual_time, rig_time) = (last.time - first.time, last.wall_time - first.wall_time);
+        let (virtual_time, rig_time) = match &procedure.history {
+            History::Impact(history) => {
+                let (first, last) = (history.steps.first()?, history.steps.last()?);
+                (last.time - first.time, last.wall_time - first.wall_time)
+            }
+            History::Shake(history) => {
+                let (first, last) = (history.steps.first()?, history.steps.last()?);
+                (last.time - first.time, last.wall_time - first.wall_time)
+            }
+            _ => return None,
+        };
         let slower = || format!(", {:.0} times as long", rig_time / virtual_time);
         (virtual_time > 0.0).then(|| {
             (

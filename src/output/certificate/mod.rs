@@ -7,6 +7,7 @@ mod conditions;
 mod contact_log;
 mod cycles;
 mod equipment;
+mod frames;
 mod head;
 mod marks;
 mod particulars;

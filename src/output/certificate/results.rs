@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{blows, contact_log, cycles, words};
+use super::{blows, contact_log, cycles, frames, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -39,6 +39,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
                 contact_log::table(history, body);
             }
             History::Cycle(history) => cycles::table(history, body),
+            History::Shake(history) => frames::shaken(run, index, procedure, history, body),
             History::Escalate(history) => blows::table(history, body),
             History::Move(_) | History::Inspect => {}
         }
@@ -62,7 +63,7 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 
 /// Lists whose numbers stand in a table of their own are not printed twice.
 fn table(procedure: &ProcedureRecord) -> Block {
-    let tabled = matches!(procedure.history, History::Cycle(_) | History::Escalate(_));
+    let tabled = matches!(procedure.history, History::Cycle(_) | History::Escalate(_) | History::Shake(_));
     let results = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
     let columns = vec![
         Column::words("Result", 1),
@@ -222,7 +223,7 @@ fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
     }
 }
 
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     let text =
         if share != 0.0 && share.abs() < 1e-4 { format!("{:.1e}", 100.0 * share) } else { format!("{:.2}", 100.0 * share) };
     display::minus(&text) + "\u{a0}%"

@@ -69,7 +69,7 @@ fn top(document: &Document) -> Markup {
             }
         }
         div.front {
-            @for (name, value) in &document.front { div { span.name { (line(name)) } span { (line(value)) } } }
+            @for (name, value) in in_two_columns(&document.front) { div { span.name { (line(name)) } span { (line(value)) } } }
         }
         div class={ "verdict " (document.verdict.name) } {
             strong { (document.verdict.name.to_uppercase()) }
@@ -77,6 +77,12 @@ fn top(document: &Document) -> Markup {
         }
         @for mark in &document.marks { (boxed(mark)) }
     }
+}
+
+/// Rows of two: the first half stands left, the second right.
+fn in_two_columns<T>(items: &[T]) -> impl Iterator<Item = &T> {
+    let (left, right) = items.split_at(items.len().div_ceil(2));
+    left.iter().enumerate().flat_map(|(row, item)| [Some(item), right.get(row)]).flatten()
 }
 
 fn boxed(mark: &Mark) -> Markup {

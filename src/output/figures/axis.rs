@@ -31,6 +31,7 @@ impl Axis {
             (low, high) = (low - half, high + half);
         }
         let step = nice_step((high - low) / f64::from(wanted));
+        let step = if quantity.end == End::Whole { step.max(1.0) } else { step };
         if quantity.end != End::Data {
             let air = 0.025 * (high - low);
             (low, high) = (if low == 0.0 { 0.0 } else { low - air }, if high == 0.0 { 0.0 } else { high + air });

@@ -30,6 +30,8 @@ pub(super) enum End {
     Air,
     /// At a whole tick past the data.
     Tick,
+    /// As `Air`, of what is counted: every tick is a whole number.
+    Whole,
 }
 
 impl Quantity {

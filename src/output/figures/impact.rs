@@ -2,7 +2,7 @@
 
 use super::super::number;
 use super::chart::{Band, Chart, DASH_DOT, DASHED, DOTTED, LONG, Quantity, Reference, SOLID, Series, Style, palette};
-use crate::formula::ProcedureId;
+use crate::formula::{Formula, Function, ProcedureId};
 use crate::output::Run;
 use crate::quantity::Dimension;
 use crate::record::{ImpactHistory, ImpactStep, StepState};
@@ -100,7 +100,7 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
     let mut lines = Vec::new();
     for (requirement, outcome) in run.plan.requirements.iter().zip(&run.assessment.requirements) {
         for (condition, held) in requirement.conditions.iter().zip(&outcome.conditions) {
-            if !condition.value.as_result().is_some_and(|r| r.procedure == procedure && r.name == result) {
+            if !reads(&condition.value, procedure, result) {
                 continue;
             }
             // A band is two lines with one text, so that two texts never stand on each other.
@@ -117,6 +117,16 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
     }
     lines.retain(|line| line.y.is_finite());
     lines
+}
+
+/// Whether a condition is on this result, or on the largest entry of it where it is a list.
+fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
+    let is = |formula: &Formula| formula.as_result().is_some_and(|r| r.procedure == procedure && r.name == result);
+    match value {
+        Formula::Call(Function::Max, arguments) => arguments.iter().all(is),
+        Formula::Index(list, _) => is(list),
+        other => is(other),
+    }
 }
 
 /// A label that fits into a picture, on one line.

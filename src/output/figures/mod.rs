@@ -10,13 +10,14 @@ mod draw;
 mod identification;
 mod impact;
 mod raster;
+mod shake;
 mod vector;
 
 use rayon::prelude::*;
 
 use super::{OutputError, Run};
 use crate::plan::{Figure, FigureKind};
-use crate::record::{History, ProcedureRecord};
+use crate::record::{History, ProcedureRecord, ShakeHistory};
 use chart::Chart;
 
 /// A figure, drawn.
@@ -117,6 +118,46 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
                 "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
             ),
         ),
+        (History::Shake(history), kind) => return shaken(run, name, history, figure, kind),
+        _ => return None,
+    })
+}
+
+/// The charts of a frame on moving ground; None before its first step.
+fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: Figure, kind: FigureKind) -> Option<(Chart, String)> {
+    if history.steps.is_empty() {
+        return None;
+    }
+    let limits = |result| impact::limits_on(run, figure.procedure, result);
+    let chosen = if shake::is_chosen(history) { "; not every one is drawn" } else { "" };
+    Some(match kind {
+        FigureKind::Modes => (
+            shake::modes(history.modes.as_ref()?),
+            format!("{name}: shapes of the natural modes and their periods, floor by floor from the ground up."),
+        ),
+        FigureKind::Ground => {
+            (shake::ground(history), format!("{name}: acceleration of the ground, as it was applied, against virtual time."))
+        }
+        FigureKind::Displacement => (
+            shake::displacement(history),
+            format!("{name}: displacement of each floor relative to the ground against virtual time{chosen}."),
+        ),
+        FigureKind::Drift => {
+            (shake::drift(history, &limits("max_drift")), format!("{name}: drift of each storey against virtual time{chosen}."))
+        }
+        FigureKind::Hysteresis => (
+            shake::hysteresis(history),
+            format!(
+                "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
+            ),
+        ),
+        FigureKind::BaseShear => (
+            shake::base_shear(history, &limits("max_base_shear")),
+            format!("{name}: base shear, the sum of the measured restoring forces, against virtual time."),
+        ),
+        FigureKind::Energy => {
+            (shake::energy(history), format!("{name}: what the motion of the ground put in, and what became of it."))
+        }
         _ => return None,
     })
 }

@@ -134,7 +134,7 @@ pub struct StrokeBody {
 }
 
 /// STEP: the end of a step, as computed; in a replay it must come out the same, bit for bit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepBody {
     pub step: u64,
     /// Virtual time of an impact, else rig time, s.
@@ -154,6 +154,19 @@ pub struct StepBody {
     /// Energy error over the input; none where it is not finite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub e: Option<f64>,
+    /// The axes after the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<AxisBody>,
+}
+
+/// One more axis at the end of a step, as the first stands in [`StepBody`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AxisBody {
+    pub u: f64,
+    pub x: f64,
+    pub v: f64,
+    pub a: f64,
+    pub r: f64,
 }
 
 /// OPERATOR: what a person answered, or asked for.

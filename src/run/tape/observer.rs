@@ -4,11 +4,11 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use super::entry::{OperatorBody, StepBody};
+use super::entry::{AxisBody, OperatorBody, StepBody};
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
-use crate::run::{Inspection, Next, Observer, Request, StepReport};
+use crate::run::{AxisReport, Inspection, Next, Observer, Request, StepReport};
 
 /// Who watches a run, with every word on record.
 pub struct TapedObserver<'run> {
@@ -193,6 +193,7 @@ impl StepBody {
             a: report.acceleration,
             r: report.force,
             e: report.energy_error.filter(|error| error.is_finite()),
+            axes: report.others.iter().map(AxisBody::of).collect(),
         }
     }
 
@@ -202,6 +203,17 @@ impl StepBody {
             [Some(body.time), Some(body.u), Some(body.x), body.v, body.a, Some(body.r), body.e]
                 .map(|value| value.map(f64::to_bits))
         };
-        self.step == other.step && numbers(self) == numbers(other)
+        let others = |body: &Self| body.axes.iter().flat_map(AxisBody::bits).collect::<Vec<u64>>();
+        self.step == other.step && numbers(self) == numbers(other) && others(self) == others(other)
+    }
+}
+
+impl AxisBody {
+    const fn of(axis: &AxisReport) -> Self {
+        Self { u: axis.command, x: axis.displacement, v: axis.velocity, a: axis.acceleration, r: axis.force }
+    }
+
+    fn bits(&self) -> [u64; 5] {
+        [self.u, self.x, self.v, self.a, self.r].map(f64::to_bits)
     }
 }

@@ -330,11 +330,13 @@ fn plan() -> Plan {
         specimens: vec![Specimen {
             name: "beam".into(),
             mass: MASS,
+            frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: STIFFNESS }),
             damping: 4.0,
             coulomb: 0.3,
         }],
         strikers: vec![Striker { name: "pendulum".into(), mass: STRIKER_MASS, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
+        grounds: Vec::new(),
         rig: RigPlan {
             name: "rehearsal".into(),
             link: Link::Virtual(VirtualLink { noise: 0.1, resolution: 1e-6, lag: 0.002, seed: 7, ..VirtualLink::default() }),

@@ -13,8 +13,10 @@ use crate::quantity::display::{readable_unit, significant};
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(area);
-    let displacement = [("t", Dimension::TIME), ("X", Dimension::LENGTH)];
-    let force = [("X", Dimension::LENGTH), ("R", Dimension::FORCE)];
+    let [x, r] = if view.model.axes() > 1 { ["top floor", "base shear"] } else { ["X", "R"] };
+    let across = if view.model.axes() > 1 { "first floor" } else { "X" };
+    let displacement = [("t", Dimension::TIME), (x, Dimension::LENGTH)];
+    let force = [(across, Dimension::LENGTH), (r, Dimension::FORCE)];
     chart(frame, view, left, &view.model.displacement, "Displacement", displacement);
     chart(frame, view, right, &view.model.force, "Force", force);
 }

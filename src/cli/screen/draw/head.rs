@@ -39,7 +39,7 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
     let mut words = String::new();
     if let Some(running) = &view.model.procedure {
         words = format!("  {}, {}", fitted(&shown(&running.name), 20), running.keyword);
-        let step = view.model.last.map_or(0, |last| last.step);
+        let step = view.model.last.as_ref().map_or(0, |last| last.step);
         match running.steps {
             _ if running.keyword == INSPECT => {}
             Some(steps) if steps > 0 => words = format!("{words}   step {step} of {}", steps.max(step)),
@@ -48,7 +48,7 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
         }
     }
     let moving = view.model.procedure.as_ref().is_none_or(|running| running.keyword != INSPECT);
-    if let Some(last) = view.model.last.filter(|_| moving) {
+    if let Some(last) = view.model.last.as_ref().filter(|_| moving) {
         words = format!("{words}   t {}", readable(last.time, Dimension::TIME));
     }
     Line::from(vec![Span::raw(" "), badge, Span::raw(words)])
@@ -70,11 +70,14 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
 }
 
 fn numbers_line(view: &View<'_>, wide: bool) -> String {
-    let Some(last) = view.model.last else { return String::new() };
+    let Some(last) = view.model.last.as_ref() else { return String::new() };
     let error_word = if wide { " error" } else { "" };
+    let several = view.model.axes() > 1;
+    let (highest, sum) = last.axes().fold((0.0, 0.0), |(_, sum), (_, displacement, force)| (displacement, sum + force));
+    let (displacement, force) = if several { ("top floor", "base shear") } else { ("X", "R") };
     let mut words = vec![
-        format!("X {}", readable(last.displacement, Dimension::LENGTH)),
-        format!("R {}", readable(last.force, Dimension::FORCE)),
+        format!("{displacement} {}", readable(highest, Dimension::LENGTH)),
+        format!("{force} {}", readable(sum, Dimension::FORCE)),
     ];
     if let Some(error) = view.model.tracking_error() {
         // What the last bit of a float leaves is no error.

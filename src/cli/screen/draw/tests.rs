@@ -37,6 +37,7 @@ fn model() -> Model {
             acceleration: None,
             force: 3e5 * displacement,
             energy_error: Some(0.012),
+            others: Vec::new(),
             tracking: None,
             tracking_energy_error: Some(-0.013),
         });

@@ -1,0 +1,136 @@
+//! Faults and warnings of frames and of the ground under them: E62x, W712 and W713.
+
+use super::shown;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::quantity::Dimension;
+use crate::source::Span;
+use crate::syntax::ast::Ident;
+
+pub fn bad_record(file: &str, reason: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::GroundRecord, format!("`{file}` is no ground motion: {reason}"))
+        .at(span, "cannot be used")
+        .help("a table begins with `time_s,acceleration_m_per_s2` and then has rising times from 0; a PEER file says NPTS and DT")
+}
+
+pub fn record_without_unit(file: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::GroundRecord, format!("`{file}` does not say the unit of its accelerations"))
+        .at(span, "in which unit?")
+        .help("add a line `unit = 1 m/s^2`, or `unit = 1 gn` where they are fractions of gravity")
+}
+
+pub fn unit_twice(file: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::GroundRecord, format!("the header of `{file}` says the unit of its accelerations already"))
+        .at(span, "said again")
+        .help("remove `unit`; a factor is `scale = 1.5`")
+}
+
+pub fn bad_matrix(file: &str, reason: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadMatrix, format!("`{file}` is no matrix of a structure: {reason}"))
+        .at(span, "cannot be used")
+        .help("write a row a line, its numbers parted by commas; the matrix is square, symmetric and positive definite")
+}
+
+pub fn matrices_of_two_sizes(file: &str, stiffness: usize, mass: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadMatrix, format!("`{file}` has {stiffness} rows, and the mass matrix has {mass}"))
+        .at(span, "another size")
+        .help("both matrices have a row and a column for each floor")
+}
+
+pub fn storey_without_stiffness(number: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::StoreyStiffness, format!("storey {number} has no stiffness"))
+        .at(span, "how stiff?")
+        .help("add `stiffness: 3 MN/m`, or `column_stiffness: 1.5 MN/m` for one of its two columns, or a `behaviour`")
+}
+
+pub fn storey_stiffness_twice(number: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::StoreyStiffness, format!("storey {number} says its stiffness twice"))
+        .at(span, "the second time")
+        .help("keep `stiffness`, of the whole storey, or `column_stiffness`, of one of its two columns")
+}
+
+pub fn too_many_storeys(found: usize, most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::TooMany, format!("a frame has at most {most} storeys, this one {found}"))
+        .at(span, "too many")
+        .help("each storey needs an actuator of its own; join some")
+}
+
+pub fn specimen_twice(first: &Ident, other: &Ident) -> Diagnostic {
+    Diagnostic::new(Code::SpecimenTwice, format!("a specimen of `{}` has no `{}`", first.node, other.node))
+        .at(other.span, "says another structure")
+        .at(first.span, "says the structure")
+        .help(format!("remove `{}`, or `{}`", other.node, first.node))
+}
+
+pub fn matrix_alone(given: &Ident, missing: &str) -> Diagnostic {
+    Diagnostic::new(Code::SpecimenTwice, format!("`{}` stands without `{missing}`", given.node))
+        .at(given.span, "half a structure")
+        .help(format!("add a line `{missing} = \"{}.csv\"`", &missing[..1]))
+}
+
+pub fn no_storeys(specimen: &str, span: Span, declared: Span) -> Diagnostic {
+    Diagnostic::new(Code::NoStoreys, format!("specimen `{specimen}` has no storeys, and `shake` moves the ground under some"))
+        .at(span, "shakes it")
+        .at(declared, "one degree of freedom, without storeys")
+        .help("write `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]` in place of its mass and behaviour")
+}
+
+pub fn one_degree_of_freedom(keyword: &str, specimen: &str, axes: usize, span: Span, declared: Option<Span>) -> Diagnostic {
+    let fault = Diagnostic::new(
+        Code::OneDegreeOfFreedom,
+        format!("`{keyword}` drives one actuator, and the frame `{specimen}` has {axes}"),
+    )
+    .at(span, "one degree of freedom");
+    let fault = match declared {
+        Some(declared) => fault.at(declared, format!("{axes} storeys")),
+        None => fault,
+    };
+    fault.help("test the storeys by `shake`, or a specimen of one degree of freedom in a plan of its own")
+}
+
+pub fn frame_on_real_rig(specimen: &str, axes: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::FrameOnRealRig,
+        format!("the frame `{specimen}` needs {axes} actuators with their load cells, and a real rig of this version has one"),
+    )
+    .at(span, "would move every storey")
+    .help("run it on a virtual rig: leave `--rig` out; a frame of one storey runs on a real one")
+}
+
+pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::DampingRatios, format!("{found} damping ratios for {modes} modes"))
+        .at(span, "a list has one for each mode")
+        .help("give one ratio for each mode, the longest period first, or one number: Rayleigh damping")
+}
+
+pub fn damping_impossible(reason: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::DampingRatios, format!("no damping matrix has these ratios: {reason}"))
+        .at(span, "cannot be met")
+        .help("give each mode its own ratio: `damping_ratio = [2, 3] %`")
+}
+
+pub fn no_one_of_its_kind(name: Option<&Ident>, property: &str, span: Span) -> Diagnostic {
+    let name = name.map_or("the frame", |name| name.node.as_str());
+    Diagnostic::new(Code::NoOneStiffness, format!("`{name}` is a frame: no one `{property}` is its own"))
+        .at(span, "which storey's?")
+        .help("declare the storey's own by `let`, and read that")
+}
+
+pub fn unstable_though(span: Span, step: f64, limit: f64) -> Diagnostic {
+    let (step, limit) = (shown(step, Dimension::TIME), shown(limit, Dimension::TIME));
+    Diagnostic::new(
+        Code::BeyondStability,
+        format!("the time step {step} is beyond the stability limit {limit}, and the plan allows it: the motion will grow"),
+    )
+    .at(span, "allowed here")
+    .help("remove `allow_unstable` unless the growth is what is to be seen")
+}
+
+pub fn record_finer_than_step(span: Span, step: f64, spacing: f64, ground: &str) -> Diagnostic {
+    let (step, spacing) = (shown(step, Dimension::TIME), shown(spacing, Dimension::TIME));
+    Diagnostic::new(
+        Code::RecordFinerThanStep,
+        format!("the time step {step} is longer than the {spacing} between samples of `{ground}`: peaks between are not felt"),
+    )
+    .at(span, format!("{step}, the record has {spacing}"))
+    .help(format!("write `time_step = {spacing}` or less"))
+}

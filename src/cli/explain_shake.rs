@@ -1,0 +1,59 @@
+//! What `psd check --explain` says of a frame before anything moves: its modes and its time step, and of the dry run its
+//! peaks. In: the steps of a shake. Out: rows of text.
+
+use crate::quantity::Dimension;
+use crate::quantity::display::{digits, readable, significant, unit};
+use crate::record::{ShakeHistory, ShakeStep};
+
+/// One row a mode: period, damping, the part of the mass that goes with it, and its shape from the lowest floor up.
+pub fn modes(history: &ShakeHistory) -> Vec<Vec<String>> {
+    let Some(modes) = &history.modes else { return Vec::new() };
+    let head = ["mode", "period", "damping", "effective mass", "shape, floor by floor"].map(str::to_owned).to_vec();
+    let percent = |fraction: f64| format!("{} %", significant(100.0 * fraction, 3));
+    let rows = modes.periods.iter().enumerate().map(|(mode, period)| {
+        let shape: Vec<String> = modes.shapes[mode].iter().map(|entry| digits(*entry, 1.0, Dimension::LENGTH)).collect();
+        vec![
+            (mode + 1).to_string(),
+            readable(*period, Dimension::TIME),
+            percent(history.damping_ratios.get(mode).copied().unwrap_or(0.0)),
+            percent(modes.effective_mass[mode]),
+            shape.join("  "),
+        ]
+    });
+    std::iter::once(head).chain(rows).collect()
+}
+
+/// The time step and the predicted peaks.
+pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
+    if history.steps.is_empty() {
+        return Vec::new();
+    }
+    let ratio = history.time_step / history.critical_time_step;
+    let judged = if ratio > 1.0 { "ABOVE critical" } else { "of it" };
+    let ends = history.steps.last().map_or(0.0, |step| step.time);
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    vec![
+        row("critical time step", readable(history.critical_time_step, Dimension::TIME)),
+        row("chosen time step", format!("{}, {} {judged}", readable(history.time_step, Dimension::TIME), significant(ratio, 3))),
+        row("virtual time", format!("{} in {} steps", readable(ends, Dimension::TIME), history.steps.len() - 1)),
+        row("largest displacement, floor by floor", peaks(history, |step| step.computed.clone(), Dimension::LENGTH)),
+        row("largest drift, storey by storey", peaks(history, ShakeStep::drift, Dimension::LENGTH)),
+        row("largest shear, storey by storey", peaks(history, ShakeStep::shear, Dimension::FORCE)),
+        row("largest ground acceleration", peaks(history, |step| vec![step.ground_acceleration], Dimension::ACCELERATION)),
+    ]
+}
+
+/// Largest sizes, all in one unit.
+fn peaks(history: &ShakeHistory, read: fn(&ShakeStep) -> Vec<f64>, dimension: Dimension) -> String {
+    let mut largest: Vec<f64> = Vec::new();
+    for step in &history.steps {
+        let values = read(step);
+        largest.resize(values.len(), 0.0);
+        for (largest, value) in largest.iter_mut().zip(values) {
+            *largest = largest.max(value.abs());
+        }
+    }
+    let (unit, factor) = unit(largest.iter().copied().fold(0.0, f64::max), dimension);
+    let numbers: Vec<String> = largest.iter().map(|value| digits(*value, factor, dimension)).collect();
+    format!("{} {unit}", numbers.join(", "))
+}

@@ -1,0 +1,214 @@
+//! A frame on moving ground, as a report tells it: its storeys, the record, the modes, what each storey went through, the
+//! energy. In: a plan and a record. Out: blocks.
+
+use super::super::document::{Block, Column, Table, Text};
+use super::super::{Run, behaviour, number};
+use super::{described, results};
+use crate::formula::ResultValue;
+use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
+use crate::quantity::Dimension;
+use crate::quantity::display::significant;
+use crate::record::{Modes, ProcedureRecord, ShakeHistory, ShakeStep};
+
+/// Storeys from the ground up, or the files of the matrices.
+pub(super) fn structure(frame: &Frame, body: &mut Vec<Block>) {
+    let mut rows = vec![
+        ("degrees of freedom", frame.degrees_of_freedom().to_string()),
+        ("mass of all floors", number::stated(frame.total_mass(), Dimension::MASS)),
+    ];
+    if let Some([mass, stiffness]) = &frame.files {
+        rows.push(("mass matrix", mass.clone()));
+        rows.push(("stiffness matrix", stiffness.clone()));
+        rows.push(("virtual behaviour", "elastic, R = K·X".to_owned()));
+    }
+    body.push(described(rows));
+    if frame.storeys.is_empty() {
+        return;
+    }
+    let columns = vec![
+        Column::numbers("Storey"),
+        Column::numbers("Mass"),
+        Column::numbers("Stiffness"),
+        Column::numbers("Height"),
+        Column::words("Virtual behaviour", 1),
+    ];
+    let row = |(index, storey): (usize, &crate::plan::Storey)| -> Vec<Text> {
+        vec![
+            (index + 1).to_string().into(),
+            number::stated(storey.mass, Dimension::MASS).into(),
+            number::stated(storey.stiffness, Dimension::STIFFNESS).into(),
+            storey.height.map_or_else(|| "—".to_owned(), |height| number::stated(height, Dimension::LENGTH)).into(),
+            behaviour::words(&storey.behaviour, &number::stated).into(),
+        ]
+    };
+    body.push(Block::Table(Table { columns, rows: frame.storeys.iter().enumerate().map(row).collect() }));
+}
+
+/// The record as it was read.
+pub(super) fn ground(ground: &Ground) -> Block {
+    let (shortest, longest) = ground.spacing();
+    let spacing = if longest - shortest <= 1e-6 * longest {
+        format!("{} samples, one every {}", ground.times.len(), number::stated(rounded(longest), Dimension::TIME))
+    } else {
+        format!(
+            "{} samples, {} to {} apart",
+            ground.times.len(),
+            number::stated(rounded(shortest), Dimension::TIME),
+            number::stated(rounded(longest), Dimension::TIME)
+        )
+    };
+    described(vec![
+        ("file", ground.file.clone()),
+        ("record", spacing),
+        ("duration", number::stated(ground.duration(), Dimension::TIME)),
+        ("scale", number::stated(ground.scale, Dimension::NUMBER)),
+        ("largest acceleration, scaled", number::text(ground.peak(), Dimension::ACCELERATION)),
+    ])
+}
+
+/// A difference of two times has the rounding of both.
+fn rounded(spacing: f64) -> f64 {
+    format!("{spacing:.9e}").parse().unwrap_or(spacing)
+}
+
+/// What was integrated and how, the modes, the storeys, the energy.
+pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history: &ShakeHistory, body: &mut Vec<Block>) {
+    let Some(ProcedureKind::Shake(shake)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
+    let Some(modes) = &history.modes else { return };
+    body.push(Block::paragraph(told(run, shake, history)));
+    body.push(mode_table(modes, &history.damping_ratios));
+    if !history.steps.is_empty() {
+        let frame = run.plan.specimens.get(shake.specimen).and_then(|specimen| specimen.frame.as_ref());
+        body.push(storey_table(procedure, history, frame));
+        body.push(energy_balance(history));
+    }
+}
+
+fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
+    let time = |value| number::text(value, Dimension::TIME);
+    let integrator = match shake.integrator {
+        Integrator::Tangent => "constant average acceleration with the measured tangent stiffness".to_owned(),
+        Integrator::Explicit => "explicit Newmark".to_owned(),
+        Integrator::AlphaOs { alpha } => {
+            format!("α-operator splitting with the initial stiffness, α = {}", number::stated(alpha, Dimension::NUMBER))
+        }
+    };
+    let damping = match (&shake.damping, history.damping_ratios.iter().any(|ratio| *ratio != 0.0)) {
+        (_, false) => "No damping is computed.",
+        (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
+        (ShakeDamping::Modal(_), true) => "Each mode has a damping ratio of its own.",
+    };
+    let mut sentences = vec![
+        format!("Integrated by {integrator}. {damping}"),
+        format!("Time step {}; a tenth of the shortest period is {}.", time(history.time_step), time(history.critical_time_step)),
+    ];
+    if let Some(ground) = run.plan.grounds.get(shake.ground) {
+        sentences.push(format!(
+            "The record is linear between its samples, and each step reads it at its end: {}.",
+            resampled(ground, history)
+        ));
+    }
+    sentences.join(" ")
+}
+
+/// Largest acceleration as applied beside that of the record over the same time and with the same factor.
+fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
+    let applied = history.steps.iter().map(|step| step.ground_acceleration.abs()).fold(0.0, f64::max);
+    let text = |value| number::text(value, Dimension::ACCELERATION);
+    format!(
+        "largest acceleration as applied {}, of the record {} before the factor of the run",
+        text(applied),
+        text(ground.peak())
+    )
+}
+
+fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
+    let columns = vec![
+        Column::numbers("Mode"),
+        Column::numbers("Period"),
+        Column::numbers("Damping ratio"),
+        Column::numbers("Effective mass"),
+        Column::words("Shape, from the lowest floor up", 1),
+    ];
+    let row = |mode: usize| -> Vec<Text> {
+        let shape: Vec<String> =
+            modes.shapes[mode].iter().map(|entry| crate::quantity::display::minus(&significant(*entry, 4))).collect();
+        vec![
+            (mode + 1).to_string().into(),
+            number::text(modes.periods[mode], Dimension::TIME).into(),
+            results::percent(ratios.get(mode).copied().unwrap_or(0.0)).into(),
+            results::percent(modes.effective_mass[mode]).into(),
+            shape.join("  ").into(),
+        ]
+    };
+    Block::Table(Table { columns, rows: (0..modes.periods.len()).map(row).collect() })
+}
+
+/// One row a storey, from the ground up.
+fn storey_table(procedure: &ProcedureRecord, history: &ShakeHistory, frame: Option<&Frame>) -> Block {
+    let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
+        Some(ResultValue::List(values)) => values.clone(),
+        _ => Vec::new(),
+    };
+    let (displacement, drift, residual) = (list("max_displacement"), list("max_drift"), list("residual_drift"));
+    let shear = largest(history, ShakeStep::shear);
+    let whole = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let cell = |values: &[f64], storey: usize, dimension| -> Text {
+        values.get(storey).map_or_else(|| "—".to_owned(), |value| number::text_beside(*value, whole(values), dimension)).into()
+    };
+    let columns = vec![
+        Column::words("Storey", 1),
+        Column::numbers("Largest displacement of its floor"),
+        Column::numbers("Largest drift"),
+        Column::numbers("Of its height"),
+        Column::numbers("Drift at the end"),
+        Column::numbers("Largest shear"),
+    ];
+    let height = |storey: usize| frame.and_then(|frame| frame.storeys.get(storey)).and_then(|storey| storey.height);
+    let row = |storey: usize| -> Vec<Text> {
+        let ratio = height(storey).zip(drift.get(storey)).map(|(height, drift)| results::percent(drift / height));
+        vec![
+            (storey + 1).to_string().into(),
+            cell(&displacement, storey, Dimension::LENGTH),
+            cell(&drift, storey, Dimension::LENGTH),
+            ratio.unwrap_or_else(|| "—".to_owned()).into(),
+            cell(&residual, storey, Dimension::LENGTH),
+            cell(&shear, storey, Dimension::FORCE),
+        ]
+    };
+    Block::Table(Table { columns, rows: (0..shear.len()).map(row).collect() })
+}
+
+fn largest(history: &ShakeHistory, read: fn(&ShakeStep) -> Vec<f64>) -> Vec<f64> {
+    let mut largest: Vec<f64> = Vec::new();
+    for step in &history.steps {
+        let values = read(step);
+        largest.resize(values.len(), 0.0);
+        for (largest, value) in largest.iter_mut().zip(values) {
+            *largest = largest.max(value.abs());
+        }
+    }
+    largest
+}
+
+/// What the motion of the ground put in, and where it was at the end.
+fn energy_balance(history: &ShakeHistory) -> Block {
+    let e = history.steps.last().map(|step| step.energies).unwrap_or_default();
+    let parts = [
+        ("kinetic, relative to the ground", e.kinetic),
+        ("restoring forces, ∫R dX", e.restoring),
+        ("damping, ∫CẊ dX", e.damping),
+        ("integration error", e.error),
+    ];
+    let row = |(name, energy): (&str, f64)| -> Vec<Text> {
+        let share = if e.input > 0.0 { results::percent(energy / e.input) } else { "—".to_owned() };
+        vec![name.into(), number::text_beside(energy, e.input, Dimension::ENERGY).into(), share.into()]
+    };
+    let input = vec!["input, −∫Mι ü_g dX".into(), number::text(e.input, Dimension::ENERGY).into(), "100\u{a0}%".into()];
+    let columns = vec![
+        Column::words("Energy balance at the end of the run", 1),
+        Column::numbers("Energy"),
+        Column::numbers("Of the input"),
+    ];
+    Block::Table(Table { columns, rows: std::iter::once(input).chain(parts.map(row)).collect() })
+}

@@ -1,0 +1,140 @@
+//! Charts of a frame on moving ground. In: the steps of one shake, its modes. Out: [`Chart`]s in SI. Floors and storeys are
+//! told apart by colour and dash, the lowest first.
+
+use super::chart::{Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, Reference, SOLID, Series, Style, palette};
+use crate::quantity::Dimension;
+use crate::record::{Modes, ShakeHistory, ShakeStep};
+
+/// More than this many curves cannot be told apart in one picture.
+const MOST_CURVES: usize = 6;
+
+const COLOURS: [Colour; MOST_CURVES] =
+    [palette::BLUE, palette::VERMILION, palette::GREEN, palette::PURPLE, palette::SKY, palette::BLACK];
+const DASHES: [&[f64]; MOST_CURVES] = [SOLID, DASHED, LONG, DASH_DOT, SOLID, DOTTED];
+
+/// Displacement of each floor against the ground.
+pub(super) fn displacement(history: &ShakeHistory) -> Chart {
+    each_floor(history, Quantity::of("Displacement", Dimension::LENGTH), "floor", |step| step.computed.clone())
+}
+
+pub(super) fn drift(history: &ShakeHistory, limits: &[Reference]) -> Chart {
+    let mut chart = each_floor(history, Quantity::of("Drift", Dimension::LENGTH), "storey", ShakeStep::drift);
+    chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
+    chart
+}
+
+/// Storey shear against drift: the area of a loop is the energy it took.
+pub(super) fn hysteresis(history: &ShakeHistory) -> Chart {
+    let paths: Vec<(Vec<f64>, Vec<f64>)> = history.steps.iter().map(|step| (step.drift(), step.shear())).collect();
+    let curves = shown(floors(history)).into_iter().enumerate().map(|(curve, storey)| Series {
+        label: format!("storey {}", storey + 1),
+        points: paths.iter().map(|(drift, shear)| (drift[storey], shear[storey])).collect(),
+        style: style(curve, 1.4),
+    });
+    Chart {
+        x: Quantity::along("Drift", Dimension::LENGTH),
+        y: Quantity::of("Storey shear", Dimension::FORCE),
+        bands: Vec::new(),
+        series: curves.collect(),
+        references: Vec::new(),
+    }
+}
+
+pub(super) fn base_shear(history: &ShakeHistory, limits: &[Reference]) -> Chart {
+    let read = |step: &ShakeStep| step.restoring_force.iter().sum();
+    let mut chart = over_time(Quantity::of("Base shear", Dimension::FORCE));
+    chart.series = vec![one(history, "base shear", read, Style::line(palette::BLUE, 1.6, SOLID))];
+    chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
+    chart
+}
+
+pub(super) fn ground(history: &ShakeHistory) -> Chart {
+    let mut chart = over_time(Quantity::of("Acceleration of the ground", Dimension::ACCELERATION));
+    chart.series = vec![one(history, "as applied", |step| step.ground_acceleration, Style::line(palette::BLUE, 1.4, SOLID))];
+    chart
+}
+
+/// The input, and what it became.
+pub(super) fn energy(history: &ShakeHistory) -> Chart {
+    type Part = (&'static str, fn(&ShakeStep) -> f64, Style);
+    let parts: [Part; 4] = [
+        ("input", |step| step.energies.input, Style::line(palette::BLACK, 1.6, SOLID)),
+        ("restoring", |step| step.energies.restoring, Style::line(palette::BLUE, 2.0, LONG)),
+        ("damping", |step| step.energies.damping, Style::line(palette::PURPLE, 2.0, DASH_DOT)),
+        ("kinetic", |step| step.energies.kinetic, Style::line(palette::SKY, 1.4, SOLID)),
+    ];
+    let mut chart = over_time(Quantity::of("Energy", Dimension::ENERGY));
+    let drawn = parts.into_iter().filter(|(_, read, _)| history.steps.iter().any(|step| read(step) != 0.0));
+    chart.series = drawn.map(|(label, read, style)| one(history, label, read, style)).collect();
+    chart
+}
+
+/// Shapes of the first modes, floor by floor from the ground up; the largest entry of each is 1.
+pub(super) fn modes(modes: &Modes) -> Chart {
+    let shapes = modes.shapes.iter().zip(&modes.periods).take(MOST_CURVES).enumerate();
+    let series = shapes.map(|(mode, (shape, period))| Series {
+        label: format!("mode {}, {}", mode + 1, crate::output::number::text(*period, Dimension::TIME)),
+        points: std::iter::once((0.0, 0.0)).chain(shape.iter().copied().zip((1..).map(f64::from))).collect(),
+        style: Style { marker: Some(super::chart::Marker::Disc(3.2)), ..style(mode, 1.6) },
+    });
+    Chart {
+        x: Quantity::along("Shape, largest entry 1", Dimension::NUMBER),
+        y: Quantity { end: End::Whole, ..Quantity::of("Floor", Dimension::NUMBER) },
+        bands: Vec::new(),
+        series: series.collect(),
+        references: Vec::new(),
+    }
+}
+
+/// Whether not every floor is drawn, for the caption.
+pub(super) fn is_chosen(history: &ShakeHistory) -> bool {
+    floors(history) > MOST_CURVES
+}
+
+fn floors(history: &ShakeHistory) -> usize {
+    history.steps.first().map_or(0, |step| step.command.len())
+}
+
+/// The floors that are drawn: all, or as many as can be told apart, evenly from the lowest to the highest.
+fn shown(floors: usize) -> Vec<usize> {
+    if floors <= MOST_CURVES {
+        return (0..floors).collect();
+    }
+    (0..MOST_CURVES).map(|curve| curve * (floors - 1) / (MOST_CURVES - 1)).collect()
+}
+
+fn each_floor(history: &ShakeHistory, y: Quantity, what: &str, read: fn(&ShakeStep) -> Vec<f64>) -> Chart {
+    let values: Vec<(f64, Vec<f64>)> = history.steps.iter().map(|step| (step.time, read(step))).collect();
+    let curves = shown(floors(history)).into_iter().enumerate().map(|(curve, floor)| Series {
+        label: format!("{what} {}", floor + 1),
+        points: values.iter().map(|(time, values)| (*time, values[floor])).collect(),
+        style: style(curve, 1.6),
+    });
+    let mut chart = over_time(y);
+    chart.series = curves.collect();
+    chart
+}
+
+fn style(curve: usize, width: f64) -> Style {
+    Style::line(COLOURS[curve % MOST_CURVES], width, DASHES[curve % MOST_CURVES])
+}
+
+fn over_time(y: Quantity) -> Chart {
+    Chart { x: Quantity::time(), y, bands: Vec::new(), series: Vec::new(), references: Vec::new() }
+}
+
+fn one(history: &ShakeHistory, label: &str, read: fn(&ShakeStep) -> f64, style: Style) -> Series {
+    Series { label: label.to_owned(), points: history.steps.iter().map(|step| (step.time, read(step))).collect(), style }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shown;
+
+    #[test]
+    fn of_many_floors_the_lowest_and_the_highest_are_always_drawn() {
+        assert_eq!(shown(2), [0, 1]);
+        assert_eq!(shown(6), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(shown(64), [0, 12, 25, 37, 50, 63]);
+    }
+}

@@ -1,0 +1,151 @@
+//! Frames of storeys and the motion of the ground under them: many degrees of freedom, one for each floor, counted from the
+//! ground up. In: what `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
+
+use super::{Behaviour, InspectTrigger, Integrator};
+use crate::formula::Formula;
+use crate::mechanics::frame::Damping;
+
+/// Degrees of freedom of one frame, at most: each has an actuator and a load cell of its own.
+pub const MOST_STOREYS: usize = 64;
+
+/// A structure of several floors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// From the ground up; empty where the plan gives the matrices.
+    pub storeys: Vec<Storey>,
+    /// M, kg, row by row: symmetric, positive definite.
+    pub mass: Vec<Vec<f64>>,
+    /// K at no displacement, N/m, row by row: symmetric, positive definite.
+    pub stiffness: Vec<Vec<f64>>,
+    /// The files of mass and stiffness, where the matrices were read.
+    pub files: Option<[String; 2]>,
+}
+
+/// One storey: a floor on its columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Storey {
+    /// kg, of the floor
+    pub mass: f64,
+    /// N/m, of all its columns together
+    pub stiffness: f64,
+    /// m
+    pub height: Option<f64>,
+    /// Storey shear against drift, what a virtual rig bends.
+    pub behaviour: Behaviour,
+}
+
+impl Frame {
+    /// A frame of storeys: M diagonal, K tridiagonal with `k_i + k_{i+1}` on its diagonal.
+    #[must_use]
+    pub fn of_storeys(storeys: Vec<Storey>) -> Self {
+        let count = storeys.len();
+        let mut mass = vec![vec![0.0; count]; count];
+        let mut stiffness = vec![vec![0.0; count]; count];
+        for (floor, storey) in storeys.iter().enumerate() {
+            mass[floor][floor] = storey.mass;
+            stiffness[floor][floor] += storey.stiffness;
+            if floor > 0 {
+                stiffness[floor - 1][floor - 1] += storey.stiffness;
+                stiffness[floor - 1][floor] = -storey.stiffness;
+                stiffness[floor][floor - 1] = -storey.stiffness;
+            }
+        }
+        Self { storeys, mass, stiffness, files: None }
+    }
+
+    /// Floors, each with an actuator and a load cell.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// ιᵀMι, kg: what moves with the ground.
+    #[must_use]
+    pub fn total_mass(&self) -> f64 {
+        self.mass.iter().flatten().sum()
+    }
+}
+
+/// The motion of the ground, from 0 s on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ground {
+    pub name: String,
+    pub file: String,
+    /// Factor of the plan, already in `accelerations`.
+    pub scale: f64,
+    /// s, from 0, rising.
+    pub times: Vec<f64>,
+    /// m/s²
+    pub accelerations: Vec<f64>,
+}
+
+impl Ground {
+    /// s
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// Shortest and longest time between two samples, s.
+    #[must_use]
+    pub fn spacing(&self) -> (f64, f64) {
+        let spacings = self.times.windows(2).map(|pair| pair[1] - pair[0]);
+        spacings.fold((f64::INFINITY, 0.0), |(low, high), spacing| (low.min(spacing), high.max(spacing)))
+    }
+
+    /// Largest acceleration by size, m/s².
+    #[must_use]
+    pub fn peak(&self) -> f64 {
+        self.accelerations.iter().fold(0.0, |peak: f64, acceleration| peak.max(acceleration.abs()))
+    }
+}
+
+/// A frame on moving ground.
+#[derive(Clone, Debug)]
+pub struct Shake {
+    /// Index into `Plan::specimens`; it has a frame.
+    pub specimen: usize,
+    /// Index into `Plan::grounds`.
+    pub ground: usize,
+    pub damping: ShakeDamping,
+    pub integrator: Integrator,
+    /// Whether it runs beyond the stability limit of its integrator.
+    pub allow_unstable: bool,
+    /// c of "the tangent stays in 0 .. c·K".
+    pub max_tangent_ratio: Formula,
+    /// s; may read `critical`.
+    pub time_step: Formula,
+    /// Factor on the record.
+    pub scale: Formula,
+    /// s of virtual time. None: to the end of the record.
+    pub duration: Option<Formula>,
+    /// s, at every step.
+    pub pause: Formula,
+    pub inspect: Vec<InspectTrigger>,
+}
+
+/// Fractions of critical damping.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShakeDamping {
+    /// C = a M + b K, this ratio in the first two modes; in the only mode of one storey.
+    Rayleigh(Formula),
+    /// Each mode its own, the longest period first.
+    Modal(Vec<Formula>),
+}
+
+impl ShakeDamping {
+    /// The ratios as `mechanics` takes them, where they are known before the run.
+    #[must_use]
+    pub fn known(&self) -> Option<Damping> {
+        Some(match self {
+            Self::Rayleigh(ratio) => rayleigh(ratio.constant()?),
+            Self::Modal(ratios) => Damping::Modal(ratios.iter().map(Formula::constant).collect::<Option<_>>()?),
+        })
+    }
+}
+
+/// Rayleigh damping with one ratio in the first two modes; no ratio is no damping at all.
+#[must_use]
+pub fn rayleigh(ratio: f64) -> Damping {
+    if ratio == 0.0 { Damping::None } else { Damping::rayleigh(ratio) }
+}

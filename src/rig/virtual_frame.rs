@@ -1,0 +1,331 @@
+//! The virtual rig of a frame: an actuator and a load cell for each floor, and storeys between them. In: targets, one a floor.
+//! Out: readings. As the virtual rig of one degree of freedom its time is simulated; each load cell has a seed of its own.
+
+use super::actuator::Actuator;
+use super::load_cell::{LoadCell, to_quantum};
+use super::settling::{Unsettled, settling_time};
+use super::virtual_rig::OWN_SPEED;
+use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
+use crate::mechanics::damping::CellDamping;
+use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
+use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
+use crate::plan::{Frame, Settle, VirtualLink};
+
+/// Several degrees of freedom: floors from the ground up.
+pub struct VirtualFrame {
+    name: String,
+    link: VirtualLink,
+    settle: Settle,
+    /// +1 or −1, of every axis.
+    sign: f64,
+    axes: Vec<Axis>,
+    structure: Structure,
+    /// s
+    time: f64,
+    /// Where the floors were last bent to (m), and their restoring forces there (N).
+    bent: Vec<f64>,
+    restoring_force: Vec<f64>,
+    /// Targets at the rig (m) and speed of the fastest axis (m/s).
+    proposed: Option<(Vec<f64>, f64)>,
+}
+
+struct Axis {
+    actuator: Actuator,
+    cell: LoadCell,
+    /// Sum of the sizes of a row of K, N/m: how fast its force can change as the floors move.
+    stiffness: f64,
+}
+
+/// What gives the floors their forces.
+enum Structure {
+    /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift.
+    /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest.
+    Storeys { models: Vec<SpecimenModel>, rates: Vec<CellDamping>, drift: Vec<f64>, shear: Vec<f64> },
+    /// R = K X.
+    Matrix(SymmetricBand),
+}
+
+impl Structure {
+    fn of(frame: &Frame) -> Self {
+        if frame.storeys.is_empty() {
+            let order = frame.degrees_of_freedom();
+            return Self::Matrix(SymmetricBand::from_dense(&frame.stiffness).unwrap_or_else(|_| SymmetricBand::zero(order, 0)));
+        }
+        let nothing = vec![0.0; frame.storeys.len()];
+        let models = frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect();
+        let rates = frame.storeys.iter().map(|storey| CellDamping::new(0.0, 0.0).with_rate_of(&storey.behaviour)).collect();
+        Self::Storeys { models, rates, drift: nothing.clone(), shear: nothing }
+    }
+
+    fn move_to(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
+        match self {
+            Self::Storeys { models, drift, shear, .. } => {
+                drifts(displacement, drift);
+                for ((model, drift), shear) in models.iter_mut().zip(drift).zip(&mut *shear) {
+                    *shear = model.move_to(*drift);
+                }
+                floor_forces(shear, restoring_force);
+            }
+            Self::Matrix(stiffness) => stiffness.mul_into(displacement, restoring_force),
+        }
+    }
+
+    /// What the cells feel of the floors' forces while these move, N.
+    fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
+        let mut felt = restoring_force.to_vec();
+        if let Self::Storeys { rates, shear, .. } = self
+            && velocities.iter().any(|velocity| *velocity != 0.0)
+        {
+            let mut apart = vec![0.0; velocities.len()];
+            drifts(velocities, &mut apart);
+            let storeys = rates.iter_mut().zip(shear).zip(apart);
+            let shears: Vec<f64> = storeys.map(|((rate, shear), velocity)| rate.felt(*shear, velocity)).collect();
+            floor_forces(&shears, &mut felt);
+        }
+        felt
+    }
+}
+
+/// The seed of one load cell: the plan's own for the lowest floor.
+const fn seed_of(seed: u64, axis: u64) -> u64 {
+    // The odd number nearest to 2⁶⁴ over the golden ratio: no two axes of any two near seeds meet.
+    seed.wrapping_add(axis.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+}
+
+impl VirtualFrame {
+    #[must_use]
+    pub fn new(name: &str, link: VirtualLink, settle: Settle, frame: &Frame, sign: f64) -> Self {
+        let axis = |(number, row): (u64, &Vec<f64>)| Axis {
+            actuator: Actuator::new(link.lag, link.tracking),
+            cell: LoadCell::new(link.noise, link.force_resolution, link.drift, seed_of(link.seed, number)),
+            stiffness: row.iter().map(|entry| entry.abs()).sum(),
+        };
+        let axes: Vec<Axis> = (0..).zip(&frame.stiffness).map(axis).collect();
+        let at_rest = vec![0.0; axes.len()];
+        let mut structure = Structure::of(frame);
+        let mut restoring_force = at_rest.clone();
+        structure.move_to(&at_rest, &mut restoring_force);
+        Self {
+            name: name.to_owned(),
+            link,
+            settle,
+            sign,
+            axes,
+            structure,
+            time: 0.0,
+            bent: at_rest,
+            restoring_force,
+            proposed: None,
+        }
+    }
+
+    /// The storeys follow the pistons.
+    fn follow(&mut self) {
+        let mut moved = false;
+        for (bent, axis) in self.bent.iter_mut().zip(&self.axes) {
+            let position = axis.actuator.position();
+            moved |= position != *bent;
+            *bent = position;
+        }
+        if moved {
+            self.structure.move_to(&self.bent, &mut self.restoring_force);
+        }
+    }
+
+    /// `seconds` pass with the references at rest.
+    fn rest(&mut self, seconds: f64) {
+        for axis in &mut self.axes {
+            axis.actuator.rest(seconds);
+        }
+        self.time += seconds;
+        self.follow();
+    }
+
+    /// Seconds until every axis has settled; None if one does not.
+    fn settling(&self, targets: &[f64], aims: &[f64]) -> Option<f64> {
+        let waits = self.axes.iter().zip(targets.iter().zip(aims)).map(|(axis, (target, aim))| {
+            let unsettled = Unsettled {
+                lagging: axis.actuator.lagging(),
+                lag: axis.actuator.lag(),
+                miss: (target - aim).abs(),
+                stiffness: axis.stiffness,
+                damping: 0.0,
+                drift: self.link.drift,
+                rate: None,
+            };
+            settling_time(&self.settle, &unsettled)
+        });
+        waits.collect::<Option<Vec<f64>>>().map(|waits| waits.into_iter().fold(0.0, f64::max))
+    }
+}
+
+impl Rig for VirtualFrame {
+    fn identity(&self) -> Identity {
+        Identity {
+            name: self.name.clone(),
+            model: "virtual rig".to_owned(),
+            serial: String::new(),
+            firmware: env!("CARGO_PKG_VERSION").to_owned(),
+            boot: None,
+            simulated: true,
+        }
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.axes.len()
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        let refused = |reason: String| Err(RigFault::Device(reason));
+        if targets.len() != self.axes.len() {
+            return refused(format!("this rig has {} degrees of freedom, not {}", self.axes.len(), targets.len()));
+        }
+        if let Some(target) = targets.iter().find(|target| !target.is_finite()) {
+            return refused(format!("the target {target} m is no place"));
+        }
+        let speed = speed.unwrap_or(OWN_SPEED);
+        if !(speed > 0.0 && speed.is_finite()) {
+            return refused(format!("a move at {speed} m/s never arrives"));
+        }
+        self.proposed = Some((targets.iter().map(|target| self.sign * target).collect(), speed));
+        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None })
+    }
+
+    /// All axes arrive at once; the one with the farthest way goes at the speed that was asked for.
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let (targets, speed) =
+            self.proposed.take().ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
+        let aims: Vec<f64> = self.axes.iter().zip(&targets).map(|(axis, target)| axis.actuator.aim(*target)).collect();
+        let ways = self.axes.iter().zip(&aims).map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
+        let seconds = ways.fold(0.0, f64::max) / speed;
+        for (axis, aim) in self.axes.iter_mut().zip(&aims) {
+            axis.actuator.advance(*aim, seconds);
+        }
+        self.time += seconds;
+        self.follow();
+        for axis in &mut self.axes {
+            axis.actuator.stop();
+        }
+        if let Some(wait) = self.settling(&targets, &aims) {
+            self.rest(wait);
+            Ok(())
+        } else {
+            self.rest(self.settle.timeout);
+            self.hold();
+            Err(RigFault::NotSettled { timeout: self.settle.timeout })
+        }
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        self.rest(seconds);
+        Ok(())
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
+        let displacement = self.bent.iter().map(|bent| sign * to_quantum(*bent, resolution)).collect();
+        let velocities: Vec<f64> = self.axes.iter().map(|axis| axis.actuator.velocity()).collect();
+        let felt = self.structure.felt(&velocities, &self.restoring_force);
+        let force = self.axes.iter_mut().zip(felt).map(|(axis, force)| sign * axis.cell.read(force, time)).collect();
+        Ok(Reading { time, displacement, force, raw: Vec::new() })
+    }
+
+    fn traverse(&mut self, _: &[f64], _: f64, _: usize, _: EachReading<'_>) -> Result<(), RigFault> {
+        Err(RigFault::Device("the axes of a frame go to targets: they are not read on the way".to_owned()))
+    }
+
+    fn hold(&mut self) {
+        for axis in &mut self.axes {
+            axis.actuator.hold();
+        }
+        self.proposed = None;
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        DeclaredNoise { force: self.link.noise, resolution: self.link.resolution }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Behaviour, Storey};
+
+    const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
+
+    fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
+        Storey { mass: 1.0, stiffness, height: None, behaviour }
+    }
+
+    /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
+    fn frame() -> Frame {
+        Frame::of_storeys(vec![
+            storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
+            storey(2000.0, Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 }),
+        ])
+    }
+
+    fn rig(link: VirtualLink) -> VirtualFrame {
+        VirtualFrame::new("frame", link, AT_ONCE, &frame(), 1.0)
+    }
+
+    fn go(rig: &mut VirtualFrame, targets: [f64; 2]) -> Reading {
+        rig.propose(&targets, Some(0.01)).unwrap();
+        rig.execute().unwrap();
+        rig.read().unwrap()
+    }
+
+    #[test]
+    fn forces_of_the_floors_are_differences_of_storey_shears() {
+        // Drifts 1 mm and 1 mm: shears 3 N and 2 N.
+        let reading = go(&mut rig(VirtualLink::default()), [0.001, 0.002]);
+        assert_eq!((reading.time, reading.displacement), (0.2, vec![0.001, 0.002]));
+        assert!((reading.force[0] - 1.0).abs() < 1e-12 && (reading.force[1] - 2.0).abs() < 1e-12);
+        // A drift of 4 mm yields at 4 N.
+        let reading = go(&mut rig(VirtualLink::default()), [0.001, 0.005]);
+        assert!((reading.force[0] + 1.0).abs() < 1e-12 && (reading.force[1] - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_full_matrix_gives_r_as_k_x() {
+        let matrix = Frame { storeys: Vec::new(), ..frame() };
+        let mut rig = VirtualFrame::new("frame", VirtualLink::default(), AT_ONCE, &matrix, -1.0);
+        let reading = go(&mut rig, [0.001, 0.005]);
+        // K = [5, −2; −2, 2] kN/m.
+        assert!((reading.force[0] + 5.0).abs() < 1e-12 && (reading.force[1] - 8.0).abs() < 1e-12, "{:?}", reading.force);
+    }
+
+    #[test]
+    fn every_load_cell_has_a_noise_of_its_own_that_repeats_by_seed() {
+        let forces = |seed| go(&mut rig(VirtualLink { noise: 1.0, seed, ..VirtualLink::default() }), [0.0, 0.0]).force;
+        let (first, again) = (forces(7), forces(7));
+        assert_eq!(first, again);
+        assert_ne!(first[0], first[1]);
+        assert_ne!(first, forces(8));
+    }
+
+    #[test]
+    fn lag_and_tracking_are_each_axes_own() {
+        let reading = go(&mut rig(VirtualLink { tracking: 0.1, ..VirtualLink::default() }), [0.001, -0.002]);
+        assert!((reading.displacement[0] - 0.0009).abs() < 1e-15 && (reading.displacement[1] + 0.0018).abs() < 1e-15);
+        // 0.2 s on the way: the slower axis lags by half as much.
+        let reading = go(&mut rig(VirtualLink { lag: 0.02, ..VirtualLink::default() }), [0.001, -0.002]);
+        let behind = 0.01 * 0.02 * (1.0 - (-10.0_f64).exp());
+        assert!((reading.displacement[1] + 0.002 - behind).abs() < 1e-15);
+        assert!((reading.displacement[0] - 0.001 + 0.5 * behind).abs() < 1e-15);
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_do() {
+        let mut rig = rig(VirtualLink::default());
+        assert!(rig.propose(&[0.0], None).is_err());
+        assert!(rig.propose(&[0.0, f64::NAN], None).is_err());
+        assert!(rig.propose(&[0.0, 0.0], Some(0.0)).is_err());
+        assert!(rig.execute().is_err(), "nothing was proposed");
+        assert!(rig.traverse(&[0.0, 0.1], 0.01, 4, &mut |_| Ok(())).is_err());
+    }
+}

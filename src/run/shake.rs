@@ -1,0 +1,296 @@
+//! `shake` (Melo et al. 2006, eqs. 1 and 1a, Figs. 1 and 2): a frame on moving ground, an actuator and a load cell for each
+//! floor. Each step: predict, command, settle, pause, read, feed back. In: a frame, a ground motion, a time step. Out: every
+//! step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
+
+use super::inputs::Inputs;
+use super::session::Session;
+use super::shake_results::{ShakeSummary, results};
+use super::stop::Stop;
+use super::triggers::Triggers;
+use super::watch::Watch;
+use super::{AxisReport, Performed, StepReport};
+use crate::formula::{Formula, NoResults};
+use crate::mechanics::frame::{Damping, FrameInput, FrameSolver, FrameState, Tangents, storeys_of};
+use crate::mechanics::frame_properties::FrameProperties;
+use crate::mechanics::ground::{acceleration_at, peak_velocity};
+use crate::mechanics::monitor::{Monitor, Tracking};
+use crate::plan::{Frame, Ground, MOST_STEPS, Plan, Shake, ShakeDamping, rayleigh};
+use crate::quantity::Dimension;
+use crate::quantity::display::stated;
+use crate::record::{History, ShakeHistory, ShakeStep};
+use crate::rig::Reading;
+
+pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let ground = &whole.grounds[plan.ground];
+    // `check` has seen that the specimen is a frame.
+    let frame = whole.specimens[plan.specimen].frame.as_ref();
+    let setting = frame.map_or_else(
+        || Err(Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }),
+        |frame| Setting::evaluate(plan, frame, ground, inputs, session),
+    );
+    let setting = match setting {
+        Ok(setting) => setting,
+        Err(stop) => {
+            return Performed {
+                history: History::Shake(ShakeHistory::default()),
+                results: results(None, None),
+                stop: Some(stop),
+            };
+        }
+    };
+    let history = ShakeHistory {
+        steps: Vec::new(),
+        damping_ratios: setting.properties.damping_ratios(),
+        modes: Some(setting.properties.modes.clone()),
+        time_step: setting.time_step,
+        critical_time_step: setting.properties.critical_time_step(),
+    };
+    let mut shaking = Shaking {
+        setting: &setting,
+        history,
+        summary: ShakeSummary::new(setting.properties.matrices.order()),
+        watch: Watch::default(),
+    };
+    let stop = shaking.run(plan, ground, session).err();
+    let results = results(shaking.history.modes.as_ref(), Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty()));
+    Performed { results, history: History::Shake(shaking.history), stop }
+}
+
+/// Steps of a shake, where the plan alone tells.
+pub(super) fn steps(shake: &Shake, plan: &Plan) -> Option<u64> {
+    let frame = plan.specimens.get(shake.specimen)?.frame.as_ref()?;
+    let critical = FrameProperties::of(frame, &Damping::None).ok()?.critical_time_step();
+    let time_step = shake.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+    let duration = match &shake.duration {
+        Some(duration) => duration.constant()?,
+        None => plan.grounds.get(shake.ground)?.duration(),
+    };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
+    Some(steps_in(duration, time_step) as u64)
+}
+
+/// 0.5 s of 0.01 s are 50 steps, whatever rounding says of the ratio.
+fn steps_in(duration: f64, time_step: f64) -> f64 {
+    (duration / time_step * (1.0 - 1e-12)).ceil()
+}
+
+/// Everything known before the first step.
+struct Setting {
+    properties: FrameProperties,
+    tangents: Tangents,
+    /// s
+    time_step: f64,
+    steps: u64,
+    /// Factor on the record.
+    scale: f64,
+    /// s
+    pause: f64,
+    /// ½ ιᵀMι v², v the largest velocity of the ground, J: what its motion can put in, before it has.
+    ground_energy: f64,
+}
+
+impl Setting {
+    fn evaluate(
+        plan: &Shake,
+        frame: &Frame,
+        ground: &Ground,
+        inputs: &mut Inputs<'_>,
+        session: &Session<'_>,
+    ) -> Result<Self, Stop> {
+        let (damping, ratio) = damping(&plan.damping, inputs)?;
+        let unmet = |reason: String| Stop::BadInput { field: "damping_ratio", value: ratio, wanted: reason.into() };
+        let properties = FrameProperties::of(frame, &damping).map_err(|reason| unmet(format!("other: {reason}")))?;
+        let critical = properties.critical_time_step();
+        let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical))?.value;
+        let limit = properties.longest_stable_step(plan.integrator, Some(frame).filter(|_| session.reckoned()));
+        if time_step > limit && !plan.allow_unstable {
+            let wanted =
+                format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
+            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
+        }
+        let to_the_end = Formula::Constant(ground.duration());
+        let duration = inputs.positive("duration", plan.duration.as_ref().unwrap_or(&to_the_end), Dimension::TIME)?;
+        let scale = inputs.number("scale", &plan.scale, Dimension::NUMBER)?;
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let largest_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
+        let steps = steps_in(duration, time_step);
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+        let floors = frame.degrees_of_freedom() as f64;
+        if steps * floors > MOST_STEPS {
+            let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
+            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
+        }
+        let tangents = match storeys_of(&properties.matrices.stiffness) {
+            Some(_) => Tangents::Storeys { largest_ratio },
+            None => Tangents::Initial,
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
+        let steps = steps as u64;
+        let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
+        let ground_energy = 0.5 * frame.total_mass() * velocity * velocity;
+        Ok(Self { properties, tangents, time_step, steps, scale, pause, ground_energy })
+    }
+}
+
+/// The damping, and a ratio of it for a message.
+fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
+    let known = |ratio: f64| match ratio {
+        ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
+        value => Err(Stop::BadInput { field: "damping_ratio", value, wanted: "between 0 and 1".into() }),
+    };
+    Ok(match plan {
+        ShakeDamping::Rayleigh(ratio) => {
+            let ratio = known(inputs.number("damping_ratio", ratio, Dimension::NUMBER)?)?;
+            (rayleigh(ratio), ratio)
+        }
+        ShakeDamping::Modal(ratios) => {
+            let ratios = inputs.list("damping_ratio", ratios)?;
+            let ratios = ratios.into_iter().map(known).collect::<Result<Vec<f64>, Stop>>()?;
+            let first = ratios.first().copied().unwrap_or(0.0);
+            (Damping::Modal(ratios), first)
+        }
+    })
+}
+
+struct Shaking<'a> {
+    setting: &'a Setting,
+    history: ShakeHistory,
+    summary: ShakeSummary,
+    watch: Watch,
+}
+
+impl Shaking<'_> {
+    fn run(&mut self, plan: &Shake, ground: &Ground, session: &mut Session<'_>) -> Result<(), Stop> {
+        let Setting { properties, tangents, time_step, steps, scale, pause, .. } = self.setting;
+        let matrices = &properties.matrices;
+        let ground_at = |time| scale * acceleration_at(&ground.times, &ground.accelerations, time);
+        let mut triggers = Triggers::new(&plan.inspect);
+        // X starts where the actuators were sent to, and R₀ is read there once, before the first step.
+        let start = session.guard.commanded().to_vec();
+        let reading = session.guard.read()?;
+        let mut load = vec![0.0; matrices.order()];
+        matrices.ground_load(ground_at(0.0), &mut load);
+        let noise = session.guard.declared_noise();
+        let solver = FrameSolver::new(&FrameInput {
+            matrices,
+            operator_stiffness: &matrices.stiffness,
+            integrator: plan.integrator,
+            i_modification: false,
+            tangents: *tangents,
+            time_step: *time_step,
+            initial_displacement: &start,
+            initial_restoring_force: &reading.force,
+            initial_load: &load,
+            force_noise: noise.force,
+            resolution: noise.resolution,
+        });
+        let mut solver = solver.map_err(|error| Stop::BadInput {
+            field: "time_step",
+            value: *time_step,
+            wanted: format!("one that can be stepped: {error}").into(),
+        })?;
+        let mut monitors = Monitors::new(&start, &reading);
+        let mut at_rest = solver.state().clone();
+        at_rest.measured_displacement = reading.displacement;
+        self.take(&at_rest, ground_at(0.0), Tracking::default(), session);
+        for step in 1..=*steps {
+            #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+            let acceleration = ground_at(step as f64 * time_step);
+            matrices.ground_load(acceleration, &mut load);
+            let targets = solver.predict(&load).to_vec();
+            session.guard.move_to(&targets, None)?;
+            session.guard.pause(*pause)?;
+            let reading = session.guard.read()?;
+            let tracking = monitors.take(&targets, &reading);
+            let state = solver.complete(&reading.displacement, &reading.force);
+            let told = self.take(state, acceleration, tracking, session);
+            self.watch.judge(told.tracking_energy_error, session);
+            session.guard.check_energy_error(told.energy_error)?;
+            session.guard.check_tracking(told.tracking_energy_error, tracking.nrms_error)?;
+            session.step_done(&report(state, &told))?;
+            let base_shear = state.restoring_force.iter().sum();
+            if let Some(reason) = triggers.after(state.step, state.time, base_shear) {
+                session.inspect(&reason)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps a step; gives its errors over the energy of the test.
+    fn take(&mut self, state: &FrameState, ground_acceleration: f64, tracking: Tracking, session: &Session<'_>) -> Told {
+        self.history.steps.push(ShakeStep {
+            step: state.step,
+            time: state.time,
+            wall_time: session.guard.time(),
+            ground_acceleration,
+            command: state.target.clone(),
+            displacement: state.measured_displacement.clone(),
+            computed: state.displacement.clone(),
+            velocity: state.velocity.clone(),
+            acceleration: state.acceleration.clone(),
+            restoring_force: state.restoring_force.clone(),
+            energies: state.energies,
+            tracking,
+        });
+        self.summary.push(state);
+        // An input that begins with nothing divides nothing: until it is larger, what the ground can put in counts.
+        let energy = self.summary.largest_energy().max(self.setting.ground_energy);
+        Told {
+            energy_error: if state.energies.error == 0.0 { 0.0 } else { state.energies.error / energy },
+            tracking,
+            tracking_energy_error: tracking.share_of(energy),
+        }
+    }
+}
+
+/// The errors of a step.
+struct Told {
+    energy_error: f64,
+    tracking: Tracking,
+    tracking_energy_error: Option<f64>,
+}
+
+/// The monitors of every axis, told as one: energies add, of the others the largest counts.
+struct Monitors(Vec<Monitor>);
+
+impl Monitors {
+    fn new(commanded: &[f64], reading: &Reading) -> Self {
+        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
+        Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
+    }
+
+    fn take(&mut self, commanded: &[f64], reading: &Reading) -> Tracking {
+        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
+        let each = self.0.iter_mut().zip(axes).map(|(monitor, (to, (measured, force)))| monitor.take(*to, *measured, *force));
+        each.fold(Tracking::default(), |all, axis| Tracking {
+            energy_error: all.energy_error + axis.energy_error,
+            indicator: all.indicator + axis.indicator,
+            nrms_error: all.nrms_error.max(axis.nrms_error),
+            peak_error: all.peak_error.max(axis.peak_error),
+        })
+    }
+}
+
+fn report(state: &FrameState, told: &Told) -> StepReport {
+    let axis = |floor: usize| AxisReport {
+        command: state.target[floor],
+        displacement: state.measured_displacement[floor],
+        velocity: state.velocity[floor],
+        acceleration: state.acceleration[floor],
+        force: state.restoring_force[floor],
+    };
+    let first = axis(0);
+    StepReport {
+        step: state.step,
+        time: state.time,
+        command: first.command,
+        displacement: first.displacement,
+        velocity: Some(first.velocity),
+        acceleration: Some(first.acceleration),
+        force: first.force,
+        energy_error: Some(told.energy_error),
+        tracking: Some(told.tracking),
+        tracking_energy_error: told.tracking_energy_error,
+        others: (1..state.target.len()).map(axis).collect(),
+    }
+}

@@ -1,0 +1,76 @@
+//! What a shake leaves: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
+//! schema's order. It drives nothing.
+
+use super::results::result;
+use crate::formula::ResultValue;
+use crate::mechanics::frame::{FrameState, Modes, drifts};
+use crate::quantity::Dimension;
+use crate::record::NamedResult;
+
+/// Peaks over the computed displacements and the measured forces.
+pub(super) struct ShakeSummary {
+    max_displacement: Vec<f64>,
+    max_drift: Vec<f64>,
+    drift: Vec<f64>,
+    max_base_shear: f64,
+    /// J, of the input or of what it became.
+    largest_energy: f64,
+    energy_error: f64,
+    steps: u64,
+}
+
+impl ShakeSummary {
+    pub(super) fn new(floors: usize) -> Self {
+        let nothing = vec![0.0; floors];
+        Self {
+            max_displacement: nothing.clone(),
+            max_drift: nothing.clone(),
+            drift: nothing,
+            max_base_shear: 0.0,
+            largest_energy: 0.0,
+            energy_error: 0.0,
+            steps: 0,
+        }
+    }
+
+    /// Takes the end of a step.
+    pub(super) fn push(&mut self, state: &FrameState) {
+        drifts(&state.displacement, &mut self.drift);
+        let widen = |largest: &mut [f64], values: &[f64]| {
+            for (largest, value) in largest.iter_mut().zip(values) {
+                *largest = largest.max(value.abs());
+            }
+        };
+        widen(&mut self.max_displacement, &state.displacement);
+        widen(&mut self.max_drift, &self.drift);
+        self.max_base_shear = self.max_base_shear.max(state.restoring_force.iter().sum::<f64>().abs());
+        let e = &state.energies;
+        self.largest_energy = self.largest_energy.max(e.input.abs()).max(e.kinetic);
+        self.energy_error = if e.error == 0.0 { 0.0 } else { e.error / self.largest_energy };
+        self.steps = state.step;
+    }
+
+    /// J
+    pub(super) const fn largest_energy(&self) -> f64 {
+        self.largest_energy
+    }
+}
+
+/// In the order of the reference; what was not reached is missing.
+pub(super) fn results(modes: Option<&Modes>, summary: Option<&ShakeSummary>) -> Vec<NamedResult> {
+    let list = |name, dimension, values: Option<&Vec<f64>>| match values {
+        Some(values) => NamedResult { name, dimension, value: ResultValue::List(values.clone()) },
+        None => result(name, dimension, None),
+    };
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+    let steps = summary.map(|summary| summary.steps as f64);
+    vec![
+        list("max_displacement", Dimension::LENGTH, summary.map(|summary| &summary.max_displacement)),
+        list("max_drift", Dimension::LENGTH, summary.map(|summary| &summary.max_drift)),
+        list("residual_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
+        list("periods", Dimension::TIME, modes.map(|modes| &modes.periods)),
+        result("max_base_shear", Dimension::FORCE, summary.map(|summary| summary.max_base_shear)),
+        result("energy_error", Dimension::NUMBER, summary.map(|summary| summary.energy_error)),
+        result("steps", Dimension::NUMBER, steps),
+    ]
+}
