@@ -34,4 +34,7 @@ pub mod verdict;
 
 pub mod output;
 
+pub mod comparison;
+pub mod golden;
+
 pub mod cli;

@@ -16,6 +16,7 @@ mod expression;
 mod faults;
 mod fields;
 mod frame;
+mod golden;
 mod ground;
 mod ground_record;
 mod impact;
@@ -161,6 +162,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     let requirements = checker.requirements();
     let by_place: Vec<Option<Procedure>> = procedures.iter().map(|(_, procedure)| procedure.clone()).collect();
     let report = report::report(checker, &by_place);
+    let golden = golden::golden(checker);
     if !checker.faults.iter().any(Diagnostic::is_error) {
         let head = checker.scope.of_kind(Kind::Plan).map(|(_, block)| block.block.head).next();
         let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
@@ -187,6 +189,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         decision_rule: plan_block::decision_rule(&particulars),
         particulars,
         report: report?,
+        golden: golden?,
         files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),
     })

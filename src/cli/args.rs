@@ -38,6 +38,10 @@ pub enum Command {
     Keygen(KeygenArguments),
     /// Shows everything wrong with plans; nothing moves
     Check(CheckArguments),
+    /// Lays the results of runs side by side; nothing moves
+    Compare(CompareArguments),
+    /// Runs plans on virtual rigs and holds what they give against their blessed results
+    Test(TestArguments),
     /// Writes plans in the canonical layout
     Fmt(FmtArguments),
     /// Explains a diagnostic code, such as E202; without one, lists them all
@@ -256,6 +260,61 @@ pub struct CheckArguments {
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[command(after_help = "Blessed results of plans/NAME.psd lie in reports/NAME, beside the folder of the plans.\n\
+    The plan's `golden` block says how near is near enough; docs/golden.md tells all.\n\n\
+    Exit codes: 0 everything is as blessed, 2 the command line is wrong, 3 a file failed,\n\
+    5 something differs, is not blessed, or could not be run.")]
+pub struct TestArguments {
+    /// Plans, or folders whose plans are meant, not those of folders in them [default: plans]
+    #[arg(value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+    /// Folder of the blessed results [default: reports, beside the folder of each plan]
+    #[arg(long, value_name = "DIR")]
+    pub golden: Option<PathBuf>,
+    /// Blesses what the plans give now, and says what changed; where nothing did, nothing is written
+    #[arg(long, conflicts_with_all = ["list", "fail_fast"])]
+    pub bless: bool,
+    /// With --bless: writes everything anew, also certificates and pictures of results that did not change
+    #[arg(long, requires = "bless")]
+    pub anew: bool,
+    /// Only plans with this text in their path
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Lists the plans and runs none
+    #[arg(long)]
+    pub list: bool,
+    /// Plans run at a time [default: as many as there are processors]; the outcome is the same
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<std::num::NonZeroUsize>,
+    /// Ends at the first plan that fails
+    #[arg(long)]
+    pub fail_fast: bool,
+    /// Where a plan that differs leaves its new results, and old and new on one picture
+    #[arg(long, value_name = "DIR", default_value = "runs/golden-failures")]
+    pub out: PathBuf,
+    /// Also writes the outcome as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Gives the outcome on standard output in the Test Anything Protocol
+    #[arg(long)]
+    pub tap: bool,
+    /// How the outcome is given: told on standard error, or as JSON on standard output
+    #[arg(long, value_enum, default_value_t = Format::Human, conflicts_with = "tap")]
+    pub format: Format,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Run folders, or folders of blessed results; at least two
+    #[arg(value_name = "RUN", num_args = 2.., required = true)]
+    pub runs: Vec<PathBuf>,
+    /// Also writes a page, a CSV and figures into this folder, new or empty
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub struct FmtArguments {
     /// Files, or folders whose `.psd` files are meant
     #[arg(value_name = "PATH", required = true)]
@@ -266,7 +325,7 @@ pub struct FmtArguments {
 }
 
 /// What the command line says of the plan.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct PlanSettings {
     /// The rig to use; a real rig moves only when named
     #[arg(long, value_name = "NAME")]

@@ -22,6 +22,8 @@ pub enum Exit {
     Fault,
     /// 4: stopped by a limit or by a person.
     Stopped,
+    /// 5: results differ from the blessed ones.
+    Differs,
 }
 
 impl Exit {
@@ -34,6 +36,7 @@ impl Exit {
             Self::Wrong => 2,
             Self::Fault => 3,
             Self::Stopped => 4,
+            Self::Differs => 5,
         }
     }
 }

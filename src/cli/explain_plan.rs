@@ -337,6 +337,7 @@ mod tests {
             requirements: Vec::new(),
             decision_rule: crate::plan::DecisionRule::Simple,
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+            golden: crate::plan::Golden::default(),
             files: Vec::new(),
             settings: Vec::new(),
         }

@@ -6,6 +6,7 @@ mod args;
 mod bless;
 mod check;
 mod columns;
+mod compare;
 mod conclude;
 mod dry_rig;
 mod evidence;
@@ -30,6 +31,8 @@ mod run_folder;
 mod screen;
 mod settings;
 mod sign;
+mod test;
+mod trial;
 mod verify;
 mod watch;
 
@@ -61,6 +64,8 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
         args::Command::Verify(arguments) => verify::verify(arguments, settings),
         args::Command::Sign(arguments) => sign::sign(arguments, settings),
         args::Command::Keygen(arguments) => sign::keygen(arguments, settings),
+        args::Command::Compare(arguments) => compare::compare(arguments),
+        args::Command::Test(arguments) => test::test(arguments, settings),
         args::Command::Check(arguments) => check::check(arguments, settings),
         args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),
         args::Command::Explain { code } => explain::explain(code.as_deref(), settings),

@@ -107,6 +107,7 @@ mod tests {
             requirements: Vec::new(),
             decision_rule: DecisionRule::Simple,
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+            golden: crate::plan::Golden::default(),
             files: files.iter().map(own).map(|(name, text)| PlanFile { name, text }).collect(),
             settings: settings.iter().map(own).collect(),
         }

@@ -11,8 +11,9 @@ use super::rehearse::rehearse;
 use super::run_folder::RunFolder;
 use super::settings::Settings;
 use super::watch::{Attendance, Watcher};
-use super::{plan_file, provenance, real_rig};
+use super::{plan_file, provenance, real_rig, trial};
 use crate::diagnostic::json;
+use crate::golden::{Outcome, Tested, console};
 use crate::output::{OutputFile, Provenance};
 use crate::plan::{Link, Plan};
 use crate::rig::{Wish, virtual_rig};
@@ -32,12 +33,17 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         return rehearse(plan, arguments, settings);
     }
     let blessed = arguments.bless.then(|| BlessedFolder::of(&arguments.plan)).transpose()?;
+    if blessed.is_some() && !trial::is_as_written(plan, &arguments.plan_settings) {
+        return Err(Failure::command_line("`--bless` is of the plan as it is written, on its virtual rig")
+            .help("leave out `--set`, `--rig` and `--date`, or write them into the plan"));
+    }
     let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, settings)?;
     let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         if exit <= Exit::Missed {
-            blessed.replace(&files)?;
-            tell(&format!("  blessed {}\n", blessed.path().display()));
+            let trial = trial::of(&arguments.plan)?;
+            let outcome = Outcome::Blessed(blessed.bless(&trial.files, &trial.tolerances, false)?);
+            tell(&console::told(&Tested { name: blessed.path().display().to_string(), outcome }, settings.color));
         } else {
             tell("  not blessed: the run did not come to its end\n");
         }

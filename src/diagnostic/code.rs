@@ -91,6 +91,8 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E617 UnknownColumn Error;
+    E618 ToleranceTwice Error;
     E620 GroundRecord Error;
     E621 BadMatrix Error;
     E622 StoreyStiffness Error;
@@ -119,6 +121,7 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W710 WideTolerance Warning;
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;

@@ -4,6 +4,7 @@
 mod amendment;
 pub mod behaviour;
 mod certificate;
+pub mod comparison;
 pub mod console;
 mod deviations;
 mod document;
@@ -14,6 +15,8 @@ mod shake_table;
 pub mod standing;
 pub mod summary;
 mod tables;
+
+pub use figures::{Curve, Curves, FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures, PlainAxis};
 
 use std::collections::BTreeSet;
 
@@ -126,6 +129,12 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     tell_apart(&mut files);
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// What the figures of a run plot, for who holds it against another run.
+#[must_use]
+pub fn figure_data(run: &Run<'_>) -> OutputFile {
+    OutputFile { path: FIGURE_DATA.to_owned(), bytes: figures::data(run).to_json().into_bytes() }
 }
 
 /// The texts of the plan and of what it used, under the names that they have in the run folder.

@@ -6,6 +6,7 @@ mod cycle;
 mod escalate;
 mod figure;
 mod frame;
+mod golden;
 mod integrator;
 mod portal;
 mod rig;
@@ -19,6 +20,7 @@ pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
+pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::Integrator;
 pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
@@ -44,6 +46,7 @@ pub struct Plan {
     pub requirements: Vec<Requirement>,
     pub decision_rule: DecisionRule,
     pub report: Report,
+    pub golden: Golden,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of name.

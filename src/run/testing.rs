@@ -29,6 +29,7 @@ pub(crate) fn empty_plan() -> Plan {
         requirements: Vec::new(),
         decision_rule: DecisionRule::Simple,
         report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
+        golden: crate::plan::Golden::default(),
         files: Vec::new(),
         settings: Vec::new(),
     }

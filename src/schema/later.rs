@@ -7,4 +7,3 @@ const fn later(keyword: &'static [&'static str], naming: Naming, procedure: bool
 }
 
 pub(super) const STUDY: BlockKind = later(&["study"], Naming::Named, false, "Many runs of one plan");
-pub(super) const GOLDEN: BlockKind = later(&["golden"], Naming::Unnamed, false, "How near a rerun must be");

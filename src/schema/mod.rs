@@ -2,11 +2,13 @@
 //! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
 
 mod behaviours;
+mod columns;
 mod cyclic;
 mod declarations;
 mod devices;
 mod frames;
 mod functions;
+mod golden;
 mod later;
 mod limits;
 mod methods;
@@ -19,6 +21,7 @@ mod rig;
 mod sequences;
 mod types;
 
+pub use columns::{Column, columns};
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use reference::reference;
 pub use types::{BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant};
@@ -41,8 +44,8 @@ pub const BLOCKS: &[&BlockKind] = &[
     &procedures::MOVE,
     &procedures::INSPECT,
     &report::REPORT,
+    &golden::GOLDEN,
     &later::STUDY,
-    &later::GOLDEN,
 ];
 
 /// Items that are not blocks, for suggestions.

@@ -135,6 +135,11 @@ fn takes(field: &Field) -> String {
         FieldType::Reference(kind) => format!("the name of a `{}`", super::block(kind).words()),
         FieldType::Condition => "a condition, as in `require`".to_owned(),
         FieldType::Figures => "a list of `figure(PROCEDURE)`".to_owned(),
+        FieldType::ResultName => "a result, such as `hit.stop_time`".to_owned(),
+        FieldType::ColumnName => {
+            "a column with numbers, such as `hit.displacement_m`, or `displacement_m` of every table".to_owned()
+        }
+        FieldType::Tolerance => "a value in the unit of the number, or `%` of its size; at least 0".to_owned(),
     }
 }
 

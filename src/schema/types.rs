@@ -21,6 +21,7 @@ pub enum Kind {
     Move,
     Inspect,
     Report,
+    Golden,
     /// A known word of the language that this version does not carry out.
     Later,
 }
@@ -102,6 +103,12 @@ pub enum FieldType {
     Reference(Kind),
     /// A list of `figure(procedure)`.
     Figures,
+    /// A result of a procedure: `hit.stop_time`.
+    ResultName,
+    /// A column of a table: `hit.displacement_m`, or `displacement_m` of every table.
+    ColumnName,
+    /// How near a number must be: in its own unit, or in `%` of its size.
+    Tolerance,
     /// Conditions on the results of a blow, as in `require`.
     Condition,
 }
@@ -217,6 +224,10 @@ impl BlockKind {
 impl Field {
     const fn new(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
         Self { name, ty, need: Need::Optional, range: Range::ANY, example: "", doc, available: true, real_rig_only: false }
+    }
+
+    pub(super) const fn of_type(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
+        Self::new(name, ty, doc)
     }
 
     pub(super) const fn text(name: &'static str, doc: &'static str) -> Self {

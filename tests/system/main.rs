@@ -4,6 +4,7 @@
 mod amended;
 mod certificate;
 mod disk;
+mod golden;
 mod killed;
 mod lost;
 mod needs;

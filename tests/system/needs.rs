@@ -23,6 +23,16 @@ pub fn minisign() -> bool {
     able("minisign", "say its version", Command::new("minisign").arg("-v"))
 }
 
+/// Whether Python reads XML.
+pub fn python() -> bool {
+    able("python3", "read XML", Command::new("python3").args(["-c", "import xml.etree.ElementTree"]))
+}
+
+/// Whether `prove` is here, Perl's reader of the Test Anything Protocol.
+pub fn prove() -> bool {
+    able("prove", "say its version", Command::new("prove").arg("--version"))
+}
+
 /// Whether `qpdf` and poppler's `pdftotext` are here.
 pub fn paper() -> bool {
     let version = |program: &str, flag: &str| able(program, "run", Command::new(program).arg(flag));

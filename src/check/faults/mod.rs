@@ -5,6 +5,7 @@ use crate::quantity::{Dimension, display};
 pub mod cyclic;
 pub mod files;
 pub mod frames;
+pub mod golden;
 pub mod methods;
 pub mod names;
 pub mod rigs;

@@ -39,7 +39,7 @@ impl Axis {
         if quantity.end == End::Tick {
             (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
         }
-        let title = if unit.is_empty() { quantity.name.to_owned() } else { format!("{} ({})", quantity.name, typeset(&unit)) };
+        let title = if unit.is_empty() { quantity.name.to_string() } else { format!("{} ({})", quantity.name, typeset(&unit)) };
         Self { low, high, ticks: ticks(low, high, step), title, factor }
     }
 

@@ -1,6 +1,8 @@
 //! What a chart shows, before anything is drawn: series, bands and reference lines in SI, and the style of each. A
 //! style is told apart by colour and by dash or marker, so that a grey print can be read.
 
+use std::borrow::Cow;
+
 use crate::quantity::Dimension;
 
 /// A picture of two quantities.
@@ -14,7 +16,7 @@ pub(super) struct Chart {
 
 /// What an axis measures.
 pub(super) struct Quantity {
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     pub dimension: Dimension,
     pub end: End,
     /// Whether zero must be on the axis.
@@ -36,16 +38,16 @@ pub(super) enum End {
 
 impl Quantity {
     pub const fn time() -> Self {
-        Self { name: "Virtual time", dimension: Dimension::TIME, end: End::Data, from_zero: false }
+        Self { name: Cow::Borrowed("Virtual time"), dimension: Dimension::TIME, end: End::Data, from_zero: false }
     }
 
     pub const fn of(name: &'static str, dimension: Dimension) -> Self {
-        Self { name, dimension, end: End::Tick, from_zero: true }
+        Self { name: Cow::Borrowed(name), dimension, end: End::Tick, from_zero: true }
     }
 
     /// The same, along x.
     pub const fn along(name: &'static str, dimension: Dimension) -> Self {
-        Self { name, dimension, end: End::Air, from_zero: true }
+        Self { name: Cow::Borrowed(name), dimension, end: End::Air, from_zero: true }
     }
 }
 

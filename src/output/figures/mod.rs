@@ -6,9 +6,11 @@ mod blows;
 mod canvas;
 mod chart;
 mod cyclic;
+mod data;
 mod draw;
 mod identification;
 mod impact;
+mod plain;
 mod raster;
 mod shake;
 mod vector;
@@ -19,6 +21,9 @@ use super::{OutputError, Run};
 use crate::plan::{Figure, FigureKind};
 use crate::record::{History, ProcedureRecord, ShakeHistory};
 use chart::Chart;
+
+pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
+pub use plain::{Curve, Curves, PlainAxis};
 
 /// A figure, drawn.
 pub(super) struct Drawn {
@@ -35,6 +40,17 @@ pub(super) struct Drawn {
 /// it recorded anything has no figure.
 pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
     run.plan.report.figures.par_iter().filter_map(|figure| one(run, *figure)).collect()
+}
+
+/// What the figures of a report plot, in the report's order.
+#[must_use]
+pub fn data(run: &Run<'_>) -> Figures {
+    let one = |figure: &Figure| {
+        let procedure = run.record.procedures.get(figure.procedure.0)?;
+        let (chart, _) = chart_of(run, procedure, *figure)?;
+        Some(data::of(format!("{}_{}", procedure.name, figure.kind.name()), &procedure.name, &chart))
+    };
+    Figures { figures: run.plan.report.figures.iter().filter_map(one).collect(), ..Figures::default() }
 }
 
 fn one(run: &Run<'_>, figure: Figure) -> Option<Result<Drawn, OutputError>> {

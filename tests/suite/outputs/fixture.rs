@@ -367,6 +367,7 @@ fn plan() -> Plan {
             },
         ],
         report: Report { title: None, figures, formats: Vec::new(), sign: vec!["Test engineer".into(), "Quality".into()] },
+        golden: psd::plan::Golden::default(),
         files: vec![
             PlanFile {
                 name: "beam.psd".into(),

@@ -1,0 +1,71 @@
+//! A plan as it is written, run to be held against blessed results or to become them. In: the plan's file. Out: every file
+//! that a run gives, or, where the plan fails to check, its diagnostics. A virtual rig, nobody who answers otherwise than
+//! `--yes`, nothing kept: the same plan gives the same files wherever it runs.
+
+use std::path::Path;
+
+use super::args::PlanSettings;
+use super::conclude::made_of;
+use super::exit::Failure;
+use super::record_file::{self, Circumstances};
+use super::{plan_file, provenance};
+use crate::diagnostic::render::{Appearance, render_all};
+use crate::golden::{DIAGNOSTICS, Tolerances};
+use crate::output::{OutputFile, Run, figure_data};
+use crate::plan::Plan;
+use crate::rig::virtual_rig;
+use crate::run::tape;
+use crate::run::{Inspection, Observer, StepReport};
+use crate::verdict;
+
+/// What a plan gives.
+pub struct Trial {
+    pub files: Vec<OutputFile>,
+    pub tolerances: Tolerances,
+    /// `pass`; None where the plan fails to check.
+    pub verdict: Option<&'static str>,
+}
+
+/// Runs one plan.
+pub fn of(path: &Path) -> Result<Trial, Failure> {
+    let checked = plan_file::open(path, &PlanSettings::default())?;
+    let Some(plan) = &checked.plan else {
+        let text = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
+        let files = vec![OutputFile { path: DIAGNOSTICS.to_owned(), bytes: text.into_bytes() }];
+        return Ok(Trial { files, tolerances: Tolerances::default(), verdict: None });
+    };
+    let operator = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
+    let provenance = provenance::of(plan);
+    let header = record_file::header(plan, &PlanSettings::default(), &provenance, Circumstances::default());
+    let journal = record_file::begin_nowhere(plan, &header)?;
+    let recorded = tape::record(plan, virtual_rig(plan).as_mut(), &mut Unattended { operator }, journal, Box::new(|| None));
+    let record = recorded.record;
+    let assessment = verdict::assess(plan, &record);
+    let mut files = made_of(plan, &record, &assessment, &provenance, None)?;
+    files.push(figure_data(&Run { plan, record: &record, assessment: &assessment, provenance: &provenance }));
+    Ok(Trial { files, tolerances: Tolerances::of(plan), verdict: Some(assessment.verdict.name()) })
+}
+
+/// Whether the plan, as the command line sets it up, can be blessed: only as it is written, on its virtual rig.
+pub fn is_as_written(plan: &Plan, settings: &PlanSettings) -> bool {
+    plan.rig.link.as_virtual().is_some() && settings.set.is_empty() && settings.rig.is_none() && settings.date.is_none()
+}
+
+/// Answers as `--yes` does.
+struct Unattended {
+    operator: Option<String>,
+}
+
+impl Observer for Unattended {
+    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
+    fn step_done(&mut self, _: &StepReport) {}
+    fn procedure_finished(&mut self, _: &str) {}
+
+    fn stop_requested(&self) -> bool {
+        false
+    }
+
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::GoOn { note: Some("answered by --yes".to_owned()), by: self.operator.clone() }
+    }
+}

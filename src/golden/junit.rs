@@ -1,0 +1,46 @@
+//! A test report as JUnit XML: a suite for each folder, a case for each plan, a failure with what differs. It holds no
+//! time and no host, so that the same results give the same file.
+
+use quick_junit::{NonSuccessKind, Report as Junit, TestCase, TestCaseStatus, TestSuite};
+
+use super::tested::{Outcome, Report, Tested};
+use super::words::Words;
+
+/// The report.
+///
+/// # Errors
+/// Never in practice: the report is written to memory.
+pub fn junit(report: &Report) -> Result<String, quick_junit::SerializeError> {
+    let mut junit = Junit::new("psd test");
+    for tested in &report.tested {
+        let (folder, name) = tested.name.rsplit_once('/').unwrap_or((".", &tested.name));
+        if junit.test_suites.last().is_none_or(|suite| suite.name.as_str() != folder) {
+            junit.add_test_suite(TestSuite::new(folder));
+        }
+        if let Some(suite) = junit.test_suites.last_mut() {
+            let mut case = TestCase::new(name, status(tested));
+            case.set_classname(folder);
+            suite.add_test_case(case);
+        }
+    }
+    junit.to_string()
+}
+
+fn status(tested: &Tested) -> TestCaseStatus {
+    if tested.outcome.is_good() {
+        return TestCaseStatus::success();
+    }
+    let complaint = tested.outcome.complaint().unwrap_or_default();
+    if tested.outcome == Outcome::NotRun {
+        let mut status = TestCaseStatus::skipped();
+        status.set_message(complaint);
+        return status;
+    }
+    let kind = if matches!(tested.outcome, Outcome::Failed(_)) { NonSuccessKind::Error } else { NonSuccessKind::Failure };
+    let mut status = TestCaseStatus::non_success(kind);
+    status.set_type(tested.outcome.name());
+    status.set_message(complaint);
+    let lines: Vec<String> = tested.outcome.findings().iter().map(|finding| Words::of(finding).line()).collect();
+    status.set_description(lines.join("\n"));
+    status
+}

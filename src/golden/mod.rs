@@ -1,0 +1,105 @@
+//! A run against blessed results. In: the truth of both, as the text of their files, and the tolerances of the plan. Out:
+//! [`Finding`]s, what differs and by how much. Knows no file, no terminal and no picture.
+
+pub mod console;
+mod figures;
+mod finding;
+pub mod json;
+mod junit;
+mod number;
+mod summary;
+mod table;
+mod tap;
+mod tested;
+mod tolerance;
+mod words;
+
+use std::collections::BTreeMap;
+
+pub use finding::{Change, Count, Finding, Moved, Part, Place};
+pub use junit::junit;
+pub use table::{Cells, Table, dimension as column_dimension};
+pub use tap::tap;
+pub use tested::{Blessed, Outcome, Report, Tested};
+pub use tolerance::{FLOOR, Rule, Tolerances};
+pub use words::Words;
+
+/// The text of a plan's diagnostics, where the plan is meant to fail to check.
+pub const DIAGNOSTICS: &str = "diagnostics.txt";
+pub const SUMMARY: &str = "summary.json";
+pub const FIGURES: &str = crate::output::FIGURE_DATA;
+const TABLES: &str = "tables/";
+
+/// What of a folder of results is compared: texts by path. Pictures and certificates are made from the same numbers, and
+/// are not here.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Truth(BTreeMap<String, String>);
+
+impl Truth {
+    /// Whether a file belongs to what is compared.
+    #[must_use]
+    pub fn holds(path: &str) -> bool {
+        matches!(path, DIAGNOSTICS | SUMMARY | FIGURES) || table_name(path).is_some()
+    }
+
+    /// The texts of those files that are compared.
+    #[must_use]
+    pub fn of(files: impl IntoIterator<Item = (String, String)>) -> Self {
+        Self(files.into_iter().filter(|(path, _)| Self::holds(path)).collect())
+    }
+
+    /// Whether there is nothing to compare with.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Whether it is of a plan that fails to check.
+    #[must_use]
+    pub fn is_of_faults(&self) -> bool {
+        self.0.contains_key(DIAGNOSTICS)
+    }
+
+    #[must_use]
+    pub fn text(&self, path: &str) -> Option<&str> {
+        self.0.get(path).map(String::as_str)
+    }
+
+    /// The tables by procedure.
+    pub fn tables(&self) -> impl Iterator<Item = (&str, Table)> {
+        self.0.iter().filter_map(|(path, text)| Some((table_name(path)?, Table::read(text))))
+    }
+
+    /// The figures; none where there are none, or no reader knows them.
+    #[must_use]
+    pub fn figures(&self) -> Option<crate::output::Figures> {
+        self.text(FIGURES).and_then(|text| serde_json::from_str(text).ok())
+    }
+}
+
+/// `tables/hit.csv` is of `hit`.
+fn table_name(path: &str) -> Option<&str> {
+    path.strip_prefix(TABLES)?.strip_suffix(".csv")
+}
+
+/// Everything that differs, what weighs most first.
+#[must_use]
+pub fn compare(blessed: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Finding> {
+    let mut found = Vec::new();
+    match (blessed.text(DIAGNOSTICS), now.text(DIAGNOSTICS)) {
+        (Some(was), Some(is)) if was != is => found.push(Finding::text(Part::Diagnostics, DIAGNOSTICS, was, is)),
+        (Some(_), None) => {
+            found.push(Finding::new(Part::Diagnostics, "the plan checks, and is blessed as one that does not", Change::Gone));
+        }
+        (None, Some(_)) => found.push(Finding::new(Part::Diagnostics, "the plan fails to check", Change::New)),
+        _ => {}
+    }
+    if blessed.is_of_faults() || now.is_of_faults() {
+        return found;
+    }
+    summary::compare(blessed.text(SUMMARY), now.text(SUMMARY), tolerances, &mut found);
+    table::compare_all(blessed, now, tolerances, &mut found);
+    figures::compare(blessed, now, tolerances, &mut found);
+    found.sort_by_key(|finding| finding.part);
+    found
+}

@@ -1,0 +1,51 @@
+//! A row of numbers against a row of numbers. In: both, a rule and a scale. Out: one finding for all that moved.
+
+use super::finding::{Change, Count, Moved, Place};
+use super::tolerance::Rule;
+use crate::quantity::Dimension;
+
+/// One number; None where they are near.
+pub(super) fn single(was: Option<f64>, is: Option<f64>, dimension: Dimension, rule: Rule, scale: f64) -> Option<Change> {
+    let near = match (was, is) {
+        (Some(was), Some(is)) => rule.is_near(was, is, scale),
+        (None, None) => true,
+        _ => false,
+    };
+    (!near).then_some(Change::Moved(Moved { dimension, was, is, rule, scale, largest: None, first: None, count: None }))
+}
+
+/// Many, pair by pair; the largest of them that moved stands for all. A number that came or went is the largest of all.
+pub(super) fn many(
+    pairs: &[(Option<f64>, Option<f64>)],
+    dimension: Dimension,
+    rule: Rule,
+    scale: f64,
+    place: impl Fn(usize) -> Place,
+) -> Option<Change> {
+    let mut moved = 0;
+    let mut first = None;
+    let mut largest: Option<(usize, f64)> = None;
+    for (row, (was, is)) in pairs.iter().enumerate() {
+        if single(*was, *is, dimension, rule, scale).is_none() {
+            continue;
+        }
+        moved += 1;
+        first = first.or(Some(row));
+        let by = match (was, is) {
+            (Some(was), Some(is)) if (is - was).is_finite() => (is - was).abs(),
+            _ => f64::INFINITY,
+        };
+        if largest.is_none_or(|(_, most)| by > most) {
+            largest = Some((row, by));
+        }
+    }
+    let (row, _) = largest?;
+    let (was, is) = pairs[row];
+    let count = Some(Count { moved, of: pairs.len() });
+    Some(Change::Moved(Moved { dimension, was, is, rule, scale, largest: Some(place(row)), first: first.map(place), count }))
+}
+
+/// The largest size of some numbers.
+pub(super) fn scale(values: impl Iterator<Item = f64>) -> f64 {
+    values.filter(|value| value.is_finite()).map(f64::abs).fold(0.0, f64::max)
+}
