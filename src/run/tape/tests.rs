@@ -212,20 +212,16 @@ fn measured(record: &Record) -> String {
         writeln!(told, "{} {:?}", procedure.name, procedure.results).unwrap();
         match &procedure.history {
             History::Ramp(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
-                }
+                let told_of = history.steps.iter().map(|step| (step.command, step.displacement, step.restoring_force));
+                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
             }
             History::Impact(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?} {:?}", step.command, step.velocity, step.restoring_force, step.energies)
-                        .unwrap();
-                }
+                let of = |step: &crate::record::ImpactStep| (step.command, step.velocity, step.restoring_force, step.energies);
+                writeln!(told, "{:?}", history.steps.iter().map(of).collect::<Vec<_>>()).unwrap();
             }
             History::Sweep(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();
-                }
+                let told_of = history.steps.iter().map(|step| (step.displacement, step.restoring_force));
+                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
             }
             History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
             History::Escalate(history) => {
@@ -234,14 +230,12 @@ fn measured(record: &Record) -> String {
                 }
             }
             History::Cycle(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
-                }
+                let told_of = history.steps.iter().map(|step| (step.command, step.displacement, step.restoring_force));
+                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
             }
             History::Shake(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
-                }
+                let told_of = history.steps.iter().map(|step| (&step.command, &step.displacement, &step.restoring_force));
+                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
             }
             History::Inspect => {}
         }
