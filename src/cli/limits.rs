@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::exit::{Exit, Failure};
 use super::output::give;
 use crate::diagnostic::render;
+use crate::record::journal;
 use crate::syntax::limits as syntax;
 use crate::{check, plan, run};
 
@@ -21,6 +22,7 @@ pub fn limits() -> Result<Exit, Failure> {
         (syntax::TOKENS, "words, numbers, texts and signs of one file"),
         (syntax::FAULTS, "faults reported for one file"),
         (render::DRAWN, "faults drawn on a terminal, all with `--format json`"),
+        (journal::LINE_BYTES, "bytes of one record of a run, its newline included"),
         (check::MOST_FILES, "files of one plan, the plan included"),
         (check::DEEPEST, "files that use files, one inside another"),
         (check::MOST_ENTRIES, "entries of one list or range"),

@@ -6,6 +6,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
+use crate::cli::screen::dialogue::{Typing, What};
 use crate::cli::screen::model::INSPECT;
 use crate::quantity::Dimension;
 use crate::quantity::display::{readable, significant};
@@ -103,12 +104,19 @@ fn clock(seconds: u64) -> String {
     if hours > 0 { format!("{hours}:{minutes:02}:{seconds:02}") } else { format!("{minutes}:{seconds:02}") }
 }
 
-/// The last line.
+/// The last line: the keys that do something now.
 pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
     let text = if view.wish.wants_hold() {
         " the rig holds now"
     } else if view.wish.wants_end() {
         " stops at the end of this step   h or Ctrl-C again: hold now"
+    } else if let Some(Typing { what, .. }) = &view.dialogue.typing {
+        match what {
+            What::Answer => " y go on   n end the run here   q stop   h hold now",
+            What::Note | What::NoteName { .. } | What::Remark { .. } | What::AnswerName { .. } => {
+                " Enter done   Esc back   Ctrl-U clear   Ctrl-C stop"
+            }
+        }
     } else if view.dialogue.monitor {
         " q end   ? help"
     } else if view.dialogue.paused {
