@@ -2,15 +2,15 @@
 //! same end with no target carried out twice.
 
 use std::cell::RefCell;
-use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::rc::Rc;
 
+use super::measured::measured;
 use super::*;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
+use crate::record::EventKind;
 use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
-use crate::record::{EventKind, History};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, VirtualRig};
 use crate::run::testing::{elastic_plan, impact, ramp, result_of};
@@ -147,6 +147,7 @@ fn plan() -> Plan {
         specimen: 0,
         velocities: vec![crate::formula::Formula::Constant(0.01), crate::formula::Formula::Constant(0.02)],
         stroke: crate::formula::Formula::Constant(1e-3),
+        about: None,
         stiffness: result_of(0, "stiffness"),
         rate: Some(crate::formula::Formula::Constant(60.0)),
     };
@@ -203,44 +204,6 @@ fn played(bytes: &[u8]) -> (Recovered, Played) {
     let recovered = recover(bytes).unwrap();
     let played = Played::of(&recovered).unwrap();
     (recovered, played)
-}
-
-/// What a run measured and computed, without the times at which it did.
-fn measured(record: &Record) -> String {
-    let mut told = String::new();
-    for procedure in &record.procedures {
-        writeln!(told, "{} {:?}", procedure.name, procedure.results).unwrap();
-        match &procedure.history {
-            History::Ramp(history) => {
-                let told_of = history.steps.iter().map(|step| (step.command, step.displacement, step.restoring_force));
-                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
-            }
-            History::Impact(history) => {
-                let of = |step: &crate::record::ImpactStep| (step.command, step.velocity, step.restoring_force, step.energies);
-                writeln!(told, "{:?}", history.steps.iter().map(of).collect::<Vec<_>>()).unwrap();
-            }
-            History::Sweep(history) => {
-                let told_of = history.steps.iter().map(|step| (step.displacement, step.restoring_force));
-                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
-            }
-            History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
-            History::Escalate(history) => {
-                for step in history.blows.iter().flat_map(|blow| &blow.history.steps) {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.velocity, step.restoring_force).unwrap();
-                }
-            }
-            History::Cycle(history) => {
-                let told_of = history.steps.iter().map(|step| (step.command, step.displacement, step.restoring_force));
-                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
-            }
-            History::Shake(history) => {
-                let told_of = history.steps.iter().map(|step| (&step.command, &step.displacement, &step.restoring_force));
-                writeln!(told, "{:?}", told_of.collect::<Vec<_>>()).unwrap();
-            }
-            History::Inspect => {}
-        }
-    }
-    told
 }
 
 #[test]
