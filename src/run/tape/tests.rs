@@ -1,10 +1,10 @@
 //! A run is the record of it: played back it is the same, changed it is found out, and cut off anywhere it goes on to the
 //! same end with no target carried out twice.
 
-use std::cell::RefCell;
+mod standing;
+
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::rc::Rc;
 
 use super::*;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
@@ -12,80 +12,10 @@ use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::record::{EventKind, History};
 use crate::rig::failpoint::{Guarding, without};
-use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, VirtualRig};
+use crate::rig::{DeclaredNoise, EachReading, Identity, Offer, Reading, RigFault, Tally};
 use crate::run::testing::{elastic_plan, impact, ramp, result_of};
 use crate::run::{Inspection, StepReport};
-
-/// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
-#[derive(Clone)]
-struct Standing(Rc<RefCell<Stand>>, u64);
-
-struct Stand {
-    rig: VirtualRig,
-    offered: Option<f64>,
-    last: LastMove,
-    /// Every target that was carried out, m.
-    carried_out: Vec<f64>,
-}
-
-impl Standing {
-    fn new(plan: &Plan) -> Self {
-        let last = LastMove { id: 0, target: 0.0 };
-        Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })), 0)
-    }
-}
-
-impl Rig for Standing {
-    fn identity(&self) -> Identity {
-        self.0.borrow().rig.identity()
-    }
-    fn degrees_of_freedom(&self) -> usize {
-        1
-    }
-    fn time(&self) -> f64 {
-        self.0.borrow().rig.time()
-    }
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
-        let mut stand = self.0.borrow_mut();
-        stand.offered = Some(targets[0]);
-        let id = stand.last.id + 1;
-        Ok(Offer { move_id: Some(id), ..stand.rig.propose(targets, speed)? })
-    }
-    fn execute(&mut self) -> Result<(), RigFault> {
-        let mut stand = self.0.borrow_mut();
-        let target = stand.offered.take().unwrap();
-        stand.carried_out.push(target);
-        stand.last = LastMove { id: stand.last.id + 1, target };
-        stand.rig.execute()
-    }
-    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        self.0.borrow_mut().rig.pause(seconds)
-    }
-    fn read(&mut self) -> Result<Reading, RigFault> {
-        self.1 += 1;
-        self.0.borrow_mut().rig.read()
-    }
-    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
-        // It cannot keep up: every fifth reading is late.
-        let mut due = 0_usize;
-        self.0.borrow_mut().rig.traverse(targets, velocity, samples, &mut |reading| {
-            due += 1;
-            if due.is_multiple_of(5) { Ok(()) } else { each(reading) }
-        })
-    }
-    fn hold(&mut self) {
-        self.0.borrow_mut().rig.hold();
-    }
-    fn declared_noise(&self) -> DeclaredNoise {
-        DeclaredNoise::default()
-    }
-    fn last_move(&self) -> Option<LastMove> {
-        Some(self.0.borrow().last)
-    }
-    fn tally(&self) -> Tally {
-        Tally { reread: self.1 / 20, ..Tally::default() }
-    }
-}
+use standing::Standing;
 
 /// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
 struct Killed {
