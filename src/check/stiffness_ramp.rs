@@ -13,6 +13,7 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
     let pause = checker.quantity(block, "pause");
     let (samples, repeats) = (checker.count(block, "samples"), checker.count(block, "repeats"));
     let return_path = checker.word(block, "return", "false").map(|word| word == "true");
+    let bilinear = checker.word(block, "fit", "linear").map(|word| word == "bilinear");
     let speed = checker.optional(block, "speed");
     let (displacements, samples, repeats) = (displacements?, samples?, repeats?);
     #[expect(clippy::cast_precision_loss, reason = "a list has at most 100,000 entries")]
@@ -28,6 +29,7 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
         samples,
         repeats,
         return_path: return_path?,
+        bilinear: bilinear?,
         speed: speed?,
     }))
 }

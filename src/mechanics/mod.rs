@@ -1,5 +1,6 @@
 //! Pure numerics: integrator, contact, specimen models, identification, energy. SI throughout; no rig, no plan text.
 
+pub mod backbone;
 pub mod beam;
 pub mod contact;
 pub mod cyclic;

@@ -252,6 +252,8 @@ pub struct StiffnessRamp {
     pub repeats: u32,
     /// Also back to the start through the same displacements.
     pub return_path: bool,
+    /// Whether two lines that meet are fitted, in place of one.
+    pub bilinear: bool,
     /// Actuator speed, m/s.
     pub speed: Option<Formula>,
 }
@@ -264,6 +266,8 @@ pub struct DampingSweep {
     pub velocities: Vec<Formula>,
     /// m
     pub stroke: Formula,
+    /// The middle of the strokes, m. None: they begin where the actuator is.
+    pub about: Option<Formula>,
     /// K of F_d = R − K·X, N/m.
     pub stiffness: Formula,
     /// Sampling rate, Hz. None: at least 50 samples on the steady part of each ramp.

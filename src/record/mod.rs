@@ -8,6 +8,7 @@ pub mod journal;
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Estimate, ResultReference, ResultValue, Results};
+pub use crate::mechanics::backbone::BilinearFit;
 pub use crate::mechanics::contact::StepState;
 use crate::mechanics::energy::Energies;
 pub use crate::mechanics::frame::{FrameEnergies, Modes};
@@ -130,8 +131,10 @@ pub struct RampStep {
 #[derive(Clone, Debug)]
 pub struct RampHistory {
     pub steps: Vec<RampStep>,
-    /// None if too few steps were recorded.
+    /// None if too few steps were recorded, or the fit is of two lines.
     pub fit: Option<LineFit>,
+    /// Of a ramp past yield, where the plan asks for it.
+    pub bilinear: Option<BilinearFit>,
 }
 
 /// One reading of a damping sweep.

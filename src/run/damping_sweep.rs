@@ -110,6 +110,10 @@ impl Sweep {
             return Err(Stop::BadInput { field: "stroke", value: stroke, wanted: "other than 0".into() });
         }
         self.stiffness = Some(stiffness);
+        if let Some(about) = &plan.about {
+            let middle = inputs.number("about", about, Dimension::LENGTH)?;
+            session.go_to(middle - 0.5 * stroke, None)?;
+        }
         let home = session.commanded();
         for velocity in velocities {
             if velocity == 0.0 {

@@ -8,17 +8,23 @@ use super::results::{largest, measured, result};
 use super::samples::{mean, scatter};
 use super::session::Session;
 use super::stop::Stop;
+use crate::mechanics::backbone::fit_bilinear;
 use crate::mechanics::identification::{fit_line, loop_energy};
 use crate::plan::StiffnessRamp;
 use crate::quantity::Dimension;
-use crate::record::{History, LineFit, NamedResult, RampHistory, RampStep};
+use crate::record::{BilinearFit, EventKind, History, LineFit, NamedResult, RampHistory, RampStep};
 
 pub(super) fn perform(plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut ramp = Ramp { steps: Vec::new(), start: None, loops: Vec::new() };
     let stop = ramp.run(plan, inputs, session).err();
-    let fit = ramp.fit();
-    let results = ramp.results(fit.as_ref());
-    Performed { history: History::Ramp(RampHistory { steps: ramp.steps, fit }), results, stop }
+    let bilinear = if plan.bilinear { ramp.bilinear(plan.displacements.len()) } else { None };
+    let fit = if plan.bilinear { None } else { ramp.fit() };
+    if plan.bilinear && bilinear.is_none() && stop.is_none() {
+        let text = "no bilinear fit: the outward steps are fewer than six, or show no knee that softens".to_owned();
+        session.event(EventKind::Remark, text);
+    }
+    let results = ramp.results(fit.as_ref(), bilinear.as_ref());
+    Performed { history: History::Ramp(RampHistory { steps: ramp.steps, fit, bilinear }), results, stop }
 }
 
 /// A displacement (m) and the force there (N).
@@ -102,19 +108,36 @@ impl Ramp {
         fit_line(&x, &r)
     }
 
-    fn results(&self, fit: Option<&LineFit>) -> Vec<NamedResult> {
+    /// Two lines through the outward steps of the first repeat: what comes after yield no longer bends as it did.
+    fn bilinear(&self, outward: usize) -> Option<BilinearFit> {
+        let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().take(outward).map(point).unzip();
+        fit_bilinear(&x, &r)
+    }
+
+    fn results(&self, fit: Option<&LineFit>, bilinear: Option<&BilinearFit>) -> Vec<NamedResult> {
+        let stiffness = fit.map(|fit| (fit.slope, Some(fit.slope_error)));
+        let stiffness = stiffness.or(bilinear.map(|fit| (fit.stiffness, Some(fit.stiffness_error))));
+        let intercept = fit.map(|fit| (fit.intercept, Some(fit.intercept_error)));
+        let intercept = intercept.or(bilinear.map(|fit| (fit.intercept, Some(fit.intercept_error))));
+        let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(|(value, error)| (value, Some(error)));
+        let last_outward = self.steps.iter().rev().find(|step| !step.returning);
         let first_secant = self.start.zip(self.steps.first()).and_then(|(start, step)| secant(start, point(step)));
         let relaxation = (!self.steps.is_empty()).then(|| mean(self.steps.iter().map(|step| step.relaxation)));
         let loop_energy = (!self.loops.is_empty()).then(|| mean(self.loops.iter().copied()));
         vec![
-            measured("stiffness", Dimension::STIFFNESS, fit.map(|fit| (fit.slope, Some(fit.slope_error)))),
+            measured("stiffness", Dimension::STIFFNESS, stiffness),
             result("secant_stiffness", Dimension::STIFFNESS, first_secant),
-            measured("intercept_force", Dimension::FORCE, fit.map(|fit| (fit.intercept, Some(fit.intercept_error)))),
-            result("r_squared", Dimension::NUMBER, fit.map(|fit| fit.r_squared)),
+            measured("intercept_force", Dimension::FORCE, intercept),
+            result("r_squared", Dimension::NUMBER, fit.map(|fit| fit.r_squared).or(bilinear.map(|fit| fit.r_squared))),
             result("max_force", Dimension::FORCE, largest(self.steps.iter().map(|step| step.restoring_force))),
             result("max_displacement", Dimension::LENGTH, largest(self.steps.iter().map(|step| step.displacement))),
             result("loop_energy", Dimension::ENERGY, loop_energy),
             result("relaxation", Dimension::FORCE, relaxation),
+            result("tangent_stiffness", Dimension::STIFFNESS, last_outward.and_then(|step| step.tangent_stiffness)),
+            measured("yield_force", Dimension::FORCE, of(|fit| (fit.yield_force, fit.yield_force_error))),
+            measured("yield_displacement", Dimension::LENGTH, of(|fit| (fit.yield_displacement, fit.yield_displacement_error))),
+            measured("hardened_stiffness", Dimension::STIFFNESS, of(|fit| (fit.hardened, fit.hardened_error))),
+            measured("hardening", Dimension::NUMBER, of(|fit| (fit.hardening, fit.hardening_error))),
         ]
     }
 }

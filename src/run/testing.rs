@@ -62,6 +62,7 @@ pub(crate) fn ramp(step: f64) -> StiffnessRamp {
         samples: 1,
         repeats: 1,
         return_path: false,
+        bilinear: false,
         speed: None,
     }
 }

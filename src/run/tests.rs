@@ -16,6 +16,7 @@ fn sweep(velocities: &[f64]) -> DampingSweep {
         specimen: 0,
         velocities: velocities.iter().copied().map(Formula::Constant).collect(),
         stroke: constant(1e-3),
+        about: None,
         stiffness: result_of(0, "stiffness"),
         rate: None,
     }
@@ -79,7 +80,8 @@ fn an_ideal_ramp_and_sweep_give_back_the_specimen() {
 fn results_stand_in_the_order_of_the_reference() {
     let record = run_unwatched(&ramp_then_sweep());
     let names = |procedure: usize| -> Vec<_> { record.procedures[procedure].results.iter().map(|result| result.name).collect() };
-    let ramp = "stiffness, secant_stiffness, intercept_force, r_squared, max_force, max_displacement, loop_energy, relaxation";
+    let ramp = "stiffness, secant_stiffness, intercept_force, r_squared, max_force, max_displacement, loop_energy, relaxation, \
+                tangent_stiffness, yield_force, yield_displacement, hardened_stiffness, hardening";
     assert_eq!(names(0).join(", "), ramp);
     assert_eq!(names(1).join(", "), "damping, coulomb_force, r_squared, damping_ratio, max_velocity");
 }

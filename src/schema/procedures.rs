@@ -22,6 +22,15 @@ pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
         Field::count("samples", 1.0, 1e5, "readings averaged at each target").or(1.0, ""),
         Field::count("repeats", 1.0, 1e5, "times the ramp is run").or(1.0, ""),
         Field::choice("return", methods::TRUTH, "whether it also goes back through the same targets").or_said("false"),
+        Field::choice(
+            "fit",
+            &[
+                Variant::word("linear", "one straight line through all outward steps"),
+                Variant::word("bilinear", "two lines that meet at a knee, through the outward steps of the first repeat"),
+            ],
+            "what is fitted to force on displacement",
+        )
+        .or_said("linear"),
         SPEED,
     ],
     exports: &[],
@@ -41,6 +50,7 @@ pub(super) const DAMPING_SWEEP: BlockKind = BlockKind {
             .required("velocities = [0.5, 1, 2, 5, 10] mm/s")
             .above_zero(),
         Field::quantity("stroke", Dimension::LENGTH, "length of each ramp").required("stroke = 1 mm").above_zero(),
+        Field::quantity("about", Dimension::LENGTH, "the middle of the strokes").or_said("they begin where the actuator is"),
         Field::quantity("stiffness", Dimension::STIFFNESS, "K of the damping force R − K·X")
             .required("stiffness = 300 kN/m")
             .above_zero(),

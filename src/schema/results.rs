@@ -4,14 +4,27 @@ use super::types::ResultKind;
 use crate::quantity::Dimension;
 
 pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
-    ResultKind::measured("stiffness", Dimension::STIFFNESS, "slope of the straight line fitted to force on displacement"),
+    ResultKind::measured(
+        "stiffness",
+        Dimension::STIFFNESS,
+        "slope of the straight line fitted to force on displacement; of a bilinear fit that before the knee",
+    ),
     ResultKind::new("secant_stiffness", Dimension::STIFFNESS, "force over displacement of the first increment"),
     ResultKind::measured("intercept_force", Dimension::FORCE, "force of the fitted line at no displacement"),
     ResultKind::new("r_squared", Dimension::NUMBER, "coefficient of determination of the fit"),
     ResultKind::new("max_force", Dimension::FORCE, "largest size of the restoring force"),
     ResultKind::new("max_displacement", Dimension::LENGTH, "largest size of the measured displacement"),
     ResultKind::new("loop_energy", Dimension::ENERGY, "energy of the hysteresis loop, with `return = true`"),
-    ResultKind::new("relaxation", Dimension::FORCE, "largest loss of force during a pause"),
+    ResultKind::new("relaxation", Dimension::FORCE, "mean loss of force during a pause"),
+    ResultKind::new(
+        "tangent_stiffness",
+        Dimension::STIFFNESS,
+        "secant of the last outward step: the tangent where the ramp ended",
+    ),
+    ResultKind::measured("yield_force", Dimension::FORCE, "force at the knee of a bilinear fit"),
+    ResultKind::measured("yield_displacement", Dimension::LENGTH, "displacement at the knee of a bilinear fit"),
+    ResultKind::measured("hardened_stiffness", Dimension::STIFFNESS, "slope past the knee of a bilinear fit"),
+    ResultKind::measured("hardening", Dimension::NUMBER, "slope past the knee over that before it"),
 ];
 
 pub(super) const DAMPING_SWEEP: &[ResultKind] = &[

@@ -171,7 +171,7 @@ impl FrameSolver {
         if !self.predicted {
             self.predicted = true;
             self.load_end.copy_from_slice(load_end);
-            let from = self.state.instant();
+            let from = self.state.moment();
             if self.mass.is_some() {
                 self.schemes.jump(from, &self.load_end, &mut self.next, decide);
             } else if self.schemes.integrator == Integrator::Tangent {
@@ -217,7 +217,7 @@ impl FrameSolver {
                 self.schemes.settle_acceleration(mass, &self.load_end, &mut self.next);
             }
         } else {
-            let (schemes, from) = (&mut self.schemes, self.state.instant());
+            let (schemes, from) = (&mut self.schemes, self.state.moment());
             schemes.correct(from, &self.load_end, felt, &mut self.next, decide);
         }
         if let Some(tangents) = &mut self.tangents
@@ -269,7 +269,7 @@ impl FrameSolver {
 }
 
 impl FrameState {
-    fn instant(&self) -> Moment<'_> {
+    fn moment(&self) -> Moment<'_> {
         Moment {
             displacement: &self.displacement,
             velocity: &self.velocity,

@@ -19,6 +19,16 @@ pub(super) fn force_displacement(history: &RampHistory) -> Chart {
             style: Style::line(palette::VERMILION, 1.8, SOLID),
         });
     }
+    if let Some(fit) = history.bilinear {
+        let stiffness = number::with_uncertainty(fit.stiffness, Some(fit.stiffness_error), Dimension::STIFFNESS);
+        let force = number::with_uncertainty(fit.yield_force, Some(fit.yield_force_error), Dimension::FORCE);
+        let [low, high] = ends(history.steps.iter().filter(|step| !step.returning).map(|step| step.displacement));
+        series.push(Series {
+            label: format!("fit, K = {stiffness}, Fy = {force}"),
+            points: [low, fit.yield_displacement, high].map(|x| (x, fit.force(x))).to_vec(),
+            style: Style::line(palette::VERMILION, 1.8, SOLID),
+        });
+    }
     let back = points(true);
     if !back.is_empty() {
         series.push(Series { label: "way back".to_owned(), points: back, style: RETURN });

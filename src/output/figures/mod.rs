@@ -99,7 +99,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
         ),
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),
-            format!("{name}: measured restoring force against displacement, with the least-squares line."),
+            format!("{name}: measured restoring force against displacement, with the least-squares fit."),
         ),
         (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.history.steps.is_empty()) => return None,
         (History::Escalate(history), FigureKind::ForceDisplacement) => (

@@ -10,6 +10,8 @@
 
 mod decide;
 mod entry;
+#[cfg(test)]
+mod measured;
 mod observer;
 mod played;
 mod rig;

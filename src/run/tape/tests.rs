@@ -1,21 +1,91 @@
 //! A run is the record of it: played back it is the same, changed it is found out, and cut off anywhere it goes on to the
 //! same end with no target carried out twice.
 
-mod standing;
-
-use std::fmt::Write as _;
+use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::rc::Rc;
 
+use super::measured::measured;
 use super::*;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
+use crate::record::EventKind;
 use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
-use crate::record::{EventKind, History};
 use crate::rig::failpoint::{Guarding, without};
-use crate::rig::{DeclaredNoise, EachReading, Identity, Offer, Reading, RigFault, Tally};
+use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, VirtualRig};
 use crate::run::testing::{elastic_plan, impact, ramp, result_of};
 use crate::run::{Inspection, StepReport};
-use standing::Standing;
+
+/// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
+#[derive(Clone)]
+struct Standing(Rc<RefCell<Stand>>, u64);
+
+struct Stand {
+    rig: VirtualRig,
+    offered: Option<f64>,
+    last: LastMove,
+    /// Every target that was carried out, m.
+    carried_out: Vec<f64>,
+}
+
+impl Standing {
+    fn new(plan: &Plan) -> Self {
+        let last = LastMove { id: 0, target: 0.0 };
+        Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })), 0)
+    }
+}
+
+impl Rig for Standing {
+    fn identity(&self) -> Identity {
+        self.0.borrow().rig.identity()
+    }
+    fn degrees_of_freedom(&self) -> usize {
+        1
+    }
+    fn time(&self) -> f64 {
+        self.0.borrow().rig.time()
+    }
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        let mut stand = self.0.borrow_mut();
+        stand.offered = Some(targets[0]);
+        let id = stand.last.id + 1;
+        Ok(Offer { move_id: Some(id), ..stand.rig.propose(targets, speed)? })
+    }
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let mut stand = self.0.borrow_mut();
+        let target = stand.offered.take().unwrap();
+        stand.carried_out.push(target);
+        stand.last = LastMove { id: stand.last.id + 1, target };
+        stand.rig.execute()
+    }
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        self.0.borrow_mut().rig.pause(seconds)
+    }
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        self.1 += 1;
+        self.0.borrow_mut().rig.read()
+    }
+    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        // It cannot keep up: every fifth reading is late.
+        let mut due = 0_usize;
+        self.0.borrow_mut().rig.traverse(targets, velocity, samples, &mut |reading| {
+            due += 1;
+            if due.is_multiple_of(5) { Ok(()) } else { each(reading) }
+        })
+    }
+    fn hold(&mut self) {
+        self.0.borrow_mut().rig.hold();
+    }
+    fn declared_noise(&self) -> DeclaredNoise {
+        DeclaredNoise::default()
+    }
+    fn last_move(&self) -> Option<LastMove> {
+        Some(self.0.borrow().last)
+    }
+    fn tally(&self) -> Tally {
+        Tally { reread: self.1 / 20, ..Tally::default() }
+    }
+}
 
 /// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
 struct Killed {
@@ -77,6 +147,7 @@ fn plan() -> Plan {
         specimen: 0,
         velocities: vec![crate::formula::Formula::Constant(0.01), crate::formula::Formula::Constant(0.02)],
         stroke: crate::formula::Formula::Constant(1e-3),
+        about: None,
         stiffness: result_of(0, "stiffness"),
         rate: Some(crate::formula::Formula::Constant(60.0)),
     };
@@ -133,50 +204,6 @@ fn played(bytes: &[u8]) -> (Recovered, Played) {
     let recovered = recover(bytes).unwrap();
     let played = Played::of(&recovered).unwrap();
     (recovered, played)
-}
-
-/// What a run measured and computed, without the times at which it did.
-fn measured(record: &Record) -> String {
-    let mut told = String::new();
-    for procedure in &record.procedures {
-        writeln!(told, "{} {:?}", procedure.name, procedure.results).unwrap();
-        match &procedure.history {
-            History::Ramp(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
-                }
-            }
-            History::Impact(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?} {:?}", step.command, step.velocity, step.restoring_force, step.energies)
-                        .unwrap();
-                }
-            }
-            History::Sweep(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();
-                }
-            }
-            History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
-            History::Escalate(history) => {
-                for step in history.blows.iter().flat_map(|blow| &blow.history.steps) {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.velocity, step.restoring_force).unwrap();
-                }
-            }
-            History::Cycle(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
-                }
-            }
-            History::Shake(history) => {
-                for step in &history.steps {
-                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
-                }
-            }
-            History::Inspect => {}
-        }
-    }
-    told
 }
 
 #[test]

@@ -59,7 +59,7 @@ pub fn finished() -> Finished {
             number("intercept_force", Some(-0.012), Some(0.035), Dimension::FORCE),
             number("r_squared", Some(0.999_98), None, Dimension::NUMBER),
         ],
-        history: History::Ramp(RampHistory { steps: ramp_steps(), fit: Some(line(327.72, 0.41, -0.012, 0.035)) }),
+        history: History::Ramp(RampHistory { steps: ramp_steps(), fit: Some(line(327.72, 0.41, -0.012, 0.035)), bilinear: None }),
     };
     let sweep = ProcedureRecord {
         name: "c".into(),
@@ -275,6 +275,7 @@ fn plan() -> Plan {
                 samples: 10,
                 repeats: 1,
                 return_path: true,
+                bilinear: false,
                 speed: None,
             }),
         ),
@@ -284,6 +285,7 @@ fn plan() -> Plan {
                 specimen: 0,
                 velocities: vec![constant(0.005), constant(0.02), constant(0.05), constant(0.1)],
                 stroke: constant(0.01),
+                about: None,
                 stiffness: result(0, "stiffness"),
                 rate: None,
             }),
