@@ -31,10 +31,10 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
         let mut rig = VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0);
         let limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
         let mut guard = Guard::new(&mut rig, limits).expect("it stands inside its limits");
-        let protocol = Protocol::GenericClient { stiffness: STIFFNESS };
+        let protocol = Protocol::GenericClient { stiffness: vec![STIFFNESS] };
         let mut nobody = Unwatched;
         let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
-        serve(&listener, protocol, &mut specimen, true, &|| false, &mut |_| ()).expect("it listens");
+        serve(&listener, &protocol, &mut specimen, true, &|| false, &mut |_| ()).expect("it listens");
     });
     let mut client = TcpStream::connect(address).expect("it listens");
     let header = [1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256_i32].map(i32::to_le_bytes);

@@ -2,7 +2,7 @@
 //! peaks. In: the steps of a shake. Out: rows of text.
 
 use crate::quantity::Dimension;
-use crate::quantity::display::{digits, readable, significant, unit};
+use crate::quantity::display::{digits, join, readable, significant, unit};
 use crate::record::{ShakeHistory, ShakeStep};
 
 /// One row a mode: period, damping, the part of the mass that goes with it, and its shape from the lowest floor up.
@@ -55,5 +55,5 @@ fn peaks(history: &ShakeHistory, read: fn(&ShakeStep) -> Vec<f64>, dimension: Di
     }
     let (unit, factor) = unit(largest.iter().copied().fold(0.0, f64::max), dimension);
     let numbers: Vec<String> = largest.iter().map(|value| digits(*value, factor, dimension)).collect();
-    format!("{} {unit}", numbers.join(", "))
+    join(&numbers.join(", "), &unit)
 }

@@ -49,15 +49,22 @@ fn written(run: &Run<'_>, name: &str, mut frame: DataFrame, files: &mut Vec<Outp
 /// The targets of a client that drove the rig, and what was read there.
 pub(super) fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
     let failed = |error: PolarsError| OutputError::Table { procedure: "served".to_owned(), reason: error.to_string() };
-    let of = |name, read: fn(&DrivenStep) -> f64| numbers(name, steps, read);
-    let columns = vec![
-        integers("step", steps, |step| step.step),
-        of("wall_time_s", |step| step.time),
-        of("command_m", |step| step.command),
-        of("displacement_m", |step| step.displacement),
-        of("restoring_force_n", |step| step.force),
-    ];
-    let mut frame = DataFrame::new(steps.len(), columns).map_err(failed)?;
+    // A row a step and axis; which axis it is, is said where there are several.
+    let several = steps.iter().any(|step| step.command.len() > 1);
+    let rows: Vec<(&DrivenStep, usize)> =
+        steps.iter().flat_map(|step| (0..step.command.len()).map(move |axis| (step, axis))).collect();
+    let of = |name, read: fn(&(&DrivenStep, usize)) -> f64| numbers(name, &rows, read);
+    let mut columns = vec![integers("step", &rows, |(step, _)| step.step)];
+    if several {
+        columns.push(integers("storey", &rows, |(_, axis)| *axis as u64 + 1));
+    }
+    columns.extend([
+        of("wall_time_s", |(step, _)| step.time),
+        of("command_m", |(step, axis)| step.command[*axis]),
+        of("displacement_m", |(step, axis)| step.displacement[*axis]),
+        of("restoring_force_n", |(step, axis)| step.force[*axis]),
+    ]);
+    let mut frame = DataFrame::new(rows.len(), columns).map_err(failed)?;
     Ok(OutputFile { path: "tables/served.csv".to_owned(), bytes: csv(&mut frame).map_err(failed)? })
 }
 

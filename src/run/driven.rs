@@ -10,7 +10,7 @@ use super::gate;
 use super::request::{Parting, Request};
 use super::session::Session;
 use super::stop::Stop;
-use super::{Observer, StepReport};
+use super::{AxisReport, Observer, StepReport};
 use crate::plan::Plan;
 use crate::record::{Event, EventKind, Outcome, Record};
 use crate::rig::{Guard, Rig, RigFault};
@@ -28,29 +28,29 @@ pub struct Driven {
     pub force: f64,
 }
 
-/// Displacement (m) and force (N), settled and inside the limits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Displacement (m) and force (N) of every axis, settled and inside the limits.
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct Felt {
-    pub displacement: f64,
-    pub force: f64,
+    pub displacement: Vec<f64>,
+    pub force: Vec<f64>,
 }
 
-/// A target carried out and what was read there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Targets carried out and what was read there, one entry an axis.
+#[derive(Clone, Debug, PartialEq)]
 pub struct DrivenStep {
     /// From 1, over all clients.
     pub step: u64,
     /// Rig time, s.
     pub time: f64,
     /// m
-    pub command: f64,
+    pub command: Vec<f64>,
     /// m
-    pub displacement: f64,
+    pub displacement: Vec<f64>,
     /// N
-    pub force: f64,
+    pub force: Vec<f64>,
 }
 
-/// One degree of freedom behind its guard.
+/// What stands on a rig, behind its guard: an entry for every axis.
 pub struct Specimen<'session, 'rig> {
     guard: &'session mut Guard<'rig>,
     observer: &'session mut dyn Observer,
@@ -119,7 +119,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
             observer,
             beat,
             heard: Instant::now(),
-            felt: Felt { displacement: 0.0, force: 0.0 },
+            felt: Felt::default(),
             driven: Driven::default(),
             steps: Vec::new(),
             commits: 0,
@@ -131,8 +131,13 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     }
 
     /// What was read last.
-    pub const fn felt(&self) -> Felt {
-        self.felt
+    pub const fn felt(&self) -> &Felt {
+        &self.felt
+    }
+
+    /// Axes, each with its load cell.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.guard.commanded().len()
     }
 
     /// Of the client that is there, or was last.
@@ -140,9 +145,9 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.driven
     }
 
-    /// The last target carried out, m.
-    pub fn commanded(&self) -> f64 {
-        self.guard.commanded()[0]
+    /// The last targets carried out, m.
+    pub fn commanded(&self) -> &[f64] {
+        self.guard.commanded()
     }
 
     /// Rig time, s.
@@ -158,26 +163,22 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     /// Takes a client, and reads where the rig stands.
     ///
     /// # Errors
-    /// It cannot be read, stands outside a limit, or has more than one degree of freedom.
+    /// It cannot be read, or stands outside a limit.
     pub fn come(&mut self, client: String) -> Result<(), RigFault> {
         self.asked(&Request::Come { client });
         self.driven = Driven::default();
         self.inside = true;
-        let degrees = self.guard.commanded().len();
-        if degrees != 1 {
-            let reason = format!("a client can drive one degree of freedom, and this rig has {degrees}");
-            return self.told(Err(RigFault::Device(reason)));
-        }
         self.feel()
     }
 
-    /// Checks a target (m) and makes it ready; nothing moves.
+    /// Checks the targets of all axes (m) and makes them ready; nothing moves. What stands in the way of one stands in
+    /// the way of all.
     ///
     /// # Errors
     /// A limit stands in the way, or the rig refuses.
-    pub fn propose(&mut self, target: f64) -> Result<(), RigFault> {
-        self.asked(&Request::target(target));
-        let proposed = self.guard.propose(&[target], None);
+    pub fn propose(&mut self, targets: &[f64]) -> Result<(), RigFault> {
+        self.asked(&Request::targets(targets));
+        let proposed = self.guard.propose(targets, None);
         if matches!(proposed, Err(RigFault::LimitBreached { .. })) {
             self.driven.refused += 1;
         }
@@ -195,8 +196,9 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.driven.targets += 1;
         self.feel()?;
         let step = self.steps.len() as u64 + 1;
-        let Felt { displacement, force } = self.felt;
-        self.steps.push(DrivenStep { step, time: self.time(), command: self.commanded(), displacement, force });
+        let (time, command) = (self.time(), self.commanded().to_vec());
+        let Felt { displacement, force } = self.felt.clone();
+        self.steps.push(DrivenStep { step, time, command, displacement, force });
         Ok(())
     }
 
@@ -205,16 +207,26 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.asked(&Request::Commit);
         self.commits += 1;
         let nothing = None;
+        // At rest, as it is whenever a client asks.
+        let axis = |axis: usize| AxisReport {
+            command: self.guard.commanded()[axis],
+            displacement: self.felt.displacement[axis],
+            force: self.felt.force[axis],
+            velocity: 0.0,
+            acceleration: 0.0,
+        };
+        let AxisReport { command, displacement, force, .. } = axis(0);
+        let others = (1..self.guard.commanded().len()).map(axis).collect();
         self.observer.step_done(&StepReport {
             step: self.commits,
             time: self.guard.time(),
-            command: self.guard.commanded()[0],
-            displacement: self.felt.displacement,
+            command,
+            displacement,
             velocity: nothing,
             acceleration: nothing,
-            force: self.felt.force,
+            force,
             energy_error: nothing,
-            others: Vec::new(),
+            others,
             tracking: None,
             tracking_energy_error: None,
         });
@@ -270,10 +282,13 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     /// One request again, as the record has it. What comes of it is on record too.
     pub(super) fn carry_out(&mut self, request: Request) {
         // A refusal has told its event, and what the client made of it are the requests that follow.
+        if let Some(targets) = request.proposed() {
+            let _ = self.propose(&targets);
+            return;
+        }
         let _ = match request {
+            Request::Propose { .. } | Request::ProposeAll { .. } | Request::ProposeNoNumber { .. } => Ok(()),
             Request::Come { client } => self.come(client),
-            Request::Propose { target } => self.propose(target),
-            Request::ProposeNoNumber { said } => self.propose(said.parse().unwrap_or(f64::NAN)),
             Request::Execute => self.execute(),
             Request::Read => self.read(),
             Request::Commit => {
@@ -314,9 +329,10 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         let read = self.guard.read();
         self.heard = Instant::now();
         let reading = self.told(read)?;
-        self.felt = Felt { displacement: reading.displacement[0], force: reading.force[0] };
-        self.driven.displacement = self.driven.displacement.max(self.felt.displacement.abs());
-        self.driven.force = self.driven.force.max(self.felt.force.abs());
+        let largest = |values: &[f64], so_far: f64| values.iter().fold(so_far, |largest, value| largest.max(value.abs()));
+        self.driven.displacement = largest(&reading.displacement, self.driven.displacement);
+        self.driven.force = largest(&reading.force, self.driven.force);
+        self.felt = Felt { displacement: reading.displacement, force: reading.force };
         Ok(())
     }
 

@@ -15,7 +15,12 @@ pub enum Request {
     Propose {
         target: f64,
     },
-    /// A target that is no number and that no line of the record can hold: `NaN`, `inf`. Refused as any other.
+    /// Targets of every axis of a rig that has several, m.
+    ProposeAll {
+        targets: Vec<f64>,
+    },
+    /// A target that is no number and that no line of the record can hold: `NaN`, `inf`. Refused as any other. Of several axes
+    /// every target, with blanks between.
     ProposeNoNumber {
         said: String,
     },
@@ -51,9 +56,27 @@ pub enum Parting {
 }
 
 impl Request {
-    /// A target, whatever number it is.
+    /// A target for every axis, whatever numbers they are.
     #[must_use]
-    pub fn target(target: f64) -> Self {
-        if target.is_finite() { Self::Propose { target } } else { Self::ProposeNoNumber { said: target.to_string() } }
+    pub fn targets(targets: &[f64]) -> Self {
+        match targets {
+            [target] if target.is_finite() => Self::Propose { target: *target },
+            targets if targets.iter().all(|target| target.is_finite()) => Self::ProposeAll { targets: targets.to_vec() },
+            targets => {
+                let said: Vec<String> = targets.iter().map(f64::to_string).collect();
+                Self::ProposeNoNumber { said: said.join(" ") }
+            }
+        }
+    }
+
+    /// The targets that are proposed, m, one an axis; none where something else is asked.
+    #[must_use]
+    pub fn proposed(&self) -> Option<Vec<f64>> {
+        match self {
+            Self::Propose { target } => Some(vec![*target]),
+            Self::ProposeAll { targets } => Some(targets.clone()),
+            Self::ProposeNoNumber { said } => Some(said.split(' ').map(|word| word.parse().unwrap_or(f64::NAN)).collect()),
+            _ => None,
+        }
     }
 }

@@ -9,8 +9,9 @@
 //! from then on every question is answered with NaN, until the client leaves, is silent or has been heard out.
 //!
 //! A trial comes more than once: only a target that is not the last one moves the rig. Between moves the specimen is at
-//! rest: velocity and acceleration are zero, so are damping and mass, which are the client's own; both stiffnesses are the one constant
-//! that was given. The messages of a `GenericTCP` with an init file are taken, noted and otherwise ignored.
+//! rest: velocity and acceleration are zero, so are damping and mass, which are the client's own; both stiffnesses are the constant
+//! that was given. A rig of n axes is driven by vectors of n words, and a stiffness, damping or mass is n·n words. One message moves
+//! all axes; where a limit stands in the way of one, none moves. The messages of a `GenericTCP` with an init file are taken, noted and otherwise ignored.
 
 use std::time::{Duration, Instant};
 
@@ -46,7 +47,7 @@ const FAREWELL: Duration = Duration::from_secs(30);
 const SILENCE: Duration = Duration::from_secs(1);
 
 /// Serves a client until one of the two has enough.
-pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, stiffness: f64) -> Ended {
+pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, stiffness: &[f64]) -> Ended {
     let mut words = 0;
     let ended = talk(connection, specimen, stiffness, &mut words).unwrap_or_else(|ended| ended);
     if words > 0 && matches!(ended, Ended::Limit(_) | Ended::Rig(_) | Ended::Stopped) {
@@ -76,16 +77,17 @@ fn bid_farewell(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>
 fn talk(
     connection: &mut Connection<'_>,
     specimen: &mut Specimen<'_, '_>,
-    stiffness: f64,
+    stiffness: &[f64],
     words: &mut usize,
 ) -> Result<Ended, Ended> {
     let mut header = [0; HEADER];
     connection.read_all(&mut header, specimen)?;
-    let layout = generic_header::parse(&header).map_err(Ended::Misspoken)?;
+    let axes = specimen.degrees_of_freedom();
+    let layout = generic_header::parse(&header, axes).map_err(Ended::Misspoken)?;
     *words = layout.words;
     let mut message = vec![0; 8 * layout.words];
     let mut answer = message.clone();
-    let mut settings = 0_u64;
+    let (mut settings, mut longest) = (0_u64, 0);
     loop {
         let first = connection.read(&mut message[..1], specimen)?;
         if message[0] == SETTING {
@@ -100,12 +102,12 @@ fn talk(
         }
         connection.read_all(&mut message[first..], specimen)?;
         let asked = word(&message, 0);
-        let single = |value: f64| [Some(value), None, None, None, None];
+        let still = || vec![0.0; axes];
         let values = match asked {
             action::SET_TRIAL => {
-                let target = word(&message, 1);
-                if target != specimen.commanded() {
-                    specimen.propose(target)?;
+                let targets: Vec<f64> = (1..=axes).map(|at| word(&message, at)).collect();
+                if targets != specimen.commanded() {
+                    specimen.propose(&targets)?;
                     specimen.execute()?;
                 }
                 continue;
@@ -115,17 +117,23 @@ fn talk(
                 continue;
             }
             action::GET_MEASURED => measured(layout, specimen),
-            action::GET_DISPLACEMENT => single(specimen.felt().displacement),
-            action::GET_VELOCITY | action::GET_ACCELERATION | action::GET_DAMPING | action::GET_MASS => single(0.0),
-            action::GET_FORCE => single(specimen.felt().force),
-            action::GET_TIME => single(specimen.time()),
-            action::GET_INITIAL_STIFFNESS | action::GET_TANGENT_STIFFNESS => single(stiffness),
+            action::GET_DISPLACEMENT => specimen.felt().displacement.clone(),
+            action::GET_VELOCITY | action::GET_ACCELERATION => still(),
+            action::GET_DAMPING | action::GET_MASS => vec![0.0; axes * axes],
+            action::GET_FORCE => specimen.felt().force.clone(),
+            action::GET_TIME => vec![specimen.time()],
+            action::GET_INITIAL_STIFFNESS | action::GET_TANGENT_STIFFNESS => stiffness.to_vec(),
             action::SHUT_DOWN | action::DIE => return Ok(Ended::Closed),
             other => return Err(Ended::Misspoken(format!("no action is called {other}"))),
         };
-        // What is not overwritten stays zero from the beginning.
-        answer[..40.min(8 * layout.words)].fill(0);
-        for (place, value) in answer.chunks_exact_mut(8).zip(values.into_iter().flatten()) {
+        if values.len() > layout.words {
+            let needed = values.len();
+            return Err(Ended::Misspoken(format!("messages of {} words cannot hold an answer of {needed}", layout.words)));
+        }
+        // What is not overwritten by this answer or an earlier one stays zero from the beginning.
+        answer[..8 * longest].fill(0);
+        longest = longest.max(values.len());
+        for (place, value) in answer.chunks_exact_mut(8).zip(values) {
             place.copy_from_slice(&value.to_le_bytes());
         }
         connection.write(&answer, specimen)?;
@@ -133,10 +141,11 @@ fn talk(
 }
 
 /// What the header announced as measured, packed in its order.
-fn measured(layout: Layout, specimen: &Specimen<'_, '_>) -> [Option<f64>; 5] {
+fn measured(layout: Layout, specimen: &Specimen<'_, '_>) -> Vec<f64> {
     let felt = specimen.felt();
-    let all = [felt.displacement, 0.0, 0.0, felt.force, specimen.time()];
-    std::array::from_fn(|at| layout.measured[at].then_some(all[at]))
+    let still = vec![0.0; felt.force.len()];
+    let all = [&felt.displacement, &still, &still, &felt.force, &vec![specimen.time()]];
+    all.into_iter().zip(layout.measured).filter(|(_, wanted)| *wanted).flat_map(|(values, _)| values).copied().collect()
 }
 
 /// The text of a setting, up to its end.

@@ -1,5 +1,5 @@
 //! The first message of a generic client: eleven numbers that say how the later ones are laid out. In: its bytes. Out:
-//! the layout, if it is one that a rig of one degree of freedom can serve. It reads no later message.
+//! the layout, if it is one that a rig of so many degrees of freedom can serve. It reads no later message.
 
 /// Bytes of the first message: eleven 32-bit numbers, little-endian.
 pub const HEADER: usize = 44;
@@ -11,17 +11,18 @@ const SHORTEST: i32 = 2;
 /// How the later messages are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Words of what is measured, in the order of an answer: displacement, velocity, acceleration, force, time.
+    /// What is measured, in the order of an answer: displacement, velocity, acceleration, force, each a word an axis, and
+    /// time.
     pub measured: [bool; 5],
     /// Words of every message.
     pub words: usize,
 }
 
-/// Reads the first message.
+/// Reads the first message, for a rig of so many axes.
 ///
 /// # Errors
 /// Why it cannot be served.
-pub fn parse(bytes: &[u8; HEADER]) -> Result<Layout, String> {
+pub fn parse(bytes: &[u8; HEADER], axes: usize) -> Result<Layout, String> {
     let number = |at: usize| i32::from_le_bytes([bytes[4 * at], bytes[4 * at + 1], bytes[4 * at + 2], bytes[4 * at + 3]]);
     let words = number(10);
     if !(SHORTEST..=LONGEST).contains(&words) {
@@ -30,11 +31,13 @@ pub fn parse(bytes: &[u8; HEADER]) -> Result<Layout, String> {
         return Err(format!("a message of {words} words{order}; {SHORTEST} to {LONGEST} are served"));
     }
     let sizes: [i32; 10] = std::array::from_fn(number);
-    if let Some(size) = sizes.iter().find(|size| !(0..=1).contains(*size)) {
-        return Err(format!("{size} degrees of freedom; psd drives one"));
+    // A time is one word, every other quantity none or one an axis.
+    let most = |at: usize| if at % 5 == 4 { Some(1) } else { i32::try_from(axes).ok() };
+    if let Some((_, size)) = sizes.iter().enumerate().find(|(at, size)| **size != 0 && Some(**size) != most(*at)) {
+        return Err(format!("{size} degrees of freedom; this rig has {axes}"));
     }
     let [control, measured] = [&sizes[..5], &sizes[5..]];
-    if control[0] != 1 {
+    if control[0] == 0 {
         return Err("the client sends no displacement, and psd moves by displacement only".to_owned());
     }
     if control[3] != 0 {
@@ -44,7 +47,7 @@ pub fn parse(bytes: &[u8; HEADER]) -> Result<Layout, String> {
     if words < needed {
         return Err(format!("messages of {words} words cannot hold the {needed} that the client announces"));
     }
-    let measured = std::array::from_fn(|at| measured[at] == 1);
+    let measured = std::array::from_fn(|at| measured[at] > 0);
     let words = usize::try_from(words).map_err(|_| "no such number of words".to_owned())?;
     Ok(Layout { measured, words })
 }
@@ -61,8 +64,12 @@ mod tests {
     #[test]
     fn the_headers_of_opensees_and_of_the_smallest_session() {
         let force = [false, false, false, true, false];
-        assert_eq!(parse(&header([1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256])), Ok(Layout { measured: force, words: 256 }));
-        assert_eq!(parse(&header([1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2])), Ok(Layout { measured: force, words: 2 }));
+        assert_eq!(parse(&header([1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256]), 1), Ok(Layout { measured: force, words: 256 }));
+        assert_eq!(parse(&header([1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2]), 1), Ok(Layout { measured: force, words: 2 }));
+        let three = [3, 3, 3, 0, 1, 0, 0, 0, 3, 0, 256];
+        assert_eq!(parse(&header(three), 3), Ok(Layout { measured: force, words: 256 }));
+        assert!(parse(&header(three), 2).unwrap_err().contains("3 degrees of freedom; this rig has 2"));
+        assert!(parse(&header([3, 3, 3, 0, 1, 0, 0, 0, 1, 0, 256]), 3).is_err(), "a force of one axis only");
     }
 
     #[test]
@@ -77,10 +84,10 @@ mod tests {
             ([1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 16_385], "16385 words"),
             ([1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256].map(i32::swap_bytes), "other byte order"),
         ] {
-            let told = parse(&header(numbers)).unwrap_err();
+            let told = parse(&header(numbers), 1).unwrap_err();
             assert!(told.contains(why), "{told}");
         }
         let browser = b"GET / HTTP/1.1\r\nHost: 127.0.0.1:8090\r\nUser-A";
-        assert!(parse(browser).is_err());
+        assert!(parse(browser, 1).is_err());
     }
 }

@@ -3,6 +3,8 @@
 //! opens no port and keeps no record: every request goes through the specimen, which does.
 
 mod connection;
+#[cfg(test)]
+mod frame_tests;
 mod generic_client;
 mod generic_header;
 mod nees;
@@ -28,12 +30,12 @@ use connection::{Broken, Connection};
 const LOOK: Duration = Duration::from_millis(100);
 
 /// What the client speaks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Protocol {
     Nees,
-    /// With the constant stiffness it is told, N/m.
+    /// With the constant stiffness it is told, N/m: of n axes n·n numbers, row by row.
     GenericClient {
-        stiffness: f64,
+        stiffness: Vec<f64>,
     },
 }
 
@@ -124,7 +126,7 @@ pub enum Event<'a> {
 /// The listener fails.
 pub fn serve(
     listener: &TcpListener,
-    protocol: Protocol,
+    protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
     once: bool,
     stop: &(dyn Fn() -> bool + Sync),
@@ -164,7 +166,7 @@ pub fn serve(
 pub fn session(
     stream: TcpStream,
     address: SocketAddr,
-    protocol: Protocol,
+    protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
     stop: &dyn Fn() -> bool,
 ) -> Session {

@@ -1,7 +1,7 @@
 //! The NEES "LabVIEW plugin" protocol, psd as the rig. In: a coordinator's connection. Out: motion through the guard, one
 //! answer a line. What a limit stands in the way of is refused when it is proposed, before anything moves.
 //!
-//! Any control point is taken for the one degree of freedom and echoed as it was written; control points of cameras and
+//! A rig of several axes is none for this protocol here. Any control point is taken for the one degree of freedom and echoed as it was written; control points of cameras and
 //! the like (`MDL-AUX`) move nothing. Answers end as the client ends its lines.
 
 use super::Ended;
@@ -15,6 +15,10 @@ const LONGEST: usize = 4096;
 
 /// Serves a coordinator until one of the two has enough.
 pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>) -> Ended {
+    let axes = specimen.degrees_of_freedom();
+    if axes != 1 {
+        return Ended::Misspoken(format!("psd drives one control point for NEES, and this rig has {axes} axes"));
+    }
     talk(connection, specimen).unwrap_or_else(|ended| ended)
 }
 
@@ -96,7 +100,7 @@ impl State {
                         if wish.kind != "displacement" {
                             return Err(refused("psd moves by displacement only"));
                         }
-                        match specimen.propose(wish.value) {
+                        match specimen.propose(&[wish.value]) {
                             Ok(()) => wish.axis.clone_into(&mut self.axis),
                             Err(fault @ RigFault::LimitBreached { .. }) => {
                                 return Err(Refusal::new(Why::Limit, transaction, fault.to_string()));
@@ -127,7 +131,7 @@ impl State {
                     return Ok(failed(transaction, fault));
                 }
                 let felt = specimen.felt();
-                Ok(nees_message::control_point(transaction, point, &self.axis, felt.displacement, felt.force).into())
+                Ok(nees_message::control_point(transaction, point, &self.axis, felt.displacement[0], felt.force[0]).into())
             }
             Request::Cancel { transaction } => {
                 if self.proposed.take_if(|proposed| proposed.transaction == *transaction).is_some() {

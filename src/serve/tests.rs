@@ -5,12 +5,16 @@ use std::net::{TcpListener, TcpStream};
 
 use super::*;
 use crate::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
-use crate::rig::{Guard, VirtualRig};
+use crate::rig::{Guard, Rig, VirtualRig};
 use crate::run::Unwatched;
 
 const STIFFNESS: f64 = 3e5;
-const GENERIC: Protocol = Protocol::GenericClient { stiffness: STIFFNESS };
-const LIMITS: Limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
+
+fn generic() -> Protocol {
+    Protocol::GenericClient { stiffness: vec![STIFFNESS] }
+}
+
+pub(super) const LIMITS: Limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
 
 fn spring() -> VirtualRig {
     let behaviour = Some(Behaviour::Elastic { stiffness: STIFFNESS });
@@ -19,14 +23,23 @@ fn spring() -> VirtualRig {
     VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0)
 }
 
-/// Serves once while `client` talks, and gives what both say.
+/// Serves the spring once while `client` talks, and gives what both say.
+#[expect(clippy::needless_pass_by_value, reason = "each test makes its own")]
 fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(SocketAddr) -> T + Send) -> (T, Session) {
+    served_on(&mut spring(), &protocol, limits, client)
+}
+
+pub(super) fn served_on<T: Send>(
+    rig: &mut dyn Rig,
+    protocol: &Protocol,
+    limits: Limits,
+    client: impl FnOnce(SocketAddr) -> T + Send,
+) -> (T, Session) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     std::thread::scope(|scope| {
         let client = scope.spawn(move || client(address));
-        let mut rig = spring();
-        let mut guard = Guard::new(&mut rig, limits).unwrap();
+        let mut guard = Guard::new(rig, limits).unwrap();
         let mut sessions = Vec::new();
         let mut told = |event: Event<'_>| {
             if let Event::Ended(session) = event {
@@ -42,33 +55,33 @@ fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(Socke
 }
 
 /// A client of OpenSees' element, words of 64 bits.
-struct Element {
+pub(super) struct Element {
     stream: TcpStream,
     words: usize,
 }
 
 impl Element {
-    fn connect(address: SocketAddr, header: [i32; 11]) -> Self {
+    pub(super) fn connect(address: SocketAddr, header: [i32; 11]) -> Self {
         let mut stream = TcpStream::connect(address).unwrap();
         let bytes: Vec<u8> = header.iter().flat_map(|number| number.to_le_bytes()).collect();
         stream.write_all(&bytes).unwrap();
         Self { stream, words: usize::try_from(header[10]).unwrap() }
     }
 
-    fn send(&mut self, words: &[f64]) {
+    pub(super) fn send(&mut self, words: &[f64]) {
         let padded = words.iter().copied().chain(std::iter::repeat(0.0)).take(self.words);
         let bytes: Vec<u8> = padded.flat_map(f64::to_le_bytes).collect();
         self.stream.write_all(&bytes).unwrap();
     }
 
-    fn ask(&mut self, action: f64) -> Vec<f64> {
+    pub(super) fn ask(&mut self, action: f64) -> Vec<f64> {
         self.send(&[action]);
         let mut bytes = vec![0; 8 * self.words];
         self.stream.read_exact(&mut bytes).unwrap();
         bytes.chunks_exact(8).map(|word| f64::from_le_bytes(word.try_into().unwrap())).collect()
     }
 
-    fn is_closed(&mut self) -> bool {
+    pub(super) fn is_closed(&mut self) -> bool {
         !matches!(self.stream.read(&mut [0; 8]), Ok(1..))
     }
 }
@@ -78,7 +91,7 @@ const OPENSEES: [i32; 11] = [1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256];
 
 #[test]
 fn the_smallest_session_gives_the_force() {
-    let (force, session) = served(GENERIC, LIMITS, |address| {
+    let (force, session) = served(generic(), LIMITS, |address| {
         let mut element = Element::connect(address, SMALLEST);
         element.send(&[3.0, 0.001]);
         let force = element.ask(10.0);
@@ -94,7 +107,7 @@ fn the_smallest_session_gives_the_force() {
 #[test]
 fn an_explicit_newmark_of_the_client_finds_the_largest_displacement() {
     let (mass, step) = (20.0, 1e-4);
-    let (largest, session) = served(GENERIC, LIMITS, |address| {
+    let (largest, session) = served(generic(), LIMITS, |address| {
         let mut element = Element::connect(address, OPENSEES);
         let (mut d, mut v, mut a, mut largest) = (0.0_f64, 1.0, 0.0, 0.0_f64);
         for n in 1..=200_u32 {
@@ -121,7 +134,7 @@ fn an_explicit_newmark_of_the_client_finds_the_largest_displacement() {
 #[test]
 fn every_question_of_the_protocol_has_an_answer() {
     // psd gives displacement, velocity, acceleration, force and time.
-    let (answers, session) = served(GENERIC, LIMITS, |address| {
+    let (answers, session) = served(generic(), LIMITS, |address| {
         let mut element = Element::connect(address, [1, 0, 0, 0, 0, 1, 1, 1, 1, 1, 8]);
         element.send(&[3.0, -0.002]);
         let answers = [6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0].map(|action| element.ask(action));
@@ -139,7 +152,7 @@ fn every_question_of_the_protocol_has_an_answer() {
 #[test]
 fn a_target_beyond_a_limit_closes_and_nothing_moves() {
     for target in [0.021, f64::NAN, f64::INFINITY] {
-        let (closed, session) = served(GENERIC, LIMITS, |address| {
+        let (closed, session) = served(generic(), LIMITS, |address| {
             let mut element = Element::connect(address, SMALLEST);
             element.send(&[3.0, target]);
             let force = element.ask(10.0)[0];
@@ -154,7 +167,7 @@ fn a_target_beyond_a_limit_closes_and_nothing_moves() {
     }
     // The force at 10 mm would be 3 kN.
     let limits = Limits { force: Interval { low: -2e3, high: 2e3 }, ..LIMITS };
-    let (_, session) = served(GENERIC, limits, |address| {
+    let (_, session) = served(generic(), limits, |address| {
         let mut element = Element::connect(address, SMALLEST);
         element.send(&[3.0, 0.01]);
         element.is_closed()
@@ -165,7 +178,7 @@ fn a_target_beyond_a_limit_closes_and_nothing_moves() {
 #[test]
 fn garbage_moves_nothing_and_a_client_may_hang_up_anywhere() {
     for bytes in [&b"GET / HTTP/1.1\r\nHost: psd\r\nAccept: */*\r\n\r\n  "[..], &[0xFF; 4096], b"open-session\tpsd\n"] {
-        let (closed, session) = served(GENERIC, LIMITS, |address| {
+        let (closed, session) = served(generic(), LIMITS, |address| {
             let mut stream = TcpStream::connect(address).unwrap();
             stream.write_all(bytes).unwrap();
             // The server may have hung up by now.
@@ -175,14 +188,14 @@ fn garbage_moves_nothing_and_a_client_may_hang_up_anywhere() {
         assert!(closed && matches!(session.ended, Ended::Misspoken(_) | Ended::HungUp), "{session:?}");
         assert_eq!(session.driven, Driven::default());
     }
-    let (closed, session) = served(GENERIC, LIMITS, |address| {
+    let (closed, session) = served(generic(), LIMITS, |address| {
         let mut element = Element::connect(address, SMALLEST);
         element.send(&[1.5, 0.001]);
         element.is_closed()
     });
     assert!(closed && matches!(session.ended, Ended::Misspoken(_)));
     // In the middle of a trial: nothing moves.
-    let ((), session) = served(GENERIC, LIMITS, |address| {
+    let ((), session) = served(generic(), LIMITS, |address| {
         let mut element = Element::connect(address, SMALLEST);
         element.send(&[3.0, 0.001]);
         element.ask(10.0);
@@ -194,7 +207,7 @@ fn garbage_moves_nothing_and_a_client_may_hang_up_anywhere() {
 
 #[test]
 fn a_second_client_is_turned_away_and_the_first_goes_on() {
-    let ((turned_away, force), session) = served(GENERIC, LIMITS, |address| {
+    let ((turned_away, force), session) = served(generic(), LIMITS, |address| {
         let mut element = Element::connect(address, SMALLEST);
         element.ask(10.0);
         let mut second = TcpStream::connect(address).unwrap();

@@ -25,8 +25,12 @@ struct Server {
 
 impl Server {
     fn start(protocol: &str) -> Self {
+        Self::start_on(PLAN, protocol)
+    }
+
+    fn start_on(plan: &str, protocol: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("spring.psd"), PLAN).unwrap();
+        std::fs::write(folder.path().join("spring.psd"), plan).unwrap();
         let mut program = Command::new(env!("CARGO_BIN_EXE_psd"))
             .args(["rig", "serve", "spring.psd", "--protocol", protocol, "--listen", "127.0.0.1:0", "--once"])
             .current_dir(folder.path())
@@ -140,6 +144,57 @@ fn a_session_is_on_record_and_its_targets_come_out_again() {
     assert!(table.starts_with("step,wall_time_s,command_m,displacement_m,restoring_force_n\n1,1.0,0.001,0.001,300.0"), "{table}");
     let record = std::fs::read_to_string(run.join("journal.psdj")).unwrap();
     assert!(record.contains("target displacement 50 mm is outside its limit"), "{record}");
+}
+
+/// Two floors, every one with its actuator: the client's vectors move both at once.
+const FRAME: &str = "\
+specimen frame {
+  storeys = [storey(mass: 2 t, stiffness: 3 MN/m), storey(mass: 1.5 t, stiffness: 2 MN/m)]
+}
+
+limits {
+  displacement = -20 mm .. 20 mm
+}
+";
+
+#[test]
+fn a_session_on_a_frame_is_on_record_floor_by_floor() {
+    let mut server = Server::start_on(FRAME, "generic-client");
+    let mut client = server.connect();
+    let header = [2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 4_i32].map(i32::to_le_bytes);
+    client.write_all(header.as_flattened()).unwrap();
+    let mut ask = |asked: [f64; 4]| {
+        client.write_all(&words(&[asked, [10.0, 0.0, 0.0, 0.0]].concat())).unwrap();
+        let mut answer = [0; 32];
+        client.read_exact(&mut answer).unwrap();
+        answer
+    };
+    assert_eq!(ask([3.0, 0.001, 0.003, 0.0])[..], words(&[-1000.0, 4000.0, 0.0, 0.0]));
+    let refused = ask([3.0, 0.001, f64::NAN, 0.0]);
+    assert!(f64::from_le_bytes(refused[..8].try_into().unwrap()).is_nan());
+    client.write_all(&words(&[99.0, 0.0, 0.0, 0.0])).unwrap();
+    let (printed, code) = server.end();
+    assert!(printed.contains("targets: 1, 1 refused by a limit\nlargest |x|: 3.000 mm\n"), "{printed}");
+    assert_eq!(code, 4);
+    let (told, code) = server.verified();
+    assert_eq!(code, 0, "{told}");
+    let run = server.folder.path().join("runs/spring-1");
+    let table = std::fs::read_to_string(run.join("tables/served.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows[0], "step,storey,wall_time_s,command_m,displacement_m,restoring_force_n");
+    assert!(rows[1].starts_with("1,1,3.0,0.001,0.001,-1000.0"), "{table}");
+    assert!(rows[2].starts_with("1,2,3.0,0.003,0.003,4000.0"), "{table}");
+    assert_eq!(rows.len(), 3);
+}
+
+#[test]
+fn a_frame_is_none_for_a_nees_coordinator() {
+    let mut server = Server::start_on(FRAME, "nees");
+    let mut client = server.connect();
+    client.read_to_string(&mut String::new()).unwrap();
+    let (printed, code) = server.end();
+    assert!(printed.contains("psd drives one control point for NEES, and this rig has 2 axes"), "{printed}");
+    assert_eq!(code, 3);
 }
 
 #[test]

@@ -42,7 +42,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let provenance = provenance::of(plan);
             let mut rig = virtual_rig(plan);
             let stage = Stage { plan, provenance, circumstances, wall: Box::new(|| None) };
-            on_record(arguments, stage, rig.as_mut(), &mut watcher, &door, protocol, &wish, settings)
+            on_record(arguments, stage, rig.as_mut(), &mut watcher, &door, &protocol, &wish, settings)
         }
         Link::Real(_) => {
             let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)?;
@@ -50,7 +50,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..circumstances };
             let provenance = provenance::of_real_run(plan, &circumstances);
             let stage = Stage { plan, provenance, circumstances, wall: real_rig::wall_clock() };
-            on_record(arguments, stage, &mut opened.connected.rig, &mut opened.watcher, &door, protocol, &wish, settings)
+            on_record(arguments, stage, &mut opened.connected.rig, &mut opened.watcher, &door, &protocol, &wish, settings)
         }
     }
 }
@@ -99,7 +99,7 @@ fn on_record(
     rig: &mut dyn Rig,
     watcher: &mut Watcher,
     door: &Door,
-    protocol: Protocol,
+    protocol: &Protocol,
     wish: &Wish,
     settings: Settings,
 ) -> Result<Exit, Failure> {
@@ -153,7 +153,14 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
         }
         ServedProtocol::Nees => Ok(Protocol::Nees),
         ServedProtocol::GenericClient => {
-            let behaviour = VirtualRig::specimen_of(plan).and_then(|specimen| specimen.behaviour.as_ref());
+            let specimen = VirtualRig::specimen_of(plan);
+            if let Some(frame) = specimen.and_then(|specimen| specimen.frame.as_ref()) {
+                if given.is_some() {
+                    return Err(Failure::command_line("a frame has a stiffness matrix of its own: leave `--stiffness` out"));
+                }
+                return Ok(Protocol::GenericClient { stiffness: frame.stiffness.concat() });
+            }
+            let behaviour = specimen.and_then(|specimen| specimen.behaviour.as_ref());
             let known = given.or_else(|| behaviour.map(crate::plan::Behaviour::initial_stiffness));
             let stiffness = known.ok_or_else(|| {
                 Failure::command_line(
@@ -161,7 +168,7 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
                 )
                 .help("give it: --stiffness \"300 kN/m\"")
             })?;
-            Ok(Protocol::GenericClient { stiffness })
+            Ok(Protocol::GenericClient { stiffness: vec![stiffness] })
         }
     }
 }

@@ -172,7 +172,7 @@ impl State {
         let proposes = |line: &&Line| {
             let asked = body::<OperatorBody>(line);
             line.kind == EntryKind::Operator
-                && matches!(asked, Ok(OperatorBody::Asked { request: Request::Propose { .. } | Request::ProposeNoNumber { .. } }))
+                && matches!(asked, Ok(OperatorBody::Asked { request }) if request.proposed().is_some())
         };
         let until_next = self.lines.iter().take_while(|line| !proposes(line));
         until_next.filter(|line| line.kind == EntryKind::Intent).find_map(|line| body(line).ok())
