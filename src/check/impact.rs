@@ -4,9 +4,9 @@ use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::values;
 use super::fields::whole;
-use super::{integrator, specimen};
+use super::{integrator, mode, specimen};
 use crate::formula::{Formula, Operator};
-use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Until};
+use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, Mode, ProcedureKind, Until};
 use crate::schema::Kind;
 
 pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
@@ -25,9 +25,12 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
     let stiffness = checker.stiffness_or_specimens(block, specimen_block);
     let damping = checker.quantity(block, "damping");
     let contact = contact(checker, block);
-    let integrator = integrator::integrator(checker, block);
+    let mode = mode::mode(checker, block);
+    let integrator = integrator::integrator(checker, block, mode, contact.as_ref());
     let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
-    let i_modification = checker.word(block, "i_modification", "false").map(|word| word == "true");
+    let continuous = matches!(mode, Some(Mode::Continuous { .. }));
+    let unsaid = if continuous { "true" } else { "false" };
+    let i_modification = checker.word(block, "i_modification", unsaid).map(|word| word == "true");
     let time_step = match checker.given(block, "time_step") {
         Some(_) => checker.quantity(block, "time_step"),
         None => Some(twentieth_of_critical()),
@@ -47,6 +50,7 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         integrator: integrator?,
         allow_unstable: allow_unstable?,
         i_modification: i_modification?,
+        mode: mode?,
         time_step: time_step?,
         duration: duration?,
         until: match until? {

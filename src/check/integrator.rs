@@ -5,11 +5,16 @@ use super::checker::Checker;
 use super::faults::methods as fault;
 use super::impact::time_step_before_the_run;
 use crate::mechanics::method::longest_stable_step;
-use crate::plan::{Behaviour, Contact, Impact, Integrator, Specimen};
+use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen};
 
-/// The integrator a block names, else the tangent form.
-pub fn integrator(checker: &mut Checker, block: usize) -> Option<Integrator> {
-    let Some((entry, _)) = checker.given(block, "integrator") else { return Some(Integrator::Tangent) };
+/// The integrator a block names. Else the tangent form; in continuous mode, where the secant of two readings would take
+/// what a damper does for stiffness, explicit Newmark, as far as the contact law can do without the tangent.
+pub fn integrator(checker: &mut Checker, block: usize, mode: Option<Mode>, contact: Option<&Contact>) -> Option<Integrator> {
+    let Some((entry, _)) = checker.given(block, "integrator") else {
+        let continuous = matches!(mode, Some(Mode::Continuous { .. }));
+        let whole_steps = matches!(contact, Some(Contact::Rigid | Contact::Limit { .. }));
+        return Some(if continuous && whole_steps { Integrator::Explicit } else { Integrator::Tangent });
+    };
     let place = checker.place(block, entry);
     let chosen = checker.choice(block, "integrator")?;
     Some(match chosen.variant.name {

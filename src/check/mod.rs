@@ -26,6 +26,7 @@ mod integrator;
 mod limits;
 mod literal;
 mod matrix;
+mod mode;
 mod move_block;
 mod names;
 mod parameters;
@@ -150,6 +151,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(Procedure { kind: ProcedureKind::Impact(impact), .. }) = procedure {
             let striker = strikers.get(impact.striker).and_then(Option::as_ref);
             warnings::impact(checker, *block, impact, striker);
+            mode::damping_twice(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
             integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
         }
         if let Some(Procedure { kind: ProcedureKind::Shake(shaking), .. }) = procedure

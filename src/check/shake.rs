@@ -14,7 +14,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let ground = checker.reference(block, "ground", Kind::Ground);
     let specimen = checker.specimen_block(block);
     let damping = damping(checker, block);
-    let integrator = integrator::integrator(checker, block);
+    let integrator = integrator::integrator(checker, block, None, None);
     let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
     let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
     let time_step = match checker.given(block, "time_step") {

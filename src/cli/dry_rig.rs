@@ -4,6 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use crate::mechanics::path::Path;
 use crate::plan::{Interval, Plan};
 use crate::record::Record;
 use crate::rig::{DeclaredNoise, EachReading, Identity, OWN_SPEED, Offer, Reading, Rig, RigFault, virtual_rig};
@@ -135,6 +136,21 @@ impl Rig for Watched {
             self.note_reading(reading, false);
         }
         traversed
+    }
+
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        if let [path] = paths {
+            self.note_target(&[path.to], path.fastest());
+        }
+        let mut readings = Vec::new();
+        let glided = self.inner.glide(paths, samples, &mut |reading| {
+            readings.push(reading.clone());
+            each(reading)
+        });
+        for reading in &readings {
+            self.note_reading(reading, false);
+        }
+        glided
     }
 
     fn hold(&mut self) {

@@ -7,11 +7,12 @@ use super::columns::columns;
 use super::dry_rig::{Reach, Watched};
 use super::exit::Exit;
 use super::explain_shake;
+use super::explain_tracking;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
 use crate::output::behaviour;
-use crate::plan::{Interval, Link, Plan, VirtualLink};
+use crate::plan::{Interval, Link, Plan, ProcedureKind, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::{digits, join, readable, significant, stated, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
@@ -109,11 +110,12 @@ impl<'a> DryRun<'a> {
             }
         }
         section("What moves", self.motions());
-        for procedure in &self.record.procedures {
-            if let History::Impact(history) = &procedure.history
+        for (procedure, planned) in self.record.procedures.iter().zip(&self.plan.procedures) {
+            if let (History::Impact(history), ProcedureKind::Impact(blow)) = (&procedure.history, &planned.kind)
                 && !history.steps.is_empty()
             {
-                section(&format!("{}, impact", procedure.name), impact(history));
+                let foretold = explain_tracking::rows(self.plan, blow, procedure, history);
+                section(&format!("{}, impact", procedure.name), [impact(history), foretold].concat());
             }
             if let History::Shake(history) = &procedure.history {
                 section(&format!("{}, modes", procedure.name), explain_shake::modes(history));
@@ -290,7 +292,7 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle,
+            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Mode, Procedure, ProcedureKind, Report, RigPlan, Settle,
             Specimen, Striker, Until,
         };
         let specimen = Specimen {
@@ -311,6 +313,7 @@ mod tests {
             integrator: Integrator::Tangent,
             allow_unstable: false,
             i_modification: false,
+            mode: Mode::StepAndPause,
             time_step: Constant(0.01),
             duration: Constant(1.0),
             until: Until::StrikerStop,

@@ -14,6 +14,7 @@ mod exit;
 mod explain;
 mod explain_plan;
 mod explain_shake;
+mod explain_tracking;
 mod fmt;
 mod limits;
 mod loader;

@@ -109,6 +109,8 @@ codes! {
     E634 NoSuchProperty Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
+    E644 NoPathToFollow Error;
+    E645 StopsOnTheWay Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;
@@ -126,6 +128,7 @@ codes! {
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
     W715 TableTooShort Warning;
+    W716 DampingTwice Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
 }

@@ -15,6 +15,7 @@ pub mod integrator;
 pub mod law;
 pub mod method;
 pub mod monitor;
+pub mod path;
 pub mod scheme;
 pub mod specimen;
 pub mod split;

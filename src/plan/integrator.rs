@@ -11,6 +11,15 @@ pub enum Integrator {
     AlphaOs { alpha: f64 },
 }
 
+/// How the actuator goes from target to target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mode {
+    /// It stops at every one; the reading is at rest.
+    StepAndPause,
+    /// It does not stop: rig time is `time_scale` times virtual time, and what a damper does at that speed is in the force.
+    Continuous { time_scale: f64 },
+}
+
 impl Integrator {
     /// The word of the language.
     #[must_use]

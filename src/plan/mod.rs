@@ -21,7 +21,7 @@ pub use escalate::{Between, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
-pub use integrator::Integrator;
+pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
     Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
@@ -294,6 +294,7 @@ pub struct Impact {
     pub allow_unstable: bool,
     /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
     pub i_modification: bool,
+    pub mode: Mode,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// Upper bound of virtual time, s.

@@ -1,6 +1,8 @@
 //! The virtual actuator. In: reference motion, s of rig time. Out: where the piston stands and how fast it moves.
 //! In closed form, so that a settling of minutes costs as much as none. It knows no specimen and no load cell.
 
+use crate::mechanics::path::Rate;
+
 /// A servo whose piston follows its reference with a first-order lag: ẋ = (reference − x) / lag.
 #[derive(Clone, Debug)]
 pub(super) struct Actuator {
@@ -64,6 +66,18 @@ impl Actuator {
         }
         self.reference = to;
         self.reference_velocity = velocity;
+    }
+
+    /// The reference runs to `to` in `seconds`, its velocity a parabola in time with these ends. With e = reference − x:
+    /// ė = q − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
+    pub(super) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) {
+        if self.lag > 0.0 {
+            let lag = self.lag;
+            let steady = |rate: Rate| lag * (rate.velocity - lag * (rate.acceleration - lag * rate.jerk));
+            self.lagging = steady(after) + (self.lagging - steady(before)) * (-seconds / lag).exp();
+        }
+        self.reference = to;
+        self.reference_velocity = after.velocity;
     }
 
     /// The reference stands; the piston goes on towards it.

@@ -9,12 +9,14 @@ use crate::plan::{Interval, Limits};
 
 /// A rig and what nothing may drive it past.
 pub struct Guard<'rig> {
-    rig: &'rig mut dyn Rig,
-    limits: Limits,
+    pub(super) rig: &'rig mut dyn Rig,
+    pub(super) limits: Limits,
     /// The last target carried out, m; at first where the rig was found.
-    commanded: Vec<f64>,
+    pub(super) commanded: Vec<f64>,
+    /// Velocities at the end of the last path, m/s; none at rest.
+    pub(super) going: Vec<f64>,
     /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
-    settled: bool,
+    pub(super) settled: bool,
     /// Checked, and not yet carried out, m.
     proposed: Option<Vec<f64>>,
 }
@@ -32,7 +34,7 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// It cannot be read, or stands outside a limit already.
     pub fn new(rig: &'rig mut dyn Rig, limits: Limits) -> Result<Self, RigFault> {
-        let mut guard = Self { rig, limits, commanded: Vec::new(), settled: false, proposed: None };
+        let mut guard = Self { rig, limits, commanded: Vec::new(), going: Vec::new(), settled: false, proposed: None };
         guard.commanded = guard.read()?.displacement;
         Ok(guard)
     }
@@ -105,6 +107,7 @@ impl<'rig> Guard<'rig> {
             return Err(RigFault::Device("nothing was proposed to execute".to_owned()));
         };
         self.settled = false;
+        self.going.clear();
         let executed = self.rig.execute();
         self.or_hold(executed)?;
         self.commanded = targets;
@@ -169,6 +172,7 @@ impl<'rig> Guard<'rig> {
             return refused(fault);
         }
         self.settled = false;
+        self.going.clear();
         let limits = self.limits;
         let mut readings = Vec::with_capacity(samples);
         // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
@@ -224,10 +228,11 @@ impl<'rig> Guard<'rig> {
     /// Stops all motion and keeps the load. What was proposed is forgotten.
     pub fn hold(&mut self) {
         self.proposed = None;
+        self.going.clear();
         self.rig.hold();
     }
 
-    fn check_targets(&mut self, targets: &[f64]) -> Result<(), RigFault> {
+    pub(super) fn check_targets(&mut self, targets: &[f64]) -> Result<(), RigFault> {
         if targets.len() != self.commanded.len() {
             self.hold();
             let reason = format!("{} targets for a rig of {} degrees of freedom", targets.len(), self.commanded.len());
@@ -246,7 +251,7 @@ impl<'rig> Guard<'rig> {
         self.or_hold(judged)
     }
 
-    fn check(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> Result<(), RigFault> {
+    pub(super) fn check(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> Result<(), RigFault> {
         if inside(limit, value) { Ok(()) } else { Err(self.breach(quantity, limit, value)) }
     }
 
@@ -255,7 +260,7 @@ impl<'rig> Guard<'rig> {
         RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high }
     }
 
-    fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {
+    pub(super) fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {
         if outcome.is_err() {
             self.hold();
         }
@@ -269,7 +274,7 @@ fn inside(limit: Interval, value: f64) -> bool {
 }
 
 /// The first value of a reading that lies outside its limit.
-fn outside(limits: &Limits, reading: &Reading) -> Option<RigFault> {
+pub(super) fn outside(limits: &Limits, reading: &Reading) -> Option<RigFault> {
     let displacements = reading.displacement.iter().map(|x| (LimitedQuantity::MeasuredDisplacement, limits.displacement, *x));
     let forces = reading.force.iter().map(|force| (LimitedQuantity::Force, limits.force, *force));
     displacements
@@ -425,7 +430,8 @@ mod tests {
             let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
-            let mut guard = Guard { rig: &mut rig, limits: LIMITS, commanded: vec![0.001], settled: true, proposed: None };
+            let mut guard =
+                Guard { rig: &mut rig, limits: LIMITS, commanded: vec![0.001], going: Vec::new(), settled: true, proposed: None };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

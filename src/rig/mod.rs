@@ -9,6 +9,7 @@ pub mod failpoint;
 #[cfg(test)]
 mod fault_table;
 mod guard;
+mod guard_glide;
 mod load_cell;
 pub mod port;
 pub mod real;
@@ -22,6 +23,7 @@ mod wish;
 
 use serde::{Deserialize, Serialize};
 
+use crate::mechanics::path::Path;
 use crate::plan::Plan;
 use crate::quantity::{Dimension, display};
 
@@ -232,6 +234,17 @@ pub trait Rig {
     /// # Errors
     /// As `execute`, `read` and `each`; fewer than two readings, where as many are wanted.
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault>;
+
+    /// Follows smooth paths, one a degree of freedom and equally long, and reads at `samples` equal times on the way, the
+    /// last at the end, where it goes on moving until it is told the next path or to hold. Each reading is given to `each`
+    /// as it is made; where `each` refuses, the rig holds at once and the refusal is the error.
+    ///
+    /// # Errors
+    /// As `traverse`; a rig that must be told a target at a time follows no path.
+    fn glide(&mut self, _paths: &[Path], _samples: usize, _each: EachReading<'_>) -> Result<(), RigFault> {
+        self.hold();
+        Err(RigFault::Device("this rig follows no path without stopping".to_owned()))
+    }
 
     /// Stops all motion and keeps the load.
     fn hold(&mut self);

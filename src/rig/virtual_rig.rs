@@ -1,11 +1,14 @@
 //! The virtual rig: an actuator, a load cell and a specimen between them. In: targets. Out: readings. Its time is
 //! simulated, so that motion, settling and pauses take rig time and no wall time; it reads no clock and no file.
 
+mod glide;
+
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, settling_time};
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
+use crate::mechanics::path::Path;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Plan, Settle, Specimen, VirtualLink};
 
@@ -204,6 +207,13 @@ impl Rig for VirtualRig {
         Ok(())
     }
 
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        match paths {
+            [path] => self.glide_along(path, samples, each),
+            _ => Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", paths.len()))),
+        }
+    }
+
     fn hold(&mut self) {
         self.actuator.hold();
         self.proposed = None;
@@ -218,9 +228,9 @@ impl Rig for VirtualRig {
 mod tests {
     use super::*;
 
-    const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
+    pub(super) const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
 
-    fn specimen(damping: f64, coulomb: f64) -> Specimen {
+    pub(super) fn specimen(damping: f64, coulomb: f64) -> Specimen {
         let behaviour = Some(Behaviour::Elastic { stiffness: 1000.0 });
         Specimen { name: "spring".to_owned(), mass: 1.0, frame: None, behaviour, damping, coulomb }
     }

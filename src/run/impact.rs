@@ -13,12 +13,11 @@ use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::critical_time_step;
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::method::longest_stable_step;
-use crate::mechanics::monitor::Tracking;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
-use crate::record::{EventKind, History, ImpactHistory, NamedResult};
+use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
 
 pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let (setting, stop) = match Setting::evaluate(plan, &whole.strikers[plan.striker], inputs, session) {
@@ -179,9 +178,7 @@ fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
 /// In the order of the reference, `worst` the largest share of the input that tracking made of the energy; every number is missing if not even the start was read.
 fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &ImpactHistory) -> Vec<NamedResult> {
     let of = |name, dimension, value: fn(&ImpactSummary) -> f64| result(name, dimension, summary.map(value));
-    let tracked = |name, dimension, value: fn(&Tracking) -> f64| {
-        result(name, dimension, history.steps.last().map(|last| value(&last.tracking)))
-    };
+    let ended = |name, dimension, value: fn(&ImpactStep) -> f64| result(name, dimension, history.steps.last().map(value));
     let known = |value: f64| (value > 0.0).then_some(value);
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let steps = history.steps.last().map(|last| last.step as f64);
@@ -200,12 +197,14 @@ fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &Impact
         of("indentation", Dimension::LENGTH, |summary| summary.indentation),
         of("indentation_energy", Dimension::ENERGY, |summary| summary.indentation_energy),
         of("absorbed_energy", Dimension::ENERGY, |summary| summary.absorbed_energy),
+        ended("restoring_energy", Dimension::ENERGY, |last| last.energies.restoring),
+        ended("damping_energy", Dimension::ENERGY, |last| last.energies.damping),
         of("striker_energy", Dimension::ENERGY, |summary| summary.striker_energy),
         of("energy_error", Dimension::NUMBER, |summary| summary.energy_error),
         result("tracking_energy_error", Dimension::NUMBER, worst),
-        tracked("tracking_indicator", Dimension::AREA, |tracking| tracking.indicator),
-        tracked("nrms_error", Dimension::NUMBER, |tracking| tracking.nrms_error),
-        tracked("peak_error", Dimension::LENGTH, |tracking| tracking.peak_error),
+        ended("tracking_indicator", Dimension::AREA, |last| last.tracking.indicator),
+        ended("nrms_error", Dimension::NUMBER, |last| last.tracking.nrms_error),
+        ended("peak_error", Dimension::LENGTH, |last| last.tracking.peak_error),
         result("time_step", Dimension::TIME, known(history.time_step)),
         result("critical_time_step", Dimension::TIME, known(history.critical_time_step)),
         result("steps", Dimension::NUMBER, steps),

@@ -1,5 +1,8 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
+mod continuous;
+#[cfg(test)]
+mod continuous_tests;
 mod cycle;
 #[cfg(test)]
 mod cycle_tests;

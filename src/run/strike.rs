@@ -2,6 +2,7 @@
 //! every step as it ended, and what they come to. It judges no plan.
 
 use super::StepReport;
+use super::continuous;
 use super::impact::Setting;
 use super::session::Session;
 use super::stop::Stop;
@@ -10,11 +11,12 @@ use super::watch::Watch;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::mechanics::summary::SummaryBuilder;
-use crate::plan::{Impact, Until};
+use crate::plan::{Impact, Mode, Until};
 use crate::record::ImpactStep;
 
 pub(super) struct Strike {
-    setting: Setting,
+    pub(super) setting: Setting,
+    /// Steps of the procedure done before these.
     before: u64,
     pub steps: Vec<ImpactStep>,
     pub summary: SummaryBuilder,
@@ -34,6 +36,9 @@ impl Strike {
     }
 
     pub(super) fn run(&mut self, plan: &Impact, session: &mut Session<'_>) -> Result<(), Stop> {
+        if let Mode::Continuous { time_scale } = plan.mode {
+            return continuous::run(self, plan, time_scale, session);
+        }
         let Setting { input, steps, pause, .. } = self.setting;
         let mut triggers = Triggers::new(&plan.inspect);
         // X starts where the actuator was sent to, and R₀ is read there once, before the first step.
@@ -62,7 +67,7 @@ impl Strike {
     }
 
     /// A step has ended: it is kept, judged and told.
-    fn step(&mut self, state: &ImpactState, tracking: Tracking, session: &mut Session<'_>) -> Result<(), Stop> {
+    pub(super) fn step(&mut self, state: &ImpactState, tracking: Tracking, session: &mut Session<'_>) -> Result<(), Stop> {
         self.take(state, tracking, session);
         let error = error_fraction(state, &self.setting.input);
         let share = tracking.share_of(self.setting.input.striker_energy());
@@ -84,7 +89,7 @@ impl Strike {
         })
     }
 
-    fn take(&mut self, state: &ImpactState, tracking: Tracking, session: &Session<'_>) {
+    pub(super) fn take(&mut self, state: &ImpactState, tracking: Tracking, session: &Session<'_>) {
         self.summary.push(state);
         self.steps.push(ImpactStep {
             step: state.step,
@@ -109,7 +114,7 @@ impl Strike {
 }
 
 /// Whether the run has come to its end before its duration.
-fn over(until: Until, solver: &ImpactSolver) -> bool {
+pub(super) fn over(until: Until, solver: &ImpactSolver) -> bool {
     match until {
         Until::StrikerStop => solver.finished(),
         Until::Rebound => solver.rebounded(),

@@ -2,8 +2,8 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, DecisionRule, Impact, Integrator, Limits, Link, Plan, Procedure, ProcedureKind, Report,
-    RigPlan, Settle, Specimen, StiffnessRamp, Striker, Until, VirtualLink,
+    Behaviour, Calibration, Contact, DecisionRule, Impact, Integrator, Limits, Link, Mode, Plan, Procedure, ProcedureKind,
+    Report, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -79,6 +79,7 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         integrator: Integrator::Tangent,
         allow_unstable: false,
         i_modification: false,
+        mode: Mode::StepAndPause,
         time_step: Formula::Constant(0.01),
         duration: Formula::Constant(0.5),
         until: Until::StrikerStop,

@@ -14,7 +14,8 @@ const INTEGRATORS: &[Variant] = &[
     Variant::with("alpha_os", &[ALPHA], "α-operator splitting with the initial stiffness: softening specimens, noisy cells"),
 ];
 
-pub(super) const INTEGRATOR: Field = Field::choice("integrator", INTEGRATORS, "time integration").or_said("tangent");
+pub(super) const INTEGRATOR: Field =
+    Field::choice("integrator", INTEGRATORS, "time integration").or_said("tangent; `explicit` in continuous mode");
 
 pub(super) const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::word("false", "no")];
 
@@ -23,7 +24,21 @@ pub(super) const I_MODIFICATION: Field = Field::choice(
     TRUTH,
     "whether the force is corrected to where the specimen was to be, r_m − K_I(d_m − d): as long as it is nearly elastic",
 )
-.or_said("false");
+.or_said("false; `true` in continuous mode");
+
+const MODES: &[Variant] = &[
+    Variant::word("step_and_pause", "the actuator stops at every target and is read at rest"),
+    Variant::with(
+        "continuous",
+        &[Field::quantity("time_scale", Dimension::NUMBER, "rig time over virtual time")
+            .required("time_scale: 100")
+            .above_zero()],
+        "the actuator does not stop: what a damper does at this speed is in the force; virtual rigs only",
+    ),
+];
+
+pub(super) const MODE: Field =
+    Field::choice("mode", MODES, "how the actuator goes from target to target").or_said("step_and_pause");
 
 pub(super) const ALLOW_UNSTABLE: Field =
     Field::choice("allow_unstable", TRUTH, "whether it runs beyond the stability limit of its integrator").or_said("false");

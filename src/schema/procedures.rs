@@ -134,6 +134,7 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,
         methods::I_MODIFICATION,
+        methods::MODE,
         Field::quantity("time_step", Dimension::TIME, "Δt; may read `critical`, Δt of eq. 7")
             .above_zero()
             .or_said("critical / 20"),

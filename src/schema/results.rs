@@ -48,6 +48,12 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
     ResultKind::new("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
     ResultKind::new("absorbed_energy", Dimension::ENERGY, "restoring force integrated up to the largest displacement"),
+    ResultKind::new(
+        "restoring_energy",
+        Dimension::ENERGY,
+        "restoring force integrated over the run, with what a damper adds to it in continuous mode",
+    ),
+    ResultKind::new("damping_energy", Dimension::ENERGY, "energy that the computed `damping` took over the run"),
     ResultKind::new("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
     ResultKind::new(

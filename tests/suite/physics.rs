@@ -9,3 +9,4 @@ mod portal;
 mod reference;
 mod specimens;
 mod support;
+mod tracking;

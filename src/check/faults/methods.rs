@@ -25,3 +25,25 @@ pub fn unstable(span: Span, integrator: Integrator, step: f64, limit: f64) -> Di
         .at(span, format!("{step}, stable up to {longest}"))
         .help("write `time_step = critical / 20`; `allow_unstable = true` runs it all the same")
 }
+
+pub fn continuous_on_a_real_rig(span: Span) -> Diagnostic {
+    let message = "continuous mode needs a rig that follows a path without stopping; no dialect of this version can say one";
+    Diagnostic::new(Code::NoPathToFollow, message)
+        .at(span, "every dialect says one target at a time, `native` one stroke at one velocity")
+        .help("write `mode = step_and_pause`, or run the plan on a virtual rig")
+}
+
+pub fn stops_on_the_way(field: &str, span: Span, mode: Span) -> Diagnostic {
+    Diagnostic::new(Code::StopsOnTheWay, format!("`{field}` stops the actuator, and `continuous` never does"))
+        .at(span, "would stop it")
+        .at(mode, "does not stop")
+        .help(format!("leave `{field}` out, or write `mode = step_and_pause`"))
+}
+
+pub fn damping_twice(computed: Span, felt: Span) -> Diagnostic {
+    let message = "damping counts twice: in continuous mode the damper of the specimen is in the force that is read";
+    Diagnostic::new(Code::DampingTwice, message)
+        .at(computed, "computed here")
+        .at(felt, "and felt here, at the speed of the actuator")
+        .help("leave the procedure's `damping` out, or make it what the specimen's does not show: its damping is felt divided by the time scale")
+}

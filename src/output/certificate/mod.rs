@@ -10,6 +10,7 @@ mod equipment;
 mod frames;
 mod head;
 mod marks;
+mod method;
 mod particulars;
 mod results;
 

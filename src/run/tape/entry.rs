@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::mechanics::path::Path;
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
 
@@ -101,6 +102,9 @@ pub struct IntentBody {
     pub wire: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u64>,
+    /// Of a smooth way without a stop: its ends, their velocities, and the time between them; `samples` stands beside it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<Vec<Path>>,
     /// Of a stroke read on the way: how many readings, at most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,

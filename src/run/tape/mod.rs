@@ -17,7 +17,8 @@ mod played;
 mod rig;
 mod state;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
+mod way;
 
 pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_rig};
 pub use entry::{AmendBody, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody, StrokeBody};

@@ -6,6 +6,8 @@ use std::rc::Rc;
 
 use super::entry::{Call, Doubt, FaultBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped};
 use super::state::{State, ended};
+use super::way::Way;
+use crate::mechanics::path::Path;
 use crate::record::journal::EntryKind;
 use crate::rig::failpoint::{self, Guarding};
 use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally};
@@ -13,13 +15,13 @@ use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading,
 /// A rig whose every answer is on record.
 pub struct TapedRig<'rig> {
     /// None while a record is only played back.
-    live: Option<&'rig mut dyn Rig>,
-    state: Rc<RefCell<State>>,
+    pub(super) live: Option<&'rig mut dyn Rig>,
+    pub(super) state: Rc<RefCell<State>>,
     about: RigBody,
     /// Proposed, and not carried out: targets as asked, speed as asked, and what the rig made of them.
     pending: Option<(Vec<f64>, Option<f64>, Offer)>,
     /// Rig time of the record less the rig's own, s.
-    offset: Option<f64>,
+    pub(super) offset: Option<f64>,
 }
 
 impl<'rig> TapedRig<'rig> {
@@ -38,7 +40,7 @@ impl<'rig> TapedRig<'rig> {
     }
 
     /// The rig itself, once the record is played.
-    fn rig(&mut self) -> Result<&mut (dyn Rig + 'rig), RigFault> {
+    pub(super) fn rig(&mut self) -> Result<&mut (dyn Rig + 'rig), RigFault> {
         self.state.borrow().healthy()?;
         let rig = self.live.as_deref_mut().ok_or_else(ended)?;
         if self.offset.is_none() {
@@ -48,7 +50,7 @@ impl<'rig> TapedRig<'rig> {
     }
 
     /// Puts on record what was mended on the lines since the record last said so.
-    fn count(&self) -> Result<(), RigFault> {
+    pub(super) fn count(&self) -> Result<(), RigFault> {
         let Some(rig) = self.live.as_deref() else { return Ok(()) };
         self.state.borrow_mut().count(rig.tally())
     }
@@ -63,7 +65,7 @@ impl<'rig> TapedRig<'rig> {
     }
 
     /// Records that a call failed, and gives its fault on.
-    fn failed<T>(&mut self, call: Call, fault: RigFault) -> Result<T, RigFault> {
+    pub(super) fn failed<T>(&mut self, call: Call, fault: RigFault) -> Result<T, RigFault> {
         let t = self.now();
         let mut state = self.state.borrow_mut();
         state.time = t;
@@ -73,7 +75,7 @@ impl<'rig> TapedRig<'rig> {
         Err(fault)
     }
 
-    fn record_intent(&mut self, intent: &mut IntentBody) -> Result<(), RigFault> {
+    pub(super) fn record_intent(&mut self, intent: &mut IntentBody) -> Result<(), RigFault> {
         let mut state = self.state.borrow_mut();
         intent.n = state.next_target();
         intent.t = state.time;
@@ -83,7 +85,7 @@ impl<'rig> TapedRig<'rig> {
     }
 
     /// Sends a target that the record has already.
-    fn send_again(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+    pub(super) fn send_again(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         let rig = self.rig()?;
         let sent = rig.propose(targets, speed).and_then(|_| rig.execute());
         sent.or_else(|fault| self.failed(Call::Execute, fault))
@@ -113,7 +115,7 @@ impl<'rig> TapedRig<'rig> {
     }
 
     /// The readings of a stroke, up to its end or to where it failed.
-    fn played_stroke(&self, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+    pub(super) fn played_stroke(&self, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         let mut taken = 0;
         loop {
             if let Some(fault) = self.state.borrow_mut().played_fault(Call::Traverse) {
@@ -245,49 +247,11 @@ impl Rig for TapedRig<'_> {
     }
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
-        if self.state.borrow().playing() {
-            self.played_intent(targets, Some(velocity), Some(samples))?;
-            self.state.borrow_mut().consume();
-            return self.played_stroke(samples, each);
-        }
-        self.rig()?;
-        let doubt = self.state.borrow_mut().take_doubt();
-        if let Some(Doubt::Stroke { back_to }) = doubt {
-            self.send_again(&[back_to], None)?;
-        }
-        let offer = Offer { targets: targets.to_vec(), speed: velocity, wire: Vec::new(), move_id: None };
-        self.record_intent(&mut intent(targets, Some(velocity), &offer, Some(samples)))?;
-        self.rig()?;
-        let (offset, state) = (self.offset.unwrap_or(0.0), Rc::clone(&self.state));
-        let Some(rig) = self.live.as_deref_mut() else { return Err(ended()) };
-        // A refusal of the guard, or of the record, is not the rig's fault, and comes out again when the record is played.
-        let (mut refused, mut taken) = (false, 0);
-        let traversed = rig.traverse(targets, velocity, samples, &mut |reading| {
-            let recorded = finite(Reading { time: reading.time + offset, ..reading }).and_then(|reading| {
-                append_sample(&mut state.borrow_mut(), &reading)?;
-                Ok(reading)
-            });
-            recorded.and_then(|reading| {
-                (refused, taken) = (true, taken + 1);
-                each(reading)?;
-                refused = false;
-                Ok(())
-            })
-        });
-        match traversed {
-            Err(fault) if !refused => self.failed(Call::Traverse, fault),
-            Err(refusal) => {
-                self.state.borrow_mut().promise()?;
-                Err(refusal)
-            }
-            Ok(()) => {
-                self.count()?;
-                let mut state = self.state.borrow_mut();
-                let stroke = StrokeBody { t: state.time, samples: taken };
-                state.append(EntryKind::Stroke, &stroke)?;
-                state.promise()
-            }
-        }
+        self.take_way(&Way::Stroke(targets, velocity), samples, each)
+    }
+
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.take_way(&Way::Paths(paths), samples, each)
     }
 
     fn hold(&mut self) {
@@ -351,7 +315,7 @@ fn nobody() -> RigBody {
     RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), own_speed: None, last_move: None }
 }
 
-fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<usize>) -> IntentBody {
+pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<usize>) -> IntentBody {
     IntentBody {
         n: 0,
         t: 0.0,
@@ -361,12 +325,13 @@ fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<us
         rate: offer.speed,
         wire: (!offer.wire.is_empty()).then(|| escaped(&offer.wire)),
         id: offer.move_id,
+        path: None,
         samples,
         wall: None,
     }
 }
 
-fn append_sample(state: &mut State, reading: &Reading) -> Result<(), RigFault> {
+pub(super) fn append_sample(state: &mut State, reading: &Reading) -> Result<(), RigFault> {
     state.time = reading.time;
     let sample = SampleBody {
         t: reading.time,
@@ -379,7 +344,7 @@ fn append_sample(state: &mut State, reading: &Reading) -> Result<(), RigFault> {
 }
 
 /// A reading that is no number is a fault of the rig, with the numbers as they came.
-fn finite(reading: Reading) -> Result<Reading, RigFault> {
+pub(super) fn finite(reading: Reading) -> Result<Reading, RigFault> {
     let numbers = || reading.displacement.iter().chain(&reading.force);
     if numbers().all(|value| value.is_finite()) {
         return Ok(reading);
@@ -387,6 +352,6 @@ fn finite(reading: Reading) -> Result<Reading, RigFault> {
     Err(RigFault::Device(format!("a reading is no number: {:?}", numbers().collect::<Vec<_>>())))
 }
 
-fn bits(values: &[f64]) -> Vec<u64> {
+pub(super) fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
 }

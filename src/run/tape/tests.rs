@@ -166,7 +166,7 @@ fn plan() -> Plan {
     )
 }
 
-fn header() -> Header {
+pub(crate) fn header() -> Header {
     Header {
         run_id: "0123456789abcdef".to_owned(),
         psd: "0".to_owned(),

@@ -9,8 +9,8 @@ use psd::mechanics::monitor::Tracking;
 use psd::output::{Provenance, Run};
 use psd::plan::{
     Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure, FigureKind, Impact,
-    InspectTrigger, Integrator, Interval, Limits, Link, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report, Requirement,
-    RigPlan, Settle, Specimen, StiffnessRamp, Striker, Test, Until, VirtualLink,
+    InspectTrigger, Integrator, Interval, Limits, Link, Mode, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report,
+    Requirement, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
 use psd::record::{
@@ -302,6 +302,7 @@ fn plan() -> Plan {
                 integrator: Integrator::Tangent,
                 allow_unstable: false,
                 i_modification: false,
+                mode: Mode::StepAndPause,
                 time_step: constant(TIME_STEP),
                 duration: constant(0.4),
                 until: Until::StrikerStop,

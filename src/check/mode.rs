@@ -1,0 +1,40 @@
+//! `mode = …` of a procedure that integrates: whether the actuator stops at every target. In: a block. Out: the mode, or
+//! why it cannot be, and a warning where damping would count twice.
+
+use super::checker::Checker;
+use super::faults::methods as fault;
+use crate::plan::{Impact, Mode, Specimen};
+use crate::schema::Kind;
+
+/// The mode a block names, else step and pause.
+pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
+    let Some((entry, written)) = checker.given(block, "mode") else { return Some(Mode::StepAndPause) };
+    let (place, at) = (checker.place(block, entry), written.value.span);
+    let chosen = checker.choice(block, "mode")?;
+    if chosen.variant.name == "step_and_pause" {
+        return Some(Mode::StepAndPause);
+    }
+    let time_scale = checker.constant_argument(&chosen, "time_scale", place)?;
+    if checker.real_rig.is_some() {
+        return checker.fail(fault::continuous_on_a_real_rig(at));
+    }
+    let stops = ["pause", "inspect"].into_iter().find_map(|field| checker.given(block, field).map(|(_, entry)| (field, entry)));
+    if let Some((field, entry)) = stops {
+        return checker.fail(fault::stops_on_the_way(field, entry.span, at));
+    }
+    Some(Mode::Continuous { time_scale })
+}
+
+/// The material's damping is in the force of a continuous run already.
+pub fn damping_twice(checker: &mut Checker, block: usize, impact: &Impact, specimen: Option<&Specimen>) {
+    let computed = impact.damping.constant().is_none_or(|damping| damping > 0.0);
+    let felt = specimen.is_some_and(|specimen| specimen.damping > 0.0);
+    if !(computed && felt && matches!(impact.mode, Mode::Continuous { .. })) {
+        return;
+    }
+    let of_specimen = checker.scope.of_kind(Kind::Specimen).nth(impact.specimen).map(|(index, _)| index);
+    let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
+    if let (Some(computed), Some(felt)) = (at(block, "damping"), of_specimen.and_then(|index| at(index, "damping"))) {
+        checker.faults.push(fault::damping_twice(computed, felt));
+    }
+}

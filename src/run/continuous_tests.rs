@@ -1,0 +1,166 @@
+//! Continuous runs on the virtual rig: beside step and pause, against closed forms, and played back from their record.
+
+use super::testing::{elastic_plan, impact, run_unwatched};
+use crate::formula::Formula::Constant;
+use crate::plan::{Impact, Integrator, Interval, Link, Mode, Move, Plan, ProcedureKind, Until, VirtualLink};
+use crate::record::{History, ImpactStep, Outcome, Record};
+
+const STIFFNESS: f64 = 300.0;
+const SCALE: f64 = 100.0;
+
+fn steps(record: &Record) -> &[ImpactStep] {
+    assert_eq!(record.outcome, Outcome::Completed);
+    match &record.procedures.last().unwrap().history {
+        History::Impact(impact) => &impact.steps,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Let go at 10 mm from rest, with the striker out of reach, for half a second.
+fn let_go(mode: Mode, damping: f64, coulomb: f64, time_step: f64) -> Plan {
+    let blow = Impact {
+        mode,
+        integrator: Integrator::Explicit,
+        i_modification: mode != Mode::StepAndPause,
+        time_step: Constant(time_step),
+        duration: Constant(0.5),
+        until: Until::Duration,
+        ..impact(Constant(STIFFNESS))
+    };
+    let out = Move { to: Constant(0.01), speed: None };
+    let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Move(out), ProcedureKind::Impact(blow)]);
+    plan.strikers[0].gap = 1000.0;
+    plan.specimens[0].damping = damping;
+    plan.specimens[0].coulomb = coulomb;
+    plan
+}
+
+const CONTINUOUS: Mode = Mode::Continuous { time_scale: SCALE };
+
+/// Energy that has gone out of the structure by the end, J: what it began with less what it has.
+fn lost(plan: &Plan) -> f64 {
+    let record = run_unwatched(plan);
+    let last = steps(&record).last().unwrap();
+    0.5 * STIFFNESS * (1e-4 - last.computed * last.computed) - 0.5 * last.velocity * last.velocity
+}
+
+/// A damper of c on the cell acts as C = c/scale: E(t) of d'' + (C/M)d' + (K/M)d = 0 in closed form, M = 1 kg.
+#[test]
+fn a_damper_takes_what_the_closed_form_says_and_step_and_pause_shows_none_of_it() {
+    let (damper, end) = (50.0, 0.5);
+    let rate = damper / SCALE / 2.0;
+    let damped = f64::sqrt(STIFFNESS - rate * rate);
+    let decay = 0.01 * f64::exp(-rate * end);
+    let (sine, cosine) = ((damped * end).sin(), (damped * end).cos());
+    let place = decay * (cosine + rate / damped * sine);
+    let velocity = -decay * (damped + rate * rate / damped) * sine;
+    let exact = 0.5 * STIFFNESS * (1e-4 - place * place) - 0.5 * velocity * velocity;
+    assert!(exact > 0.15 * 0.5 * STIFFNESS * 1e-4, "enough to be seen");
+    let error = |time_step| lost(&let_go(CONTINUOUS, damper, 0.0, time_step)) - exact;
+    let (coarse, fine) = (error(1e-3), error(5e-4));
+    assert!((coarse / fine).log2() > 0.9, "{coarse} J, {fine} J");
+    assert!(fine.abs() < 2e-3 * exact, "{fine} J of {exact} J");
+    assert!(lost(&let_go(Mode::StepAndPause, damper, 0.0, 5e-4)).abs() < 1e-4 * exact);
+}
+
+/// Friction takes F_c over all the way that was gone, in either mode: the cell keeps its sign through a pause.
+#[test]
+fn friction_takes_its_force_times_the_way() {
+    let friction = 0.05;
+    for mode in [CONTINUOUS, Mode::StepAndPause] {
+        let plan = let_go(mode, 0.0, friction, 5e-4);
+        let record = run_unwatched(&plan);
+        let way: f64 = steps(&record).windows(2).map(|pair| (pair[1].computed - pair[0].computed).abs()).sum();
+        let found = lost(&plan);
+        assert!((found - friction * way).abs() < 0.02 * friction * way, "{mode:?}: {found} J of {} J", friction * way);
+    }
+}
+
+/// Without damping an ideal rig is asked for the same targets, and reads the same forces there, in either mode: the paper's
+/// first example too, with its blows.
+#[test]
+fn without_damping_both_modes_are_the_same_run() {
+    let by = |mode| {
+        let blow = Impact {
+            mode,
+            integrator: Integrator::Explicit,
+            i_modification: mode != Mode::StepAndPause,
+            time_step: Constant(1e-3),
+            ..impact(Constant(327.65))
+        };
+        run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(blow)]))
+    };
+    let (one, other) = (by(CONTINUOUS), by(Mode::StepAndPause));
+    assert_eq!(steps(&one).len(), steps(&other).len());
+    for (one, other) in steps(&one).iter().zip(steps(&other)) {
+        assert!((one.command - other.command).abs() < 1e-14 && (one.restoring_force - other.restoring_force).abs() < 1e-11);
+        assert_eq!(one.state, other.state);
+    }
+    // A step takes the time scale times Δt of the rig's time, whatever way it goes.
+    let wall: Vec<f64> = steps(&one).iter().map(|step| step.wall_time).collect();
+    assert!(wall.windows(2).all(|pair| (pair[1] - pair[0] - 0.1).abs() < 1e-9), "{wall:?}");
+}
+
+/// A lag leaves the piston v·lag behind its target: corrected to it, the run is near the ideal one; read as it stands, the
+/// lag feeds energy in, and the monitor holds the rig.
+#[test]
+fn the_reading_is_corrected_to_the_target() {
+    let lagging = |correct: bool| {
+        let mut plan = let_go(CONTINUOUS, 0.0, 0.0, 5e-4);
+        plan.rig.link = Link::Virtual(VirtualLink { lag: 0.1, ..VirtualLink::default() });
+        // The striker flies by: its energy is what the shares are of.
+        plan.limits.tracking_energy_error = Interval { low: 0.0, high: 1e6 };
+        if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
+            blow.i_modification = correct;
+        }
+        plan
+    };
+    let start = 0.5 * STIFFNESS * 1e-4;
+    let (corrected, raw) = (lost(&lagging(true)), lost(&lagging(false)));
+    assert!(corrected.abs() < 0.01 * start, "{corrected} J of {start} J");
+    // x(t) is read at x(t − lag/scale): C = −K·lag/scale, and the energy grows by exp(K·lag/scale·t).
+    let grown = f64::exp(STIFFNESS * 0.1 / SCALE * 0.5) - 1.0;
+    assert!((-raw / start - grown).abs() < 0.1 * grown, "{} against {grown}", -raw / start);
+}
+
+#[test]
+fn a_continuous_run_is_stopped_on_its_way_by_what_is_read_there() {
+    let mut plan = let_go(CONTINUOUS, 50.0, 0.0, 1e-3);
+    plan.limits.speed = Interval { low: 0.0, high: 1e-3 };
+    let record = run_unwatched(&plan);
+    assert!(matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains("speed")), "{:?}", record.outcome);
+    let mut plan = let_go(CONTINUOUS, 50.0, 0.0, 1e-3);
+    plan.limits.force = Interval { low: -1.0, high: 10.0 };
+    let record = run_unwatched(&plan);
+    assert!(matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains("force")), "{:?}", record.outcome);
+}
+
+/// What was recorded of a continuous run is the run: played back, the same to the last bit; with one bit of a path turned,
+/// another one.
+#[test]
+fn a_continuous_run_is_played_back_from_its_record() {
+    use crate::record::journal::testing::PowerLoss;
+    use crate::record::journal::{Durability, EntryKind, Journal, recover};
+    use crate::rig::VirtualRig;
+    use crate::run::Unwatched;
+    use crate::run::tape::{Played, begin, record, replay};
+
+    let mut plan = let_go(CONTINUOUS, 50.0, 0.05, 5e-3);
+    plan.rig.link = Link::Virtual(VirtualLink { lag: 0.02, noise: 0.01, seed: 5, ..VirtualLink::default() });
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    begin(&mut journal, &crate::run::tape::tests::header(), &["text".to_owned()]).unwrap();
+    let mut rig = VirtualRig::of_plan(&plan);
+    let whole = record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
+    assert_eq!(whole.record.outcome, Outcome::Completed, "{:?}", whole.record.events);
+    let recovered = recover(&disk.written()).unwrap();
+    let again = replay(&plan, Played::of(&recovered).unwrap());
+    assert_eq!(again.mismatch, None);
+    assert_eq!(format!("{:?}", again.record), format!("{:?}", whole.record));
+
+    let path = recovered.lines.iter().rposition(|line| line.kind == EntryKind::Intent && !line.body["path"].is_null()).unwrap();
+    let mut forged = recovered;
+    let velocity = forged.lines[path].body["path"][0]["start_velocity"].as_f64().unwrap();
+    forged.lines[path].body["path"][0]["start_velocity"] = serde_json::json!(f64::from_bits(velocity.to_bits() ^ 1));
+    assert!(replay(&plan, Played::of(&forged).unwrap()).mismatch.is_some());
+}
