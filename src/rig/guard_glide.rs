@@ -66,7 +66,7 @@ mod tests {
         paths.iter().find_map(|path| guard.glide(&[*path], 5).fault)
     }
 
-    fn quantity(fault: &Option<RigFault>) -> Option<LimitedQuantity> {
+    fn quantity(fault: Option<&RigFault>) -> Option<LimitedQuantity> {
         match fault {
             Some(RigFault::LimitBreached { quantity, .. }) => Some(*quantity),
             _ => None,
@@ -92,9 +92,9 @@ mod tests {
         let turn = Path::accelerated(first.to, 0.1, -2.0, 0.1);
         let within = |high| Limits { displacement: Interval { low: -0.01, high }, ..Limits::NONE };
         assert_eq!(glided(within(0.008), &[first, turn]), None);
-        assert_eq!(quantity(&glided(within(0.007), &[first, turn])), Some(LimitedQuantity::TargetDisplacement));
+        assert_eq!(quantity(glided(within(0.007), &[first, turn]).as_ref()), Some(LimitedQuantity::TargetDisplacement));
         let slow = |high| Limits { speed: Interval { low: 0.0, high }, ..Limits::NONE };
         assert_eq!(glided(slow(0.101), &[first, turn]), None);
-        assert_eq!(quantity(&glided(slow(0.099), &[first])), Some(LimitedQuantity::Speed));
+        assert_eq!(quantity(glided(slow(0.099), &[first]).as_ref()), Some(LimitedQuantity::Speed));
     }
 }
