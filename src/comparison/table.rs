@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn two_runs_have_a_difference_and_more_a_spread() {
         let two = cells(&row(&[(0.008, Some(3e-5)), (0.0081, Some(4e-5))]));
-        assert_eq!(two, ["8.000 mm ± 0.030", "8.100 mm ± 0.040", "+0.100 mm", "+1.25 %", "+2.00 u"]);
+        assert_eq!(two, ["8.000 mm ± 0.030", "8.100 mm ± 0.040", "+0.1000 mm", "+1.25 %", "+2.00 u"]);
         let three = cells(&row(&[(0.001, None), (0.002, None), (0.003, None)]));
         assert_eq!(three[3..], ["3", "2.000 mm", "1.000 mm", "50.0 %"]);
         assert_eq!(cells(&row(&[(1.0, None), (1.0, None)]))[2..], ["0", "0 %", ""]);

@@ -11,18 +11,21 @@ use super::words::Words;
 /// # Errors
 /// Never in practice: the report is written to memory.
 pub fn junit(report: &Report) -> Result<String, quick_junit::SerializeError> {
-    let mut junit = Junit::new("psd test");
+    // A suite is counted when it is added: it is whole by then.
+    let mut suites: Vec<TestSuite> = Vec::new();
     for tested in &report.tested {
         let (folder, name) = tested.name.rsplit_once('/').unwrap_or((".", &tested.name));
-        if junit.test_suites.last().is_none_or(|suite| suite.name.as_str() != folder) {
-            junit.add_test_suite(TestSuite::new(folder));
+        if suites.last().is_none_or(|suite| suite.name.as_str() != folder) {
+            suites.push(TestSuite::new(folder));
         }
-        if let Some(suite) = junit.test_suites.last_mut() {
+        if let Some(suite) = suites.last_mut() {
             let mut case = TestCase::new(name, status(tested));
             case.set_classname(folder);
             suite.add_test_case(case);
         }
     }
+    let mut junit = Junit::new("psd test");
+    junit.add_test_suites(suites);
     junit.to_string()
 }
 

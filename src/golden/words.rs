@@ -167,7 +167,7 @@ mod tests {
         assert_eq!((told.change.as_str(), told.by.as_str()), ("7.8800 mm → 7.9120 mm", "+32.0 µm  +0.406 %"));
         assert_eq!(told.detail, "tolerance 1 × 10⁻⁹ of 7.912 mm");
         let near = words(Change::Moved(moved(Some(1000.0), Some(1000.0 + 1e-4), Dimension::FORCE)));
-        assert_eq!((near.change.as_str(), near.by.as_str()), ("1.000000000 kN → 1.000000100 kN", "+0.000100 N  +0.0000100 %"));
+        assert_eq!((near.change.as_str(), near.by.as_str()), ("1.000000000 kN → 1.000000100 kN", "+0.0001000 N  +1.00 × 10⁻⁵ %"));
         let gone = words(Change::Moved(moved(Some(3.0), None, Dimension::NUMBER)));
         assert_eq!((gone.change.as_str(), gone.by.as_str()), ("3 → no value", ""));
     }

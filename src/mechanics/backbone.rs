@@ -162,6 +162,8 @@ mod tests {
         assert!((fit.force(0.02) - y[39]).abs() < 1e-5);
     }
 
+    type Read = fn(&BilinearFit) -> f64;
+
     /// The spread of a thousand fits is the standard error that each of them states.
     #[test]
     fn its_standard_errors_are_the_spread_of_many_fits() {
@@ -179,7 +181,6 @@ mod tests {
                 fit_bilinear(&x, &y).unwrap()
             })
             .collect();
-        type Read = fn(&BilinearFit) -> f64;
         let readings: [(Read, Read, f64); 4] = [
             (|fit| fit.stiffness, |fit| fit.stiffness_error, 4e5),
             (|fit| fit.hardened, |fit| fit.hardened_error, 3.2e4),

@@ -18,7 +18,7 @@ pub(super) fn columns(steps: &[ShakeStep]) -> (usize, Vec<Column>) {
         numbers("ground_acceleration_m_per_s2", |row| row.step.ground_acceleration),
         numbers("command_m", |row| row.step.command[row.floor]),
         numbers("displacement_m", |row| row.step.displacement[row.floor]),
-        numbers("computed_displacement_m", |row| row.step.computed[row.floor]),
+        numbers("computed_m", |row| row.step.computed[row.floor]),
         numbers("velocity_m_per_s", |row| row.step.velocity[row.floor]),
         numbers("acceleration_m_per_s2", |row| row.step.acceleration[row.floor]),
         numbers("restoring_force_n", |row| row.step.restoring_force[row.floor]),

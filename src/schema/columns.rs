@@ -85,6 +85,28 @@ const CYCLE: &[Column] = &[
     column("min_force_n", Dimension::FORCE),
 ];
 
+/// One row a step and storey; the energies are those of the whole frame.
+const SHAKE: &[Column] = &[
+    STEP,
+    column("storey", Dimension::NUMBER),
+    TIME,
+    WALL_TIME,
+    column("ground_acceleration_m_per_s2", Dimension::ACCELERATION),
+    COMMAND,
+    DISPLACEMENT,
+    column("computed_m", Dimension::LENGTH),
+    VELOCITY,
+    column("acceleration_m_per_s2", Dimension::ACCELERATION),
+    RESTORING_FORCE,
+    column("drift_m", Dimension::LENGTH),
+    column("storey_shear_n", Dimension::FORCE),
+    column("kinetic_energy_j", Dimension::ENERGY),
+    column("restoring_energy_j", Dimension::ENERGY),
+    column("damping_energy_j", Dimension::ENERGY),
+    column("input_energy_j", Dimension::ENERGY),
+    column("energy_error_j", Dimension::ENERGY),
+];
+
 /// Of its blows; each blow has the table of an impact besides.
 const ESCALATE: &[Column] = &[
     column("blow", Dimension::NUMBER),
@@ -110,6 +132,7 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
         Kind::DampingSweep => (SWEEP, &[]),
         Kind::Impact => (IMPACT, &[]),
         Kind::Cycle => (CYCLE, &[]),
+        Kind::Shake => (SHAKE, &[]),
         Kind::Escalate => (ESCALATE, IMPACT),
         _ => (&[], &[]),
     };

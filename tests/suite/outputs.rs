@@ -17,7 +17,7 @@ use psd::verdict::Verdict;
 
 const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,computed_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
 restoring_force_n,contact_force_n,striker_displacement_m,striker_velocity_m_per_s,tangent_stiffness_n_per_m,indentation_m,\
-striker_energy_j,structure_energy_j,restoring_energy_j,damping_energy_j,contact_loss_j,indentation_energy_j,energy_error_j,\
+striker_energy_j,structure_energy_j,restoring_energy_j,damping_energy_j,contact_loss_j,indentation_energy_j,weight_work_j,energy_error_j,\
 tracking_energy_error_j,tracking_indicator_m2";
 
 fn files(finished: &Finished) -> Vec<OutputFile> {
@@ -112,7 +112,7 @@ fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
 }
 
 /// The numbers of a row in the order of the columns, step and state apart.
-fn row(step: &ImpactStep) -> [f64; 22] {
+fn row(step: &ImpactStep) -> [f64; 23] {
     let e = step.energies;
     [
         step.time,
@@ -134,6 +134,7 @@ fn row(step: &ImpactStep) -> [f64; 22] {
         e.damping,
         e.contact_loss,
         e.indentation,
+        e.weight,
         e.error,
         step.tracking.energy_error,
         step.tracking.indicator,

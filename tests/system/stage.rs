@@ -27,9 +27,10 @@ limits {
 }
 
 rig bench {
-  link       = serial(port: "PORT", dialect: native)
+  link       = serial(port: "PORT", dialect: native, reply_timeout: 2 s)
   settle     = within(0.01 mm, 1000 N/s, for: 0.01 s, timeout: 20 s)
   safe_state = hold
+  watchdog   = 30 s
   rate       = 500 Hz
   samples    = 1
   speed      = 20 mm/s
