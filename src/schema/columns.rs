@@ -128,7 +128,7 @@ const ESCALATE: &[Column] = &[
 /// The numeric columns of a procedure's tables; none where it has none.
 pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
     let (own, more): (&[Column], &[Column]) = match kind {
-        Kind::StiffnessRamp | Kind::Move => (RAMP, &[]),
+        Kind::StiffnessRamp | Kind::Move | Kind::Unload => (RAMP, &[]),
         Kind::DampingSweep => (SWEEP, &[]),
         Kind::Impact => (IMPACT, &[]),
         Kind::Cycle => (CYCLE, &[]),

@@ -186,7 +186,8 @@ fn the_blessed_reports_are_true() {
         psd_run(&root().join(format!("plans/{plan}.psd")), &out, &[]);
         let blessed = root().join("reports").join(plan);
         compare(&summary(&out), &summary(&blessed), plan);
-        for name in files(&blessed).keys() {
+        // What the figures plot is written where results are blessed, not by a run.
+        for name in files(&blessed).keys().filter(|name| *name != "figures.json") {
             assert!(out.join(name).exists(), "reports/{plan}/{name} is no longer written by a run");
         }
         for name in files(&blessed).keys().filter(|name| name.starts_with("tables/")) {
