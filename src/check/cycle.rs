@@ -82,7 +82,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
     }
 }
 
-/// What FEMA 461 (2007), sec. 2.9.1, multiplies an amplitude by to give the next.
+/// The ratio of one amplitude to the one before in protocols like that of FEMA 461 (2007).
 const FEMA_RATIO: f64 = 1.4;
 /// Cycles that it runs at each amplitude.
 const FEMA_CYCLES: u32 = 2;
