@@ -71,6 +71,7 @@ require "stiffness recovered" k0.stiffness within 1 % of 100 kN/m
 
 report {
   figures = []
+  formats = [html, csv]
 }
 "#;
 
