@@ -73,7 +73,7 @@ fn it_takes_no_byte_any_more() {
 
 #[test]
 fn the_program_was_away_for_longer_than_the_watchdog() {
-    let stage = Stage::of(|plan| plan.replace("watchdog   = 30 s", "watchdog   = 4 s"), "");
+    let stage = Stage::of(|plan| plan.replace("watchdog   = 30 s", "watchdog   = 4 s").replace(", reply_timeout: 2 s", ""), "");
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(10);
     signal(&run, Signal::STOP);
