@@ -4,7 +4,7 @@
 
 use crate::formula::ResultValue;
 use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
-use crate::record::{History, Record};
+use crate::record::{History, RampHistory, Record};
 use crate::rig::VirtualRig;
 
 /// The particular of a plan that says it is a rehearsal, and of what.
@@ -85,10 +85,19 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
             _ => return Err(Unrehearsed::NoStiffness(procedure.name.clone())),
         };
         if let Some(specimen) = model.specimens.get_mut(ramp.specimen) {
-            specimen.behaviour = Some(as_stiff_as(stiffness, specimen));
+            specimen.behaviour = Some(curve_of(&record.history).unwrap_or_else(|| as_stiff_as(stiffness, specimen)));
         }
     }
     Ok(model)
+}
+
+/// The specimen that a ramp past yield measured, where its fitted curve is one: as it yielded, not as the plan expected.
+fn curve_of(history: &History) -> Option<Behaviour> {
+    let History::Ramp(RampHistory { steps, multilinear: Some(fit), .. }) = history else { return None };
+    let reach =
+        steps.iter().map(|step| step.displacement).fold(0.0, |most, x| if fit.way * x > fit.way * most { x } else { most });
+    let corners = fit.corners(reach).filter(|corners| corners.len() > 1)?;
+    Some(Behaviour::Multilinear { corners })
 }
 
 /// A specimen of the measured stiffness (N/m): the expected one with every force in that proportion, so that it yields and
