@@ -159,7 +159,9 @@ fn stated(
     let covariance = scaled_inverse(&normal)? * (line.squares / freedom);
     let error = |effect: &[(usize, f64)]| {
         let mut all = DVector::<f64>::zeros(size);
-        effect.iter().for_each(|(index, by)| all[*index] += by);
+        for (index, by) in effect {
+            all[*index] += by;
+        }
         (all.transpose() * &covariance * all)[(0, 0)].max(0.0).sqrt()
     };
     let stiffness = strong / far;

@@ -39,14 +39,17 @@ fn remarks(fit: Option<&MultilinearFit>, count: BreakCount, points: usize, what:
     told
 }
 
+/// Of a number and its standard error.
+type Part = fn(&(f64, f64)) -> f64;
+
 /// The lists of a curve, in the order of the reference; empty without one.
 pub(super) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
-    let list = |name, dimension, values: fn(&MultilinearFit) -> &[(f64, f64)], part: fn(&(f64, f64)) -> f64| NamedResult {
+    let list = |name, dimension, values: fn(&MultilinearFit) -> &[(f64, f64)], part: Part| NamedResult {
         name,
         value: ResultValue::List(fit.map(|fit| values(fit).iter().map(part).collect()).unwrap_or_default()),
         dimension,
     };
-    let (value, error): (fn(&(f64, f64)) -> f64, fn(&(f64, f64)) -> f64) = (|pair| pair.0, |pair| pair.1);
+    let (value, error): (Part, Part) = (|pair| pair.0, |pair| pair.1);
     vec![
         list("breaks", Dimension::LENGTH, |fit| &fit.breaks, value),
         list("break_uncertainties", Dimension::LENGTH, |fit| &fit.breaks, error),
