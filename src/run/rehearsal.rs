@@ -127,7 +127,7 @@ mod tests {
     use super::super::testing::{elastic_plan, impact, ramp, result_of, run_unwatched};
     use super::*;
     use crate::formula::Formula::Constant;
-    use crate::plan::{InspectTrigger, Move};
+    use crate::plan::{BreakCount, InspectTrigger, Move, RampFit};
 
     fn plan() -> Plan {
         let mut blow = impact(result_of(1, "stiffness"));
@@ -171,6 +171,16 @@ mod tests {
         let model = prediction(&expected, &record).unwrap();
         let Some(Behaviour::Bilinear { stiffness, yield_force, hardening }) = model.specimens[0].behaviour else { panic!() };
         assert!((stiffness - 320.0).abs() < 1e-9 && (yield_force / stiffness - 0.1).abs() < 1e-12 && hardening == 0.1);
+        // A ramp past yield measured how it yields, whatever the plan expects: here 250 N/m and 30 N, a twentieth on.
+        let mut yielding = measured_part(&plan()).unwrap();
+        yielding.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 250.0, yield_force: 30.0, hardening: 0.05 });
+        let mut curve = ramp(2.5e-2);
+        curve.fit = RampFit::Multilinear(BreakCount::ByCriterion { most: 4 });
+        yielding.procedures[1].kind = ProcedureKind::StiffnessRamp(curve);
+        let model = prediction(&expected, &run_unwatched(&yielding)).unwrap();
+        let Some(Behaviour::Multilinear { corners }) = &model.specimens[0].behaviour else { panic!() };
+        assert!((corners[0][0] - 0.12).abs() < 1e-9 && (corners[0][1] - 30.0).abs() < 1e-6, "{corners:?}");
+        assert!((corners[1][1] - 30.0 - 12.5 * 0.13).abs() < 1e-6, "{corners:?}");
         expected.specimens[0].behaviour = None;
         let model = prediction(&expected, &record).unwrap();
         assert!(

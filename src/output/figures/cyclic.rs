@@ -37,7 +37,11 @@ pub(super) fn backbone(history: &CycleHistory) -> Chart {
     let mut series = vec![Series {
         label: "first cycle of each amplitude".to_owned(),
         points: envelope(&mut first),
-        style: Style { marker: Some(Marker::Disc(3.6)), ..Style::line(palette::BLUE, 1.8, SOLID) },
+        // A fitted curve is the line through them.
+        style: match history.backbone {
+            Some(_) => Style::marker(palette::BLUE, Marker::Disc(3.6)),
+            None => Style { marker: Some(Marker::Disc(3.6)), ..Style::line(palette::BLUE, 1.8, SOLID) },
+        },
     }];
     if repeated {
         series.push(Series {
