@@ -14,6 +14,7 @@ pub mod identification;
 pub mod impact;
 pub mod integrator;
 pub mod law;
+pub mod maxwell;
 pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;

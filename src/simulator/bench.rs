@@ -7,6 +7,7 @@ use rand_pcg::rand_core::SeedableRng as _;
 
 use super::bench_fault::{BenchFault, BenchFaults};
 use crate::mechanics::damping::CellDamping;
+use crate::mechanics::maxwell::{Course, MaxwellBranch};
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Interval};
 
@@ -68,6 +69,8 @@ pub struct Bench {
     restoring_force: f64,
     /// What the cell feels beside it.
     damping: CellDamping,
+    /// What relaxes beside the specimen.
+    branches: Vec<MaxwellBranch>,
     faults: BenchFaults,
     /// Force readings so far.
     readings: u64,
@@ -86,6 +89,7 @@ impl Bench {
         let generator = Pcg64::seed_from_u64(settings.seed);
         let faults = BenchFaults::none(settings.seed);
         let damping = CellDamping::new(settings.damping, 0.0).with_rate_of(&settings.behaviour);
+        let branches = MaxwellBranch::all_of(&settings.behaviour);
         Self {
             settings,
             specimen,
@@ -98,6 +102,7 @@ impl Bench {
             speed: 0.0,
             restoring_force,
             damping,
+            branches,
             faults,
             readings: 0,
             violations: Vec::new(),
@@ -153,6 +158,12 @@ impl Bench {
         self.reached = if sound { self.position } else { self.reached + self.faults.reach * (self.position - before) };
         let follows = if self.faults.lag > 0.0 { -(-seconds / self.faults.lag).exp_m1() } else { 1.0 };
         let ram = if follows == 1.0 { self.reached } else { self.ram + follows * (self.reached - self.ram) };
+        // Evenly while it goes, the rest at rest; a ram that lags goes all the time.
+        let going = if follows == 1.0 && left != 0.0 { (left.abs() / self.speed).min(seconds) } else { seconds };
+        for branch in &mut self.branches {
+            branch.follow(&Course::even((ram - self.ram) / going, going));
+            branch.follow(&Course::rest(seconds - going));
+        }
         if ram != self.ram {
             self.ram = ram;
             self.restoring_force = self.faults.specimen_force(ram, self.specimen.move_to(ram));
@@ -214,7 +225,8 @@ impl Bench {
         self.readings += 1;
         let way = if self.moving() { (self.target - self.position).signum() } else { 0.0 };
         let noise = Normal::new(0.0, self.settings.noise).map_or(0.0, |normal| normal.sample(&mut self.generator));
-        let felt = self.damping.felt(self.restoring_force, self.speed * way) + noise;
+        let relaxing: f64 = self.branches.iter().map(MaxwellBranch::force).sum();
+        let felt = self.damping.felt(self.restoring_force, self.speed * way) + relaxing + noise;
         self.faults.read_force(felt, self.time)
     }
 

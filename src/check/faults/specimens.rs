@@ -63,10 +63,14 @@ pub fn too_many_parts(most: usize, what: &str, span: Span) -> Diagnostic {
         .help("put springs that stand together into one")
 }
 
-pub fn rate_inside(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::UnfitInside, "`rate` acts on the load cell, and there is one: it cannot stand inside another behaviour")
-        .at(span, "inside")
-        .help("write it around the whole: `rate(of: series(…), reference_velocity: …)`")
+/// `variant` is `rate` or `maxwell`.
+pub fn felt_inside(variant: &str, span: Span) -> Diagnostic {
+    let message = format!("`{variant}` acts on the load cell, and there is one: it cannot stand inside another behaviour");
+    let help = match variant {
+        "rate" => "write it around the whole: `rate(of: series(…), reference_velocity: …)`",
+        _ => "write it around the whole: `maxwell(of: series(…), stiffness: …, time_constant: …)`",
+    };
+    Diagnostic::new(Code::UnfitInside, message).at(span, "inside").help(help)
 }
 
 pub fn falls_in_series(span: Span, series: Span) -> Diagnostic {

@@ -31,9 +31,9 @@ impl VirtualRig {
         let course: Vec<(f64, f64, Rate, Rate)> =
             times.windows(2).map(|pair| (pair[1] - pair[0], reference(pair[1]), rate(pair[0]), rate(pair[1]))).collect();
         for (part, (seconds, to, before, after)) in course.into_iter().enumerate() {
-            self.actuator.run(to, before, after, seconds);
+            let course = self.actuator.run(to, before, after, seconds);
             self.time = began + times[part + 1];
-            self.follow();
+            self.follow(&course);
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();
