@@ -19,6 +19,9 @@ pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
+pub mod relaxation;
+#[cfg(test)]
+mod relaxation_tests;
 pub mod scheme;
 pub mod specimen;
 pub mod split;
