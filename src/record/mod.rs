@@ -16,6 +16,7 @@ use crate::mechanics::frame::{drifts, shears};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
+pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
@@ -136,7 +137,10 @@ pub struct RampHistory {
     pub fit: Option<LineFit>,
     /// Of a ramp past yield, where the plan asks for it.
     pub bilinear: Option<BilinearFit>,
-    pub multilinear: Option<MultilinearFit>,
+    pub multilinear: Option<Box<MultilinearFit>>,
+    /// Pauses that were watched, and what they tell.
+    pub holds: Vec<Hold>,
+    pub relaxation: Option<Box<RelaxationFit>>,
 }
 
 /// One reading of a damping sweep.

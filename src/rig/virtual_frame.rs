@@ -84,7 +84,9 @@ impl Structure {
         let mut below = None;
         for (branches, floor) in branches.iter_mut().zip(courses) {
             let drift = below.map_or(*floor, |below| floor.less(below));
-            branches.iter_mut().for_each(|branch| branch.follow(&drift));
+            for branch in branches {
+                branch.follow(&drift);
+            }
             below = Some(floor);
         }
     }

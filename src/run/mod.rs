@@ -13,6 +13,7 @@ mod escalate;
 #[cfg(test)]
 mod escalate_tests;
 mod gate;
+mod hold;
 mod impact;
 #[cfg(test)]
 mod impact_tests;

@@ -1,4 +1,4 @@
-//! Faults of specimens: E630 to E634, E649, and W715.
+//! Faults of specimens: E630 to E634, E649, E650, and W715.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -32,6 +32,12 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
         .at(most, "bounds a choice")
         .at(breaks, "that is made here")
         .help("remove `most`, or remove `breaks` and let the criterion choose")
+}
+
+pub fn relaxation_without_hold(relaxation: Span) -> Diagnostic {
+    Diagnostic::new(Code::RelaxationWithoutHold, "relaxation is read while the actuator holds, and this ramp has no `pause`")
+        .at(relaxation, "nothing to read")
+        .help("add `pause = 5 s`, for instance")
 }
 
 /// Two arguments of which one means nothing without the other.
