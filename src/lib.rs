@@ -17,6 +17,7 @@ pub mod suggest;
 pub mod syntax;
 
 pub mod formula;
+pub mod uncertainty;
 pub mod plan;
 pub mod schema;
 
