@@ -2,7 +2,7 @@
 //! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
 //! Out: an [`Estimate`], the value with its standard uncertainty.
 
-use crate::uncertainty::{Contribution, Moved, Source, sources_of};
+use crate::uncertainty::{Contribution, Moved, Source, combined, sources_of};
 
 /// Position of a procedure in the plan, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -131,16 +131,25 @@ impl Formula {
     /// A result that does not exist in this run, or a value that is not finite.
     pub fn evaluate(&self, results: &dyn Results, critical: Option<f64>) -> Result<Estimate, FormulaError> {
         let value = self.number(results, critical)?;
+        let uncertainty = combined(&self.contributions(results, critical)?);
+        Ok(Estimate { value, uncertainty })
+    }
+
+    /// What each source of the results it reads does to the value.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn contributions(&self, results: &dyn Results, critical: Option<f64>) -> Result<Vec<Contribution>, FormulaError> {
         let mut references = Vec::new();
         self.collect_references(&mut references);
-        let mut variance = None;
-        for source in sources_of(&references, results) {
+        let sources = sources_of(&references, results);
+        let effect = |source| {
             // Half the effect of moving the source by ±u: exact for a linear formula.
             let up = self.number(&Moved { results, source, by: 1.0 }, critical)?;
             let down = self.number(&Moved { results, source, by: -1.0 }, critical)?;
-            variance = Some(variance.unwrap_or(0.0) + (0.5 * (up - down)).powi(2));
-        }
-        Ok(Estimate { value, uncertainty: variance.map(f64::sqrt) })
+            Ok(Contribution::new(source, 0.5 * (up - down)))
+        };
+        sources.into_iter().map(effect).collect()
     }
 
     /// The value where no result is needed: constants folded by `check`.

@@ -16,6 +16,8 @@ pub mod law;
 pub mod method;
 pub mod monitor;
 pub mod path;
+pub mod recorded_path;
+pub mod rerun;
 pub mod scheme;
 pub mod specimen;
 pub mod split;
