@@ -17,9 +17,9 @@ pub mod suggest;
 pub mod syntax;
 
 pub mod formula;
-pub mod uncertainty;
 pub mod plan;
 pub mod schema;
+pub mod uncertainty;
 
 pub mod check;
 

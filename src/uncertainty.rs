@@ -10,7 +10,10 @@ use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
 pub enum Source {
     /// What a procedure's own scatter leaves open of a result; of one fitted together with others, what goes beyond those
     /// before it.
-    Fit { procedure: ProcedureId, result: &'static str },
+    Fit {
+        procedure: ProcedureId,
+        result: &'static str,
+    },
     /// By its place among the plan's strikers.
     StrikerMass(usize),
     StrikerVelocity(usize),
@@ -23,9 +26,14 @@ pub enum Source {
     /// The load cell's reading of no force.
     ForceZero,
     /// Noise and resolution of a procedure's readings: one of the draws by which they are sampled.
-    Readings { procedure: ProcedureId, draw: u16 },
+    Readings {
+        procedure: ProcedureId,
+        draw: u16,
+    },
     /// Times are told to a whole step.
-    TimeStep { procedure: ProcedureId },
+    TimeStep {
+        procedure: ProcedureId,
+    },
 }
 
 /// What one source does to one number.

@@ -263,7 +263,14 @@ mod tests {
     fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
         let loading = |x: f64| if x < 0.2 { 1000.0 * x } else { 200.0 + 100.0 * (x - 0.2) };
         let back = |x: f64| loading(0.5) - 1000.0 * (0.5 - x);
-        let readings = [(0.0, loading(0.0)), (0.2, loading(0.2)), (0.4, loading(0.4)), (0.5, loading(0.5)), (0.45, back(0.45)), (0.4, back(0.4))];
+        let readings = [
+            (0.0, loading(0.0)),
+            (0.2, loading(0.2)),
+            (0.4, loading(0.4)),
+            (0.5, loading(0.5)),
+            (0.45, back(0.45)),
+            (0.4, back(0.4)),
+        ];
         let readings = readings.map(|(target, force)| Reading { target, displacement: target, force }).to_vec();
         let path = RecordedPath::new(readings, 1000.0, 0.0, 0.0).unwrap();
         for turned in [0.49, 0.5, 0.51, 0.53] {

@@ -136,7 +136,8 @@ fn number(blow: &Blow, name: &str) -> Option<f64> {
 fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let blows = &history.blows;
     let of = |name: &str| blows.iter().map(|blow| number(blow, name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
-    let list = |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
+    let list =
+        |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
     let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;
     let passed = blows.iter().rev().find(|blow| blow.held == Some(true)).map(|blow| blow.energy);

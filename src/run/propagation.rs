@@ -195,7 +195,8 @@ impl<'run> Doubts<'run> {
     /// A stop is told at the end of its step, up to Δt late; a peak at the nearer end, up to Δt/2 off.
     fn round_times(&self, time_step: f64, contributions: &mut [Vec<Contribution>]) {
         let source = Source::TimeStep { procedure: self.procedure };
-        for (name, off) in [("stop_time", time_step / 3.0_f64.sqrt()), ("time_of_max_displacement", time_step / 12.0_f64.sqrt())] {
+        for (name, off) in [("stop_time", time_step / 3.0_f64.sqrt()), ("time_of_max_displacement", time_step / 12.0_f64.sqrt())]
+        {
             if let Some(index) = OUTCOMES.iter().position(|outcome| *outcome == name) {
                 contributions[index].push(Contribution::new(source, off));
             }

@@ -186,8 +186,7 @@ fn noise_scatters_runs_as_its_draws_foretell() {
     };
     let told = run_unwatched(&with(1));
     let u = number(&told, 0, "max_displacement").1.unwrap();
-    let values: Vec<f64> =
-        (1..=RUNS).map(|seed| number(&run_unwatched(&with(seed)), 0, "max_displacement").0.unwrap()).collect();
+    let values: Vec<f64> = (1..=RUNS).map(|seed| number(&run_unwatched(&with(seed)), 0, "max_displacement").0.unwrap()).collect();
     let mean = values.iter().sum::<f64>() / RUNS as f64;
     let scatter = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (RUNS - 1) as f64).sqrt();
     // Both are sampled: 1/√(2·99) and 1/√(2·64), three standard deviations of their ratio.
