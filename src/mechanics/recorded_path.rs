@@ -249,8 +249,8 @@ mod tests {
     fn an_elastic_way_taken_off_its_targets_is_elastic() {
         let path = path(|x| 1000.0 * x, &TARGETS);
         let mut again = path.again(Distortion { displacement_scale: 1.25, force_scale: 2.0, zero: 3.0, noise: None });
-        for (step, target) in TARGETS.iter().chain(&[0.5, 0.6, -0.2]).enumerate().skip(1) {
-            let off = target + 0.02 * (step as f64).cos();
+        for (step, target) in (0..).zip(TARGETS.iter().chain(&[0.5, 0.6, -0.2])).skip(1) {
+            let off = target + 0.02 * f64::from(step).cos();
             let (displacement, force) = again.move_to(off);
             assert!((force - (1600.0 * off + 3.0)).abs() < 1e-9, "step {step}: {force}");
             assert!((displacement - off - 1.25e-4).abs() < 1e-12);
@@ -291,7 +291,7 @@ mod tests {
     fn noise_makes_no_tangent() {
         let readings = |step: u32| {
             let target = 1e-3 * f64::from(step);
-            let noise = if step % 2 == 0 { 1.0 } else { -1.0 };
+            let noise = if step.is_multiple_of(2) { 1.0 } else { -1.0 };
             Reading { target, displacement: target, force: 1000.0 * target + noise }
         };
         let path = RecordedPath::new((0..200).map(readings).collect(), 1000.0, 1.0, 0.0).unwrap();

@@ -85,7 +85,9 @@ fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, inputs: &Inpu
     };
     let of_damping = results.iter().find(|result| result.name == "damping").map(|found| found.contributions.clone());
     let mut parts: Vec<Contribution> = of_damping.unwrap_or_default();
-    parts.iter_mut().for_each(|part| part.amount *= ratio / damping);
+    for part in &mut parts {
+        part.amount *= ratio / damping;
+    }
     for part in in_stiffness {
         let amount = -0.5 * ratio / known.value * part.amount;
         match parts.iter_mut().find(|known| known.source == part.source) {

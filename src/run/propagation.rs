@@ -111,7 +111,9 @@ impl<'run> Doubts<'run> {
                 read.extend(force_limit);
             }
         }
-        read.into_iter().for_each(|formula| formula.collect_references(&mut references));
+        for formula in read {
+            formula.collect_references(&mut references);
+        }
         let mut sources = sources_of(&references, self.results);
         let Striker { mass_uncertainty, velocity_uncertainty, .. } = self.whole.strikers[*striker];
         let calibration = &self.whole.rig.calibration;

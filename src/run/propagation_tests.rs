@@ -51,8 +51,8 @@ fn all_uncertain(mut plan: Plan) -> Plan {
     plan
 }
 
-/// X = `Ms·V0/√(K(M + Ms))`, t = π/2·√((M + Ms)/K), ½KX²: what is measured of R is F/F₀ of it, and what is measured of X
-/// X₀/X: K goes with their ratio. A zero of F₀ moves X by −F₀/K, to first order of a spring let go at rest nowhere near X.
+/// X = `Ms·V0/√(K(M + Ms))`, t = π/2·√((M + Ms)/K), ½KX²; K goes with the factor of the force over that of the
+/// displacement, and a force F₀ that was read too low moves X by −F₀/K.
 #[test]
 fn an_elastic_blow_comes_out_by_its_closed_form() {
     let record = run_unwatched(&all_uncertain(plan(sticking(1e-3))));
@@ -86,7 +86,7 @@ fn an_elastic_blow_comes_out_by_its_closed_form() {
     let parts = contributions(&record, 0, "max_displacement");
     assert!(parts.iter().all(|part| part.smooth), "{parts:?}");
     assert_eq!(number(&record, 0, "max_displacement").1, combined(parts));
-    assert!(record.events.is_empty(), "{:?}", record.events);
+    assert!(!record.events.iter().any(|event| event.text.contains("uncertainty")), "{:?}", record.events);
 }
 
 /// Nothing uncertain, nothing told.
@@ -124,7 +124,7 @@ struct Uniform(u64);
 impl Uniform {
     fn next(&mut self) -> f64 {
         self.0 = self.0 * 48_271 % 2_147_483_647;
-        self.0 as f64 / 2_147_483_647.0
+        f64::from(u32::try_from(self.0).unwrap()) / 2_147_483_647.0
     }
 
     /// Standard normal by Box and Muller.
@@ -134,11 +134,18 @@ impl Uniform {
     }
 }
 
-/// The rig itself, with inputs as they may be, against the one recorded run: a specimen that yields, comes back with a permanent set and is struck again
-/// and again by a rigid striker. Its curve is true, and is read on a rig whose force is off by a factor.
+/// Standard deviation of numbers about their mean.
+fn scatter(values: &[f64]) -> f64 {
+    let count = f64::from(u32::try_from(values.len()).unwrap());
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
+}
+
+/// The rig itself, run again with inputs as they may be, against what one recorded run foretells: a specimen that yields and
+/// comes back with a permanent set. A cell whose newtons are off by a factor makes it stronger by that factor.
 #[test]
 fn runs_of_the_true_rig_scatter_as_foretold() {
-    const RUNS: usize = 200;
+    const RUNS: u32 = 200;
     let blow = || Impact { until: crate::plan::Until::Rebound, time_step: constant(2e-3), ..sticking(2e-3) };
     let with = |velocity: f64, mass: f64, force: f64| {
         let mut plan = plan(Impact { mass: constant(mass), ..blow() });
@@ -167,11 +174,10 @@ fn runs_of_the_true_rig_scatter_as_foretold() {
         }
     }
     for (values, name) in found.iter().zip(names) {
-        let mean = values.iter().sum::<f64>() / RUNS as f64;
-        let scatter = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (RUNS - 1) as f64).sqrt();
+        let scatter = scatter(values);
         let u = number(&told, 0, name).1.unwrap();
         // The standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)) of it: three of them.
-        assert!((scatter / u - 1.0).abs() < 3.0 / (2.0 * (RUNS - 1) as f64).sqrt(), "{name}: {scatter} of runs, {u} foretold");
+        assert!((scatter / u - 1.0).abs() < 3.0 / (2.0 * f64::from(RUNS - 1)).sqrt(), "{name}: {scatter} of runs, {u} foretold");
     }
 }
 
@@ -187,8 +193,7 @@ fn noise_scatters_runs_as_its_draws_foretell() {
     let told = run_unwatched(&with(1));
     let u = number(&told, 0, "max_displacement").1.unwrap();
     let values: Vec<f64> = (1..=RUNS).map(|seed| number(&run_unwatched(&with(seed)), 0, "max_displacement").0.unwrap()).collect();
-    let mean = values.iter().sum::<f64>() / RUNS as f64;
-    let scatter = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (RUNS - 1) as f64).sqrt();
+    let scatter = scatter(&values);
     // Both are sampled: 1/√(2·99) and 1/√(2·64), three standard deviations of their ratio.
     assert!((scatter / u - 1.0).abs() < 3.0 * (1.0 / 198.0_f64 + 1.0 / 128.0).sqrt(), "{scatter} of runs, {u} foretold");
     let parts = contributions(&told, 0, "max_displacement");
@@ -215,7 +220,7 @@ fn what_is_read_on_one_rig_shares_its_calibration() {
     assert!((found.uncertainty.unwrap() / found.value - 0.005).abs() < 1e-5, "{found:?}");
 }
 
-/// A switch in the way: a gap of two steps' travel of the structure, which a little more speed closes a step sooner.
+/// A contact that yields at 60 N is struck a step sooner or later as the speed rises: the indentation jumps.
 #[test]
 fn what_jumps_is_not_called_smooth() {
     let summary = |velocity: f64| {
@@ -275,4 +280,37 @@ fn a_record_that_does_not_lead_to_its_results_tells_none() {
     let reason = doubts.propagate(&setting, &history.steps, &summary, &mut results).unwrap_err();
     assert_eq!(reason, "the recorded way, taken again, does not lead to the recorded results");
     assert_eq!(results, before);
+}
+
+/// The limit is kept by 3 %: with 1 % of uncertainty that passes, with 2 % nothing is decided, and with 1 % a limit missed by 3 % fails.
+#[test]
+fn a_guarded_limit_decides_nothing_where_the_blow_is_uncertain() {
+    use crate::plan::{Comparison, Condition, DecisionRule, Requirement, Test};
+    use crate::quantity::Dimension;
+    use crate::verdict::{Verdict, assess};
+    let largest = STRIKER / (STIFFNESS * (MASS + STRIKER)).sqrt();
+    let verdict = |limit: f64, uncertainty: f64, rule| {
+        let mut plan = plan(sticking(1e-3));
+        plan.strikers[0].velocity_uncertainty = uncertainty;
+        plan.decision_rule = rule;
+        let test = Test::Compare { comparison: Comparison::LessEqual, limit: constant(limit * largest) };
+        let condition = Condition {
+            text: "as written".to_owned(),
+            value: result_of(0, "max_displacement"),
+            test,
+            dimension: Dimension::LENGTH,
+        };
+        plan.requirements = vec![Requirement { label: "stays".to_owned(), conditions: vec![condition] }];
+        let record = run_unwatched(&plan);
+        let assessment = assess(&plan, &record);
+        let condition = &assessment.requirements[0].conditions[0];
+        let band = condition.guard_band.unwrap_or(0.0) / largest;
+        assert!((band - 2.0 * uncertainty).abs() < 1e-3 || rule == DecisionRule::Simple, "{band}");
+        assessment.verdict
+    };
+    assert_eq!(verdict(1.03, 0.01, DecisionRule::Guarded), Verdict::Pass);
+    assert_eq!(verdict(1.03, 0.02, DecisionRule::Guarded), Verdict::Inconclusive);
+    assert_eq!(verdict(0.97, 0.02, DecisionRule::Guarded), Verdict::Inconclusive);
+    assert_eq!(verdict(0.97, 0.01, DecisionRule::Guarded), Verdict::Fail);
+    assert_eq!(verdict(1.03, 0.02, DecisionRule::Simple), Verdict::Pass);
 }

@@ -21,18 +21,10 @@ pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, bo
     let mut budgets = budgets(run, index, procedure);
     let asked = asked(run, index);
     budgets.retain(|budget| asked.contains(&budget.result.name));
-    if budgets.is_empty() {
-        return;
+    if !budgets.is_empty() {
+        body.extend(budgets.iter().map(one));
+        body.push(Block::note(note(&budgets)));
     }
-    let columns = vec![
-        Column::words("Uncertainty budget (linearised, k = 2)", 3),
-        Column::words("Value ± u", 2),
-        Column::numbers("Sensitivity"),
-        Column::numbers("Contribution"),
-        Column::numbers("Of u²"),
-    ];
-    body.push(Block::Table(Table { columns, rows: budgets.iter().flat_map(rows).collect() }));
-    body.push(Block::note(note(&budgets)));
 }
 
 /// The results of this procedure that a requirement reads, else those that are always worth it.
@@ -46,45 +38,54 @@ fn asked(run: &Run<'_>, index: usize) -> Vec<&'static str> {
     if mine.is_empty() { UNASKED.to_vec() } else { mine }
 }
 
+fn one(budget: &Budget<'_>) -> Block {
+    let columns = vec![
+        Column::words(format!("Uncertainty budget of {}", words(budget.result.name)), 3),
+        Column::words("Input ± u", 2),
+        Column::numbers("Sensitivity"),
+        Column::numbers("Contribution"),
+        Column::numbers("Of u²"),
+    ];
+    Block::Table(Table { columns, rows: rows(budget) })
+}
+
 fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
     let Budget { result, value, uncertainty, lines } = budget;
     let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, result.dimension).into() };
-    let whole = number::with_uncertainty(*value, Some(*uncertainty), result.dimension);
-    let mut rows = vec![vec![words(result.name).into(), whole.into(), Text::new(), amount(*uncertainty), "100\u{a0}%".into()]];
     let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
-    for line in told {
-        let mark = if line.smooth { "" } else { " †" };
-        rows.push(vec![
-            named(line, mark),
-            input(line).into(),
-            line.sensitivity.map_or_else(|| "—".to_owned(), |each| sensitivity(each, result.dimension, line)).into(),
-            amount(line.contribution.abs()),
-            percent(budget.share(line)).into(),
-        ]);
-    }
+    let mut rows: Vec<Vec<Text>> = told
+        .into_iter()
+        .map(|line| {
+            let sensitivity = line.sensitivity.map_or_else(|| "—".to_owned(), |each| sensitivity(each, result.dimension, line));
+            let share = percent(budget.share(line));
+            vec![named(line), input(line).into(), sensitivity.into(), amount(line.contribution.abs()), share.into()]
+        })
+        .collect();
     if !small.is_empty() {
         let together = small.iter().map(|line| line.contribution.powi(2)).sum::<f64>().sqrt();
         let names: Vec<&str> = small.iter().map(|line| line.input.as_str()).collect();
-        rows.push(vec![
-            Text::from("· ").soft(format!("less than 0.1\u{a0}% each: {}", names.join(", "))),
-            "".into(),
-            "—".into(),
-            amount(together),
-            percent((together / uncertainty).powi(2)).into(),
-        ]);
+        let names = Text::new().soft(format!("under 0.1\u{a0}% each: {}", names.join(", ")));
+        let share = percent((together / uncertainty).powi(2));
+        rows.push(vec![names, "".into(), "—".into(), amount(together), share.into()]);
     }
+    let parts = number::parts(*value, Some(*uncertainty), result.dimension);
+    let expanded = parts.expanded.unwrap_or_default();
+    let whole = format!("{} ± {expanded}\u{a0}{} with U = {COVERAGE:.0}\u{a0}u", parts.value, parts.unit);
+    rows.push(vec![whole.into(), "".into(), "".into(), amount(*uncertainty), "100\u{a0}%".into()]);
     rows
 }
 
 /// What the plan has a name for is set as it is written there.
-fn named(line: &Line, mark: &str) -> Text {
-    match (line.from, line.draws) {
-        (From::Result | From::Plan, _) => Text::from("· ").code(&line.input).and(mark),
-        (From::Rig | From::Program, Some(draws)) => {
-            Text::from(format!("· {}", line.input)).soft(format!(", sampled, {draws} draws"))
-        }
-        (From::Rig | From::Program, None) => Text::from(format!("· {}{mark}", line.input)),
-    }
+fn named(line: &Line) -> Text {
+    let name = match line.from {
+        From::Result | From::Plan => Text::new().code(&line.input),
+        From::Rig | From::Program => Text::from(line.input.as_str()),
+    };
+    let name = match line.draws {
+        Some(draws) => name.soft(format!(" · sampled, {draws} draws")),
+        None => name,
+    };
+    if line.smooth { name } else { name.and(" †") }
 }
 
 fn input(line: &Line) -> String {
@@ -107,16 +108,17 @@ fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
 }
 
 fn note(budgets: &[Budget<'_>]) -> String {
-    let lines = || budgets.iter().flat_map(|budget| &budget.lines);
+    let told: Vec<&Line> =
+        budgets.iter().flat_map(|budget| budget.lines.iter().filter(|line| budget.share(line) >= SMALL)).collect();
     let mut text = format!(
-        "Each input in turn was moved by ± its standard uncertainty and the run integrated again along its own recorded \
-         force–displacement path; half the difference is the contribution (linearised, after JCGM 100:2008), their root sum of squares u, \
-         and U = {COVERAGE:.0}\u{a0}u. The integration scheme, the contact law and the slowness of the test are not among the inputs."
+        "Linearised, k = {COVERAGE:.0}: each input in turn was moved by ± its standard uncertainty and the run integrated again along \
+         its own recorded force–displacement path; half the difference of the results is the contribution, the root sum of squares is u \
+         (JCGM 100:2008). The scheme of integration, the contact law and the slowness of the test are not among the inputs."
     );
-    if lines().any(|line| line.draws.is_some()) {
-        text += " Errors of the readings were drawn instead (sampled).";
+    if budgets.iter().any(|budget| budget.lines.iter().any(|line| line.draws.is_some())) {
+        text += " Errors of the readings were drawn, and what they do is sampled.";
     }
-    if lines().any(|line| !line.smooth) {
+    if told.iter().any(|line| !line.smooth) {
         text += " † The result does not follow this input smoothly: the differences to either side, or at half the size, disagree; \
                  the largest change stands for it.";
     }
