@@ -120,8 +120,8 @@ fn the_damping_of_the_material_is_in_the_force() {
                 STIFFNESS * shear(storey, &|floor| now.command[floor]) + DAMPER * shear(storey, &|floor| velocity[floor])
             });
             let expected = [storey[0] - storey[1], storey[1]];
-            for floor in 0..2 {
-                missed = missed.max((now.restoring_force[floor] - expected[floor]).abs());
+            for (floor, expected) in expected.iter().enumerate() {
+                missed = missed.max((now.restoring_force[floor] - expected).abs());
             }
             beside = beside.max((DAMPER * (velocity[1] - velocity[0])).abs());
         }
