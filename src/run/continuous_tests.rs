@@ -174,7 +174,7 @@ fn a_blow_is_no_trend_to_go_on_with() {
     // Every other path is one ahead; the last is the brake.
     for ahead in paths.iter().step_by(2).take(paths.len() / 2) {
         let gained = (number(ahead, "end_velocity") - number(ahead, "start_velocity")).abs();
-        let smooth = hardest * number(ahead, "seconds") / SCALE.powi(2);
+        let smooth = 1.01 * hardest * number(ahead, "seconds") / SCALE.powi(2);
         assert!(gained <= smooth, "{gained} m/s gained, {smooth} m/s by the specimen alone: {ahead}");
     }
 }
