@@ -35,6 +35,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         readings: readings?,
         watchdog: watchdog?,
         own_speed: own_speed?,
+        axes: Vec::new(),
     })
 }
 
