@@ -452,8 +452,8 @@ mod tests {
             let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
-            let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, commanded: vec![0.001], going: Vec::new(), settled: true, proposed: None };
+            let (commanded, own, going) = (vec![0.001], Vec::new(), Vec::new());
+            let mut guard = Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

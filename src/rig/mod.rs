@@ -168,11 +168,13 @@ fn breach(quantity: LimitedQuantity, axis: Option<usize>, value: f64, low: f64, 
     format!("{quantity}{} {} is outside its limit {} .. {}", of_axis(axis), shown(value), shown(low), shown(high))
 }
 
-fn of_axis(axis: Option<usize>) -> String {
+/// ` of axis 2`, or nothing.
+pub(crate) fn of_axis(axis: Option<usize>) -> String {
     axis.map_or_else(String::new, |axis| format!(" of axis {axis}"))
 }
 
-fn who(axis: Option<usize>) -> String {
+/// `axis 2`, or `the rig`.
+pub(crate) fn who(axis: Option<usize>) -> String {
     axis.map_or_else(|| "the rig".to_owned(), |axis| format!("axis {axis}"))
 }
 

@@ -206,7 +206,7 @@ impl<'run> Session<'run> {
     }
 
     /// The same of every axis.
-    fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
+    pub(super) fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
         for target in self.guard.way_to(places) {
             self.guard.move_to(&target, speed)?;
         }
