@@ -150,12 +150,7 @@ impl RealLink {
     /// The gate of the axis at this place.
     #[must_use]
     pub fn gate_of(&self, axis: usize) -> Gate {
-        let Gate { zero, probe, stiffness } = self.gate;
-        self.axes.get(axis).map_or(self.gate, |own| Gate {
-            zero: own.zero.unwrap_or(zero),
-            probe: own.probe.unwrap_or(probe),
-            stiffness: own.stiffness.unwrap_or(stiffness),
-        })
+        self.axes.get(axis).and_then(|own| own.gate).unwrap_or(self.gate)
     }
 
     /// What the axis at this place declares of its readings.
@@ -185,12 +180,7 @@ pub struct AxisPlan {
     /// Beside the limits of the run, m and N.
     pub displacement: Option<Interval>,
     pub force: Option<Interval>,
-    /// |force| at rest before anything moves, N.
-    pub zero: Option<f64>,
-    /// The tiny move, m.
-    pub probe: Option<f64>,
-    /// What it must show, N/m.
-    pub stiffness: Option<Interval>,
+    pub gate: Option<Gate>,
     pub calibration: Option<String>,
     /// `YYYY-MM-DD`
     pub calibration_due: Option<String>,
@@ -268,6 +258,15 @@ impl Dialect {
             Self::Mark10Gauge => "mark10_gauge",
             Self::Modbus(_) => "modbus",
             Self::Nees { .. } => "nees",
+        }
+    }
+
+    /// Axes that one device of this dialect drives together, at most.
+    #[must_use]
+    pub const fn most_axes(&self) -> usize {
+        match self {
+            Self::Native => 6,
+            _ => 1,
         }
     }
 

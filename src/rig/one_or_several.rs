@@ -30,7 +30,9 @@ mod tests {
 
     #[test]
     fn one_axis_is_a_number_and_several_are_a_list_both_ways() {
-        for (targets, text) in [(vec![1.25e-3], r#"{"id":7,"target":0.00125}"#), (vec![0.1, -0.2], r#"{"id":7,"target":[0.1,-0.2]}"#)] {
+        for (targets, text) in
+            [(vec![1.25e-3], r#"{"id":7,"target":0.00125}"#), (vec![0.1, -0.2], r#"{"id":7,"target":[0.1,-0.2]}"#)]
+        {
             let last = LastMove { id: 7, targets };
             assert_eq!(serde_json::to_string(&last).unwrap(), text);
             assert_eq!(serde_json::from_str::<LastMove>(text).unwrap(), last);

@@ -74,7 +74,9 @@ fn probe(axis: usize, gate: &Gate, before: &Reading, session: &mut Session<'_>) 
     let of = of_axis(named_axis(axis, home.len()));
     let moved = there.displacement[axis] - before.displacement[axis];
     if moved == 0.0 {
-        return refuse(format!("the displacement{of} did not change in a move of {probe}: the transducer is dead, or too coarse"));
+        return refuse(format!(
+            "the displacement{of} did not change in a move of {probe}: the transducer is dead, or too coarse"
+        ));
     }
     let column: Vec<f64> = there.force.iter().zip(&before.force).map(|(force, rest)| (force - rest) / moved).collect();
     let stiffness = column[axis];

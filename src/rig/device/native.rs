@@ -181,8 +181,7 @@ impl Device for NativeDevice {
         let said = |meant: f64| number::read_back(&native::length(meant)?, 1e3, meant);
         let heard: Option<Vec<f64>> = targets.iter().map(|target| said(*target)).collect();
         let unsaid = || DeviceFault::Unfit(format!("a move to {targets:?} m at {speed} m/s cannot be said"));
-        let (written, (targets, speed)) =
-            native::lengths(targets).zip(heard.zip(said(speed))).ok_or_else(unsaid)?;
+        let (written, (targets, speed)) = native::lengths(targets).zip(heard.zip(said(speed))).ok_or_else(unsaid)?;
         if !bounds.axes.iter().zip(&targets).all(|(axis, target)| axis.displacement.contains(*target)) {
             return Err(DeviceFault::Refused { reason: format!("{written} mm is outside the limits the rig says it has") });
         }

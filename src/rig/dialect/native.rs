@@ -58,12 +58,20 @@ pub enum Request<'a> {
     Hello,
     Limits(&'a Bounds),
     /// Targets of every axis.
-    Move { id: u64, targets: &'a [f64], speed: f64 },
-    Measure { readings: u32 },
+    Move {
+        id: u64,
+        targets: &'a [f64],
+        speed: f64,
+    },
+    Measure {
+        readings: u32,
+    },
     Status,
     Stop,
     Clear,
-    Reference { token: &'a str },
+    Reference {
+        token: &'a str,
+    },
 }
 
 /// What a rig keeps to.
