@@ -7,6 +7,7 @@ mod calendar;
 mod call;
 mod checker;
 mod choice;
+mod curve;
 mod cycle;
 mod damping_sweep;
 mod data;

@@ -116,6 +116,7 @@ codes! {
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;
+    E649 BreaksTwice Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

@@ -3,6 +3,7 @@
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
+mod curve;
 mod cycle;
 #[cfg(test)]
 mod cycle_tests;
