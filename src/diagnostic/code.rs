@@ -91,6 +91,8 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E615 AxesDiffer Error;
+    E616 TooManyAxes Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
     E620 GroundRecord Error;

@@ -25,8 +25,8 @@ pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
-    Settle, VirtualLink,
+    AxisPlan, Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
+    SafeState, Settle, VirtualLink,
 };
 pub use unload::Unload;
 
