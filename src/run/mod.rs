@@ -4,6 +4,7 @@ mod attribution;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
+mod curve;
 mod cycle;
 #[cfg(test)]
 mod cycle_tests;
@@ -13,6 +14,7 @@ mod escalate;
 #[cfg(test)]
 mod escalate_tests;
 mod gate;
+mod gliding;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
@@ -33,6 +35,7 @@ mod sequence_tests;
 mod session;
 mod shake;
 mod shake_results;
+mod shaking;
 mod stiffness_ramp;
 mod stop;
 mod strike;

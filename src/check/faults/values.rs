@@ -36,7 +36,9 @@ pub fn too_uncertain(field: &str, uncertainty: f64, value: f64, dimension: Dimen
     let of = field.trim_end_matches("_uncertainty");
     Diagnostic::new(Code::TooUncertain, format!("`{field}` is more than a fifth of the `{of}`, {value}"))
         .at(span, format!("{uncertainty} is one standard uncertainty"))
-        .help("write the standard uncertainty: half of the bound of two in a hundred cases, or the half-width of a range over √3")
+        .help(
+            "write the standard uncertainty: half of a bound that holds in 95 of 100 cases, or the half-width of a range over √3",
+        )
 }
 
 /// A mass whose uncertainty nobody asks for.

@@ -6,6 +6,7 @@ mod blows;
 mod budget;
 mod conditions;
 mod contact_log;
+mod curve;
 mod cycles;
 mod equipment;
 mod frames;
