@@ -361,7 +361,7 @@ fn setting(text: &str) -> Result<(String, String), String> {
 }
 
 /// A person's name: one short line.
-fn name(text: &str) -> Result<String, String> {
+pub(super) fn name(text: &str) -> Result<String, String> {
     let name = text.trim();
     if name.is_empty() || name.chars().count() > 200 || name != escape(name) || name.contains('\n') {
         return Err("a name is one line of at most 200 letters".to_owned());

@@ -49,7 +49,9 @@ fn with_rig(
     match &plan.rig.link {
         Link::Virtual(_) => what(virtual_rig(plan).as_mut(), plan, &wish),
         Link::Real(_) => {
-            let mut connected = connect(&plan.rig, &plan.limits, &wish)?;
+            let place = |fault: &str| plan_file::place_of_link(&checked, path, fault);
+            let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
             what(&mut connected.rig, plan, &wish)
         }
     }
