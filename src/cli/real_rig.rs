@@ -38,7 +38,7 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
 }
 
 /// Who is named, by the command line or by the plan.
-fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
+pub fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
     let of_plan = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
     attendance.operator.clone().or(of_plan).filter(|name| !name.trim().is_empty())
 }

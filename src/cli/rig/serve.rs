@@ -22,6 +22,7 @@ use crate::quantity::display::readable;
 use crate::quantity::unit;
 use crate::record::Outcome;
 use crate::rig::{Rig, VirtualRig, Wish, virtual_rig};
+use crate::run::driven::Driver;
 use crate::run::tape::{self, Wall};
 use crate::serve::{self, Ended, Event, Protocol, Session};
 
@@ -113,7 +114,7 @@ fn on_record(
     let mut exit = Exit::Met;
     let mut told = Ok(());
     let mut served = Ok(());
-    let (recorded, steps) = tape::record_driven(plan, rig, watcher, journal, wall, &mut |specimen| {
+    let (recorded, steps) = tape::record_driven(plan, rig, watcher, journal, wall, Driver::Client, &mut |specimen| {
         if !door.address.ip().is_loopback() {
             tell(&open_door(door.address, settings));
         }
