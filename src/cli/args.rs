@@ -102,9 +102,11 @@ pub enum RigCommand {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "On a real rig every question, answer and move is on record, in a run folder that `psd verify` proves.\n\n\
+#[command(
+    after_help = "On a real rig every question, answer and move is on record, in a run folder that `psd verify` proves.\n\n\
     Exit codes: 0 it went where it was told, 2 the plan or the command line is wrong, 3 the rig failed,\n\
-    4 a limit or a person stood in the way.")]
+    4 a limit or a person stood in the way."
+)]
 pub struct JogArguments {
     /// The plan, a `.psd` file
     #[arg(value_name = "PLAN")]

@@ -87,6 +87,11 @@ pub enum Failure {
     Signals(std::io::Error),
 }
 
+/// What a device is told to be that does not answer, and what that may come from.
+const SILENT: &str = "no usable answer";
+const LOOK_FOR: &str = "the baud rate, the dialect, crossed wires, or a device that still starts; `psd rig simulate` in its place shows\n       \
+    whether the plan is right";
+
 impl Failure {
     pub fn command_line(message: impl Into<String>) -> Self {
         Self::CommandLine { message: message.into(), help: None }
@@ -138,6 +143,7 @@ impl Failure {
     pub fn report(&self, settings: Settings) -> String {
         let help = match self {
             Self::CommandLine { help, .. } | Self::File { help, .. } => help.as_deref(),
+            Self::NotOpened { fault: RigFault::Device(told), .. } if told.contains(SILENT) => Some(LOOK_FOR),
             _ => None,
         };
         let mut text = format!("{} {}\n", settings.paint_error("error:"), escape(&self.to_string()));

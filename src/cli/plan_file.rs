@@ -52,7 +52,8 @@ pub fn place_of_link(checked: &Checked, path: &Path, fault: &str) -> Option<Stri
     let span = *links.iter().find(|span| quoted(text(span))).or(links.first())?;
     let Position { line, column } = checked.sources.position(span);
     let file = &checked.sources.file(span.file).name;
-    let written = text(&span).lines().next().unwrap_or_default();
+    let written: Vec<&str> = text(&span).lines().next().unwrap_or_default().split_whitespace().collect();
+    let written = written.join(" ");
     Some(format!("{}{file}:{line}:{column}: {written}", folder_of(path)))
 }
 

@@ -21,7 +21,8 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
     if plan.rig.link.as_real().is_none() || operator(plan, &attendance).is_some() {
         return Ok(attendance);
     }
-    let nobody = || Failure::command_line("nobody is named who runs the test: nothing was opened").help("--operator \"A. Tester\"");
+    let nobody =
+        || Failure::command_line("nobody is named who runs the test: nothing was opened").help("--operator \"A. Tester\"");
     loop {
         tell("  who runs the test? [your name] ");
         let mut line = String::new();

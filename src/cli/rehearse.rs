@@ -18,12 +18,7 @@ use crate::rig::VirtualRig;
 use crate::run::rehearsal;
 
 /// Measures, predicts, and says with the exit code whether every limit would be kept.
-pub fn rehearse(
-    plan: &Plan,
-    arguments: &RunArguments,
-    attendance: &Attendance,
-    settings: Settings,
-) -> Result<Exit, Failure> {
+pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Exit, Failure> {
     let part = rehearsal::measured_part(plan)?;
     let Ran { folder, provenance, recorded } = on_its_rig(&part, arguments, attendance, settings)?;
     let (exit, files) = conclude(folder.path(), &part, &provenance, &recorded, settings)?;

@@ -88,9 +88,8 @@ impl Request {
     pub fn proposed(&self) -> Option<(Vec<f64>, Option<f64>)> {
         let targets = match self {
             Self::Propose { target } => Some(vec![*target]),
-            Self::ProposeAll { targets } => Some(targets.clone()),
+            Self::ProposeAll { targets } | Self::ProposeAt { targets, .. } => Some(targets.clone()),
             Self::ProposeNoNumber { said } => Some(said.split(' ').map(|word| word.parse().unwrap_or(f64::NAN)).collect()),
-            Self::ProposeAt { targets, .. } => Some(targets.clone()),
             _ => None,
         }?;
         let speed = if let Self::ProposeAt { speed, .. } = self { Some(*speed) } else { None };

@@ -32,9 +32,8 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else { return Ok(Exit::Wrong) };
     if !settings.can_ask && (!arguments.yes || arguments.to.is_none()) {
-        return Err(
-            Failure::command_line("a move needs a yes, and nobody can be asked").help("give `--to` and `--yes`, or start it from a terminal")
-        );
+        return Err(Failure::command_line("a move needs a yes, and nobody can be asked")
+            .help("give `--to` and `--yes`, or start it from a terminal"));
     }
     let wanted = Wanted {
         to: arguments.to.as_deref().map(|to| places(to, plan.degrees_of_freedom(), "--to")).transpose()?,
@@ -97,8 +96,7 @@ fn on_a_real_rig(
     settings: Settings,
 ) -> Result<Exit, Failure> {
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
-    let circumstances =
-        Circumstances { served: Some(BY_HAND.to_owned()), ..real_rig::circumstances(plan, attendance) };
+    let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..real_rig::circumstances(plan, attendance) };
     let provenance = provenance::of_real_run(plan, &circumstances);
     let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
     let journal = record_file::begin(folder.path(), plan, &header)?;
@@ -126,7 +124,8 @@ struct Hand<'a> {
 
 impl Hand<'_> {
     fn drive(&mut self, specimen: &mut Specimen<'_, '_>) {
-        let ended = specimen.come(format!("{}, by hand", self.person.by)).map_err(Failure::Rig).and_then(|()| self.moves(specimen));
+        let ended =
+            specimen.come(format!("{}, by hand", self.person.by)).map_err(Failure::Rig).and_then(|()| self.moves(specimen));
         let (parting, reason) = match &ended {
             Ok(Exit::Met) => (Parting::Closed, "done".to_owned()),
             Ok(_) => (Parting::Stopped, "a limit or a person stood in the way".to_owned()),

@@ -1,6 +1,7 @@
 //! `psd rig list`: the serial ports of this machine, one a line, with what the system knows of each and the names that stay
 //! when cables change places. It opens none of them.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -58,7 +59,7 @@ fn lines(port: &SerialPortInfo, names: &[(String, String)]) -> String {
     };
     let mut text = format!("{}\n", escape(format!("{}  {what}", port.port_name).trim_end()));
     for name in names_of(port, names) {
-        text.push_str(&format!("  {}\n", escape(name)));
+        let _ = writeln!(text, "  {}", escape(name));
     }
     text
 }

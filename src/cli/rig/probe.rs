@@ -153,6 +153,9 @@ mod tests {
         let told = channel.drift_told(Dimension::FORCE);
         assert!(told.starts_with("drift below "), "noise is not taken for drift: {told}");
         let still = Channel::of(&times, &[0.25; 10]);
-        assert_eq!((still.noise_told(Dimension::FORCE), still.drift_told(Dimension::FORCE)), ("no noise".into(), "no drift".into()));
+        assert_eq!(
+            (still.noise_told(Dimension::FORCE), still.drift_told(Dimension::FORCE)),
+            ("no noise".into(), "no drift".into())
+        );
     }
 }
