@@ -33,7 +33,7 @@ pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> 
 pub fn links_of_run(checker: &Checker, asked: Option<&str>) -> Vec<Span> {
     let Some(block) = real_rig_of_run(checker, asked) else { return Vec::new() };
     let entries = &checker.scope.blocks[block].block.fields;
-    let reach = |key: &str| key == "link" || key.starts_with("actuator") || key.starts_with("load_cell");
+    let reach = |key: &str| key == "link" || key == "axes" || key.starts_with("actuator") || key.starts_with("load_cell");
     entries.iter().filter(|entry| reach(&entry.key.node)).map(|entry| entry.key.span.to(entry.value.span)).collect()
 }
 

@@ -15,7 +15,7 @@ use crate::cli::settings::Settings;
 use crate::cli::watch::{Attendance, Signals, next_line, typed_lines};
 use crate::cli::{plan_file, provenance, real_rig};
 use crate::output;
-use crate::plan::{Interval, Limits, Link, Plan};
+use crate::plan::{Interval, Link, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::record::Outcome;
@@ -77,7 +77,7 @@ fn on_a_virtual_rig(
     let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..Circumstances::default() };
     let header = record_file::header(plan, &arguments.plan_settings, &provenance::of(plan), circumstances);
     let journal = record_file::begin_nowhere(plan, &header)?;
-    let mut hand = Hand { wanted, limits: plan.limits, person, settings, ended: None };
+    let mut hand = Hand { wanted, plan, person, settings, ended: None };
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = Box::new(|| None);
     let (recorded, _) =
@@ -100,7 +100,7 @@ fn on_a_real_rig(
     let provenance = provenance::of_real_run(plan, &circumstances);
     let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let mut hand = Hand { wanted, limits: plan.limits, person, settings, ended: None };
+    let mut hand = Hand { wanted, plan, person, settings, ended: None };
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = real_rig::wall_clock();
     let (recorded, steps) = tape::record_driven(plan, rig, &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
@@ -116,7 +116,7 @@ fn on_a_real_rig(
 /// One sitting: who drives, and how it ended.
 struct Hand<'a> {
     wanted: &'a Wanted,
-    limits: Limits,
+    plan: &'a Plan,
     person: Person<'a>,
     settings: Settings,
     ended: Option<Result<Exit, Failure>>,
@@ -181,7 +181,7 @@ impl Hand<'_> {
         let at = speed.map_or_else(String::new, |speed| format!(" at {}", plain(speed, Dimension::VELOCITY, 4)));
         let question = format!("move from {} to {}{at}?", told(specimen.commanded()), told(to));
         // What no answer allows is not asked, and no part of the way is gone.
-        if let Some(fault) = beyond(&self.limits, to, speed) {
+        if let Some(fault) = beyond(self.plan, to, speed) {
             specimen.remark(format!("{question} refused: {fault}"));
             tell(&format!("  refused: {fault}\n"));
             return Ok(Exit::Stopped);
@@ -211,12 +211,16 @@ impl Hand<'_> {
     }
 }
 
-/// The limit that a place or a speed lies beyond.
-fn beyond(limits: &Limits, to: &[f64], speed: Option<f64>) -> Option<RigFault> {
-    let places = to.iter().map(|place| (LimitedQuantity::TargetDisplacement, limits.displacement, *place));
-    let speed = speed.map(|speed| (LimitedQuantity::Speed, limits.speed, speed));
-    let found = places.chain(speed).find(|(_, limit, value)| !limit.contains(*value));
-    found.map(|(quantity, Interval { low, high }, value)| RigFault::LimitBreached { quantity, value, low, high })
+/// The limit of its axis that a place or the speed lies beyond.
+fn beyond(plan: &Plan, to: &[f64], speed: Option<f64>) -> Option<RigFault> {
+    let found = to.iter().enumerate().flat_map(|(axis, place)| {
+        let limits = plan.rig.limits_of(axis, &plan.limits);
+        let place = Some((axis, LimitedQuantity::TargetDisplacement, limits.displacement, *place));
+        [place, speed.map(|speed| (axis, LimitedQuantity::Speed, limits.speed, speed))]
+    });
+    let (axis, quantity, Interval { low, high }, value) = found.flatten().find(|(_, _, limit, value)| !limit.contains(*value))?;
+    let axis = (to.len() > 1).then_some(axis + 1);
+    Some(RigFault::LimitBreached { quantity, value, low, high, axis })
 }
 
 /// Nothing beyond a limit moves, and the person may name another place; whatever else it is ends the sitting.
