@@ -17,7 +17,7 @@ use crate::syntax::ast::ExprKind;
 pub const FIELDS: [&str; 3] = ["storeys", "mass_matrix", "stiffness_matrix"];
 
 /// Fields of a specimen of one degree of freedom, which a frame has none of.
-const OF_ONE: [&str; 7] = ["mass", "length", "area", "density", "behaviour", "damping", "coulomb"];
+const OF_ONE: [&str; 8] = ["mass", "mass_uncertainty", "length", "area", "density", "behaviour", "damping", "coulomb"];
 
 pub fn is_frame(checker: &Checker, block: usize) -> bool {
     FIELDS.iter().any(|field| checker.given(block, field).is_some())
@@ -89,7 +89,9 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
         }
         _ => Some(None),
     };
-    let (mass, height, behaviour) = (mass?, height?, behaviour?);
+    let damping = checker.constant_argument(chosen, "damping", place);
+    let coulomb = checker.constant_argument(chosen, "coulomb", place);
+    let (mass, height, behaviour, damping, coulomb) = (mass?, height?, behaviour?, damping?, coulomb?);
     let stiffness = match (total?, column?, &behaviour) {
         (Some(_), Some(_), _) => {
             let again = chosen.span("column_stiffness").unwrap_or(at);
@@ -101,7 +103,7 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
         (None, None, None) => return checker.fail(fault::storey_without_stiffness(number, at)),
     };
     let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
-    Some(Storey { mass, stiffness, height, behaviour })
+    Some(Storey { mass, stiffness, height, behaviour, damping, coulomb })
 }
 
 /// The frame that the files of its matrices give, with the files.

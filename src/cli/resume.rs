@@ -32,6 +32,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     if read.played.ended {
         return Err(tape::Refusal::Ended.into());
     }
+    if read.played.header.served.as_deref() == Some(tape::BY_HAND) {
+        return Err(Failure::command_line("this was done by hand: there is nothing to go on with")
+            .help("`psd rig jog` goes from where the rig stands"));
+    }
     if read.played.header.served.is_some() {
         return Err(Failure::command_line("a client drove this run: psd cannot go on in its place")
             .help("start it anew with `psd rig serve`"));
@@ -139,8 +143,10 @@ fn settle(
     let recorded = played.last_rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
     tape::same_rig(&recorded.identity, &rig.identity(), arguments.re_referenced)?;
     let found = rig.read()?;
-    let band = plan.rig.settle.band.max(4.0 * link.readings.resolution);
-    let bands = Bands { displacement: band, force: link.gate.zero.max(6.0 * link.readings.noise) };
+    let axes = 0..plan.rig.axes().unwrap_or(1);
+    let band = axes.clone().map(|axis| 4.0 * link.readings_of(axis).resolution).fold(plan.rig.settle.band, f64::max);
+    let force = axes.map(|axis| link.gate_of(axis).zero.max(6.0 * link.readings_of(axis).noise)).fold(0.0, f64::max);
+    let bands = Bands { displacement: band, force };
     let decision = tape::decide(played, &RigBody::of(rig), &found, bands, arguments.accept_relaxation)?;
     Ok(ResumeBody {
         from: decision.from,

@@ -91,8 +91,11 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E615 AxesDiffer Error;
+    E616 TooManyAxes Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
+    E619 NobodyNamed Error;
     E620 GroundRecord Error;
     E621 BadMatrix Error;
     E622 StoreyStiffness Error;
@@ -107,6 +110,7 @@ codes! {
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E635 TooUncertain Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;
@@ -129,6 +133,7 @@ codes! {
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
+    W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
     W720 BlowOnBlow Warning;

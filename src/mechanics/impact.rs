@@ -8,7 +8,7 @@ use super::law::{Advance, Bodies, Start};
 use super::scheme::{AnyScheme, Scheme};
 use super::specimen::RestoringForce;
 use super::tangent::TangentStiffness;
-use crate::plan::Integrator;
+use crate::plan::{Integrator, Until};
 
 /// All an impact starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,13 +240,13 @@ impl ImpactSolver {
         step.scheme.target(prediction)
     }
 
-    /// Velocity that the step is foretold to end with, m/s: exact under `tangent`, ṽ with the acceleration kept under the
-    /// others. A blow changes it.
-    pub fn predicted_velocity(&mut self) -> f64 {
+    /// Velocity that the step is foretold to end with, m/s, and whether a contact force has its share in it: exact under
+    /// `tangent`, with the structure's own acceleration kept under the others. A blow at its end changes it.
+    pub fn predicted_velocity(&mut self) -> (f64, bool) {
         let step = &mut self.step;
         let start = step.start();
         let prediction = self.predicted.get_or_insert_with(|| step.predict());
-        step.scheme.velocity(&step.bodies, &start, prediction)
+        (step.scheme.velocity(&step.bodies, &start, prediction), step.scheme.struck(&start, prediction))
     }
 
     /// Ends the step with what was measured at its end.
@@ -282,6 +282,16 @@ impl ImpactSolver {
         let fastest = state.velocity.hypot(state.restoring_force / (mass * self.stiffness).sqrt());
         let farthest = state.displacement - state.restoring_force / self.stiffness - fastest * (mass / self.stiffness).sqrt();
         back >= fastest || state.striker_displacement < farthest + state.indentation
+    }
+
+    /// Whether the run has come to its end before its duration.
+    #[must_use]
+    pub fn over(&self, until: Until) -> bool {
+        match until {
+            Until::StrikerStop => self.finished(),
+            Until::Rebound => self.rebounded(),
+            Until::Duration => false,
+        }
     }
 
     /// Whether the last step ended with Ẋs ≤ 0 and Ẋ ≤ 0.

@@ -7,7 +7,7 @@ use crate::plan::Behaviour;
 
 /// How a piston moves over some time: v(t) = v + a t + ½ j t² + `fading`·exp(−t/`lag`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
+pub struct Travel {
     /// At the beginning.
     pub start: Rate,
     /// m/s at the beginning, of what a first-order lag lets die away.
@@ -17,7 +17,7 @@ pub struct Course {
     pub seconds: f64,
 }
 
-impl Course {
+impl Travel {
     /// At rest.
     #[must_use]
     pub const fn rest(seconds: f64) -> Self {
@@ -39,7 +39,9 @@ impl Course {
             acceleration: one.acceleration - other.acceleration,
             jerk: one.jerk - other.jerk,
         };
-        Self { start, fading: self.fading - below.fading, ..*self }
+        // Of a piston that stands, nothing fades.
+        let lag = if self.fading == 0.0 { below.lag } else { self.lag };
+        Self { start, fading: self.fading - below.fading, lag, ..*self }
     }
 }
 
@@ -91,8 +93,8 @@ impl MaxwellBranch {
     }
 
     /// q(T) = q e^(−T/τ) + K₁ ∫ v(s) e^(−(T−s)/τ) ds.
-    pub fn follow(&mut self, course: &Course) {
-        let Course { start, fading, lag, seconds } = *course;
+    pub fn follow(&mut self, travel: &Travel) {
+        let Travel { start, fading, lag, seconds } = *travel;
         if seconds <= 0.0 {
             return;
         }
@@ -140,14 +142,14 @@ fn faded(seconds: f64, lag: f64, tau: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn by_midpoints(branch: &MaxwellBranch, course: &Course) -> f64 {
+    fn by_midpoints(branch: &MaxwellBranch, travel: &Travel) -> f64 {
         let (mut force, parts) = (branch.force, 100_000);
-        let step = course.seconds / f64::from(parts);
+        let step = travel.seconds / f64::from(parts);
         let half = 0.5 * step / branch.time_constant;
         for part in 0..parts {
             let time = step * (f64::from(part) + 0.5);
-            let fading = if course.lag > 0.0 { course.fading * (-time / course.lag).exp() } else { 0.0 };
-            let Rate { velocity, acceleration, jerk } = course.start;
+            let fading = if travel.lag > 0.0 { travel.fading * (-time / travel.lag).exp() } else { 0.0 };
+            let Rate { velocity, acceleration, jerk } = travel.start;
             let velocity = velocity + time * (acceleration + 0.5 * time * jerk) + fading;
             force = (force * (1.0 - half) + step * branch.stiffness * velocity) / (1.0 + half);
         }
@@ -160,10 +162,10 @@ mod tests {
         for (tau, lag) in [(0.3, 0.05), (0.05, 0.3), (0.2, 0.2), (40.0, 0.1), (0.01, 0.0)] {
             let fading = if lag > 0.0 { -0.02 } else { 0.0 };
             let start = Rate { velocity: 0.01, acceleration: -0.04, jerk: 0.3 };
-            let course = Course { start, fading, lag, seconds: 0.5 };
+            let travel = Travel { start, fading, lag, seconds: 0.5 };
             let mut branch = MaxwellBranch { force: 7.0, ..MaxwellBranch::new(4000.0, tau) };
-            let by_steps = by_midpoints(&branch, &course);
-            branch.follow(&course);
+            let by_steps = by_midpoints(&branch, &travel);
+            branch.follow(&travel);
             assert!((branch.force - by_steps).abs() < 1e-6, "τ {tau}: {} N, by steps {by_steps} N", branch.force);
         }
     }
@@ -172,15 +174,15 @@ mod tests {
     #[test]
     fn a_ramp_and_a_hold_are_those_of_the_standard_linear_solid() {
         let mut branch = MaxwellBranch::new(2e5, 1.5);
-        branch.follow(&Course::even(1e-3, 2.0));
+        branch.follow(&Travel::even(1e-3, 2.0));
         let held = 2e5 * 1e-3 * 1.5 * (1.0 - (-2.0_f64 / 1.5).exp());
         assert!((branch.force / held - 1.0).abs() < 1e-14);
         assert!((branch.rate_after(0.6) - held / 1.5 * (-0.4_f64).exp()).abs() < 1e-12);
-        branch.follow(&Course::rest(0.6));
+        branch.follow(&Travel::rest(0.6));
         assert!((branch.force / (held * (-0.4_f64).exp()) - 1.0).abs() < 1e-14);
         // In an instant it is a spring of K₁, and after long nothing.
-        branch.follow(&Course::rest(1e4));
-        branch.follow(&Course::even(1e3, 1e-9));
+        branch.follow(&Travel::rest(1e4));
+        branch.follow(&Travel::even(1e3, 1e-9));
         assert!((branch.force / 0.2 - 1.0).abs() < 1e-8, "1 µm on 200 kN/m: {}", branch.force);
     }
 
@@ -194,10 +196,10 @@ mod tests {
                 acceleration: 0.02 + time * 0.5,
                 jerk: 0.5,
             };
-            once.follow(&Course { start: rate(0.0), fading: 0.0, lag: 0.0, seconds });
+            once.follow(&Travel { start: rate(0.0), fading: 0.0, lag: 0.0, seconds });
             for part in 0..64 {
                 let from = seconds * f64::from(part) / 64.0;
-                often.follow(&Course { start: rate(from), fading: 0.0, lag: 0.0, seconds: seconds / 64.0 });
+                often.follow(&Travel { start: rate(from), fading: 0.0, lag: 0.0, seconds: seconds / 64.0 });
             }
             assert!((once.force / often.force - 1.0).abs() < 1e-12, "{} N is not {} N", once.force, often.force);
         }

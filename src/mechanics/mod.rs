@@ -19,9 +19,11 @@ pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
+pub mod recorded_path;
 pub mod relaxation;
 #[cfg(test)]
 mod relaxation_tests;
+pub mod rerun;
 pub mod scheme;
 pub mod specimen;
 pub mod split;

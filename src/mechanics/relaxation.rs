@@ -4,7 +4,7 @@
 use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 
 use super::identification::fit_line;
-use super::maxwell::{Course, MaxwellBranch};
+use super::maxwell::{MaxwellBranch, Travel};
 
 /// A specimen held at one place.
 #[derive(Clone, Debug, PartialEq)]
@@ -160,9 +160,9 @@ impl Problem<'_> {
             let moved = hold.displacement - at;
             at = hold.displacement;
             let seconds = hold.moved_for.max(1e-9);
-            branch.follow(&Course::even(moved / seconds, seconds));
+            branch.follow(&Travel::even(moved / seconds, seconds));
             let force = branch.force();
-            branch.follow(&Course::rest(hold.readings.last().map_or(0.0, |(time, _)| *time)));
+            branch.follow(&Travel::rest(hold.readings.last().map_or(0.0, |(time, _)| *time)));
             force
         });
         each.collect()

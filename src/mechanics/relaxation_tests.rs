@@ -1,6 +1,6 @@
 //! The fit of relaxation: exact without noise, honest with it, and silent where nothing relaxes.
 
-use super::maxwell::{Course, MaxwellBranch};
+use super::maxwell::{MaxwellBranch, Travel};
 use super::relaxation::{Hold, RelaxationFit, RelaxationModel, Unrelaxed, fit_relaxation};
 
 const BOTH: [RelaxationModel; 2] = [RelaxationModel::Exponential, RelaxationModel::StandardLinearSolid];
@@ -15,14 +15,14 @@ fn holds(stiffness: f64, pause: f64, noise: &mut dyn FnMut() -> f64) -> Vec<Hold
     (1_u32..=8)
         .map(|step| {
             let displacement = 1e-3 * f64::from(step);
-            branch.follow(&Course::even(2e-3, 0.5));
+            branch.follow(&Travel::even(2e-3, 0.5));
             let begins = branch.force();
             let reading = |index: u32| {
                 let time = pause * (f64::from(index) / 20.0).powi(2);
                 (time, 12.0 + K * displacement + begins * (-time / TAU).exp() + noise())
             };
             let readings = (0..=20).map(reading).collect();
-            branch.follow(&Course::rest(pause));
+            branch.follow(&Travel::rest(pause));
             Hold { step: u64::from(step), displacement, moved_for: 0.5, readings }
         })
         .collect()

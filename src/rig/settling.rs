@@ -121,7 +121,7 @@ fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::maxwell::Course;
+    use crate::mechanics::maxwell::Travel;
 
     const SETTLE: Settle = Settle { band: 1e-5, force_rate: 0.0, dwell: 0.3, timeout: 10.0 };
     const LAGGING: Unsettled =
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn what_relaxes_keeps_the_rig_unsettled_until_it_is_slow() {
         let mut branch = MaxwellBranch::new(1e5, 2.0);
-        branch.follow(&Course::even(2e-3 / 1e-6, 1e-6));
+        branch.follow(&Travel::even(2e-3 / 1e-6, 1e-6));
         let settle = Settle { force_rate: 5.0, ..SETTLE };
         let still = Unsettled { lagging: 0.0, lag: 0.0, ..LAGGING };
         assert_eq!(shared(&settle, &still, &[branch]), settle);

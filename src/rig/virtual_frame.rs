@@ -1,6 +1,8 @@
 //! The virtual rig of a frame: an actuator and a load cell for each floor, and storeys between them. In: targets, one a floor.
 //! Out: readings. As the virtual rig of one degree of freedom its time is simulated; each load cell has a seed of its own.
 
+mod glide;
+
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, settling_time};
@@ -8,9 +10,10 @@ use super::virtual_rig::OWN_SPEED;
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
-use crate::mechanics::maxwell::{Course, MaxwellBranch};
+use crate::mechanics::maxwell::{MaxwellBranch, Travel};
+use crate::mechanics::path::Path;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::{Frame, Settle, VirtualLink};
+use crate::plan::{Frame, Settle, Storey, VirtualLink};
 
 /// Several degrees of freedom: floors from the ground up.
 pub struct VirtualFrame {
@@ -33,17 +36,19 @@ pub struct VirtualFrame {
 struct Axis {
     actuator: Actuator,
     cell: LoadCell,
-    /// Sum of the sizes of a row of K, N/m: how fast its force can change as the floors move.
+    /// Sums of the sizes of a row of K (N/m) and of what damps the storeys (N·s/m): how fast its force can change as the floors
+    /// move.
     stiffness: f64,
+    damping: f64,
 }
 
 /// What gives the floors their forces.
 enum Structure {
     /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift.
-    /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest.
+    /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
     Storeys {
         models: Vec<SpecimenModel>,
-        rates: Vec<CellDamping>,
+        dampers: Vec<CellDamping>,
         branches: Vec<Vec<MaxwellBranch>>,
         drift: Vec<f64>,
         shear: Vec<f64>,
@@ -60,9 +65,10 @@ impl Structure {
         }
         let nothing = vec![0.0; frame.storeys.len()];
         let models = frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect();
-        let rates = frame.storeys.iter().map(|storey| CellDamping::new(0.0, 0.0).with_rate_of(&storey.behaviour)).collect();
+        let damper = |storey: &Storey| CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour);
+        let dampers = frame.storeys.iter().map(damper).collect();
         let branches = frame.storeys.iter().map(|storey| MaxwellBranch::all_of(&storey.behaviour)).collect();
-        Self::Storeys { models, rates, branches, drift: nothing.clone(), shear: nothing }
+        Self::Storeys { models, dampers, branches, drift: nothing.clone(), shear: nothing }
     }
 
     fn move_to(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
@@ -79,10 +85,10 @@ impl Structure {
     }
 
     /// What relaxes in the storeys follows the floors, from the ground up.
-    fn relax(&mut self, courses: &[Course]) {
+    fn relax(&mut self, travels: &[Travel]) {
         let Self::Storeys { branches, .. } = self else { return };
         let mut below = None;
-        for (branches, floor) in branches.iter_mut().zip(courses) {
+        for (branches, floor) in branches.iter_mut().zip(travels) {
             let drift = below.map_or(*floor, |below| floor.less(below));
             for branch in branches {
                 branch.follow(&drift);
@@ -91,21 +97,45 @@ impl Structure {
         }
     }
 
-    /// What the cells feel of the floors' forces while these move, N.
+    /// The floors go on at these velocities, m/s: each storey's friction knows its direction.
+    fn slide(&mut self, velocities: &[f64]) {
+        if let Self::Storeys { dampers, .. } = self {
+            for (damper, velocity) in dampers.iter_mut().zip(apart(velocities)) {
+                damper.force(velocity);
+            }
+        }
+    }
+
+    /// What the cells feel of the floors' forces at these velocities (m/s), N.
     fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
         let mut felt = restoring_force.to_vec();
-        if let Self::Storeys { rates, branches, shear, .. } = self
-            && (velocities.iter().any(|velocity| *velocity != 0.0) || branches.iter().any(|storey| !storey.is_empty()))
+        if let Self::Storeys { dampers, branches, shear, .. } = self
+            && (dampers.iter().any(|damper| !damper.is_none()) || branches.iter().any(|storey| !storey.is_empty()))
         {
-            let mut apart = vec![0.0; velocities.len()];
-            drifts(velocities, &mut apart);
             let relaxing = branches.iter().map(|storey| storey.iter().map(MaxwellBranch::force).sum::<f64>());
-            let storeys = rates.iter_mut().zip(shear).zip(apart).zip(relaxing);
-            let shears = storeys.map(|(((rate, shear), velocity), relaxing)| rate.felt(*shear, velocity) + relaxing);
-            floor_forces(&shears.collect::<Vec<f64>>(), &mut felt);
+            let storeys = dampers.iter_mut().zip(shear).zip(apart(velocities)).zip(relaxing);
+            let felt_by = |(((damper, shear), velocity), relaxing): (((&mut CellDamping, &mut f64), f64), f64)| {
+                damper.felt(*shear, velocity) + relaxing
+            };
+            let shears: Vec<f64> = storeys.map(felt_by).collect();
+            floor_forces(&shears, &mut felt);
         }
         felt
     }
+}
+
+/// Velocities of the drifts, m/s.
+fn apart(velocities: &[f64]) -> Vec<f64> {
+    let mut apart = vec![0.0; velocities.len()];
+    drifts(velocities, &mut apart);
+    apart
+}
+
+/// Of each floor: the sum of the sizes of its row of the storeys' damping matrix, N·s/m.
+fn damping_rows(frame: &Frame) -> Vec<f64> {
+    let of = |storey: usize| frame.storeys.get(storey).map_or(0.0, |storey| storey.damping);
+    let below = |floor: usize| if floor > 0 { 2.0 * of(floor) } else { of(floor) };
+    (0..frame.degrees_of_freedom()).map(|floor| below(floor) + 2.0 * of(floor + 1)).collect()
 }
 
 /// The seed of one load cell: the plan's own for the lowest floor.
@@ -117,12 +147,14 @@ const fn seed_of(seed: u64, axis: u64) -> u64 {
 impl VirtualFrame {
     #[must_use]
     pub fn new(name: &str, link: VirtualLink, settle: Settle, frame: &Frame, sign: f64) -> Self {
-        let axis = |(number, row): (u64, &Vec<f64>)| Axis {
+        let viscous = damping_rows(frame);
+        let axis = |((number, row), damping): ((u64, &Vec<f64>), f64)| Axis {
             actuator: Actuator::new(link.lag, link.tracking),
             cell: LoadCell::new(link.noise, link.force_resolution, link.drift, seed_of(link.seed, number)),
             stiffness: row.iter().map(|entry| entry.abs()).sum(),
+            damping,
         };
-        let axes: Vec<Axis> = (0..).zip(&frame.stiffness).map(axis).collect();
+        let axes: Vec<Axis> = (0..).zip(&frame.stiffness).zip(viscous).map(axis).collect();
         let at_rest = vec![0.0; axes.len()];
         let mut structure = Structure::of(frame);
         let mut restoring_force = at_rest.clone();
@@ -150,14 +182,29 @@ impl VirtualFrame {
             *bent = position;
         }
         if moved {
+            let velocities = self.velocities();
+            self.structure.slide(&velocities);
             self.structure.move_to(&self.bent, &mut self.restoring_force);
         }
     }
 
+    /// Of the pistons, m/s.
+    fn velocities(&self) -> Vec<f64> {
+        self.axes.iter().map(|axis| axis.actuator.velocity()).collect()
+    }
+
+    fn reading(&mut self) -> Reading {
+        let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
+        let displacement = self.bent.iter().map(|bent| sign * to_quantum(*bent, resolution)).collect();
+        let felt = self.structure.felt(&self.velocities(), &self.restoring_force);
+        let force = self.axes.iter_mut().zip(felt).map(|(axis, force)| sign * axis.cell.read(force, time)).collect();
+        Reading { time, displacement, force, raw: Vec::new() }
+    }
+
     /// `seconds` pass with the references at rest.
     fn rest(&mut self, seconds: f64) {
-        let courses: Vec<Course> = self.axes.iter_mut().map(|axis| axis.actuator.rest(seconds)).collect();
-        self.structure.relax(&courses);
+        let travels: Vec<Travel> = self.axes.iter_mut().map(|axis| axis.actuator.rest(seconds)).collect();
+        self.structure.relax(&travels);
         self.time += seconds;
         self.follow();
     }
@@ -170,7 +217,7 @@ impl VirtualFrame {
                 lag: axis.actuator.lag(),
                 miss: (target - aim).abs(),
                 stiffness: axis.stiffness,
-                damping: 0.0,
+                damping: axis.damping,
                 drift: self.link.drift,
                 rate: None,
             };
@@ -224,7 +271,7 @@ impl Rig for VirtualFrame {
         let ways = self.axes.iter().zip(&aims).map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
         let seconds = ways.fold(0.0, f64::max) / speed;
         let went = self.axes.iter_mut().zip(&aims).map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
-        self.structure.relax(&went.collect::<Vec<Course>>());
+        self.structure.relax(&went.collect::<Vec<Travel>>());
         self.time += seconds;
         self.follow();
         for axis in &mut self.axes {
@@ -236,7 +283,7 @@ impl Rig for VirtualFrame {
         } else {
             self.rest(self.settle.timeout);
             self.hold();
-            Err(RigFault::NotSettled { timeout: self.settle.timeout })
+            Err(RigFault::NotSettled { timeout: self.settle.timeout, axis: None })
         }
     }
 
@@ -246,16 +293,15 @@ impl Rig for VirtualFrame {
     }
 
     fn read(&mut self) -> Result<Reading, RigFault> {
-        let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
-        let displacement = self.bent.iter().map(|bent| sign * to_quantum(*bent, resolution)).collect();
-        let velocities: Vec<f64> = self.axes.iter().map(|axis| axis.actuator.velocity()).collect();
-        let felt = self.structure.felt(&velocities, &self.restoring_force);
-        let force = self.axes.iter_mut().zip(felt).map(|(axis, force)| sign * axis.cell.read(force, time)).collect();
-        Ok(Reading { time, displacement, force, raw: Vec::new() })
+        Ok(self.reading())
     }
 
     fn traverse(&mut self, _: &[f64], _: f64, _: usize, _: EachReading<'_>) -> Result<(), RigFault> {
         Err(RigFault::Device("the axes of a frame go to targets: they are not read on the way".to_owned()))
+    }
+
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.glide_along(paths, samples, each)
     }
 
     fn hold(&mut self) {
@@ -273,12 +319,12 @@ impl Rig for VirtualFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Behaviour, Storey};
+    use crate::plan::Behaviour;
 
     const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
 
     fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, stiffness, height: None, behaviour }
+        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
     }
 
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.

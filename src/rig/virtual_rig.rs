@@ -1,14 +1,14 @@
 //! The virtual rig: an actuator, a load cell and a specimen between them. In: targets. Out: readings. Its time is
 //! simulated, so that motion, settling and pauses take rig time and no wall time; it reads no clock and no file.
 
-mod glide;
+pub(super) mod glide;
 
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, relaxing_time, settling_time, shared};
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
-use crate::mechanics::maxwell::{Course, MaxwellBranch};
+use crate::mechanics::maxwell::{MaxwellBranch, Travel};
 use crate::mechanics::path::Path;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Plan, Settle, Specimen, VirtualLink};
@@ -92,9 +92,9 @@ impl VirtualRig {
     }
 
     /// The specimen, what relaxes beside it and the friction on it follow the piston.
-    fn follow(&mut self, course: &Course) {
+    fn follow(&mut self, travel: &Travel) {
         for branch in &mut self.branches {
-            branch.follow(course);
+            branch.follow(travel);
         }
         let position = self.actuator.position();
         if position != self.bent {
@@ -106,9 +106,9 @@ impl VirtualRig {
 
     /// `seconds` pass with the reference at rest.
     fn rest(&mut self, seconds: f64) {
-        let course = self.actuator.rest(seconds);
+        let travel = self.actuator.rest(seconds);
         self.time += seconds;
-        self.follow(&course);
+        self.follow(&travel);
     }
 
     fn reading(&mut self) -> Reading {
@@ -158,9 +158,9 @@ impl Rig for VirtualRig {
             self.proposed.take().ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
         let aim = self.actuator.aim(target);
         let seconds = (aim - self.actuator.reference()).abs() / speed;
-        let course = self.actuator.advance(aim, seconds);
+        let travel = self.actuator.advance(aim, seconds);
         self.time += seconds;
-        self.follow(&course);
+        self.follow(&travel);
         self.actuator.stop();
         let unsettled = Unsettled {
             lagging: self.actuator.lagging(),
@@ -181,7 +181,7 @@ impl Rig for VirtualRig {
         }
         self.rest((arrived + self.settle.timeout - self.time).max(0.0));
         self.hold();
-        Err(RigFault::NotSettled { timeout: self.settle.timeout })
+        Err(RigFault::NotSettled { timeout: self.settle.timeout, axis: None })
     }
 
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
@@ -205,9 +205,9 @@ impl Rig for VirtualRig {
         for sample in 1..=samples {
             let fraction = sample as f64 / samples as f64;
             let to = if sample == samples { aim } else { from + (aim - from) * fraction };
-            let course = self.actuator.advance(to, seconds / samples as f64);
+            let travel = self.actuator.advance(to, seconds / samples as f64);
             self.time = began + seconds * fraction;
-            self.follow(&course);
+            self.follow(&travel);
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();
@@ -243,7 +243,7 @@ mod tests {
 
     pub(super) fn specimen(damping: f64, coulomb: f64) -> Specimen {
         let behaviour = Some(Behaviour::Elastic { stiffness: 1000.0 });
-        Specimen { name: "spring".to_owned(), mass: 1.0, frame: None, behaviour, damping, coulomb }
+        Specimen { name: "spring".to_owned(), mass: 1.0, mass_uncertainty: 0.0, frame: None, behaviour, damping, coulomb }
     }
 
     fn rig(link: VirtualLink) -> VirtualRig {
@@ -307,7 +307,7 @@ mod tests {
         let link = VirtualLink { tracking: 0.1, ..VirtualLink::default() };
         let mut never = VirtualRig::new(link, settle, Some(&specimen(0.0, 0.0)), 1.0);
         never.propose(&[0.002], Some(0.01)).unwrap();
-        assert_eq!(never.execute(), Err(RigFault::NotSettled { timeout: 10.0 }));
+        assert_eq!(never.execute(), Err(RigFault::NotSettled { timeout: 10.0, axis: None }));
         assert!((never.time() - 10.18).abs() < 1e-12);
     }
 

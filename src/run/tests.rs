@@ -81,7 +81,8 @@ fn results_stand_in_the_order_of_the_reference() {
     let record = run_unwatched(&ramp_then_sweep());
     let names = |procedure: usize| -> Vec<_> { record.procedures[procedure].results.iter().map(|result| result.name).collect() };
     let ramp = "stiffness, secant_stiffness, intercept_force, r_squared, max_force, max_displacement, loop_energy, relaxation, \
-                tangent_stiffness, yield_force, yield_displacement, hardened_stiffness, hardening";
+                tangent_stiffness, yield_force, yield_displacement, hardened_stiffness, hardening, breaks, break_uncertainties, \
+                break_forces, break_force_uncertainties, curve_stiffnesses, curve_stiffness_uncertainties";
     assert_eq!(names(0).join(", "), ramp);
     assert_eq!(names(1).join(", "), "damping, coulomb_force, r_squared, damping_ratio, max_velocity");
 }
@@ -184,7 +185,7 @@ fn a_breach_holds_the_rig_and_keeps_what_was_recorded() {
     // The force limit is found out by reading.
     plan.limits = crate::plan::Limits { force: Interval { low: -1e3, high: 200.0 }, ..crate::plan::Limits::NONE };
     let record = run_unwatched(&plan);
-    let by_hand = RigFault::LimitBreached { quantity: LimitedQuantity::Force, value: 213.0, low: -1e3, high: 200.0 };
+    let by_hand = RigFault::LimitBreached { quantity: LimitedQuantity::Force, value: 213.0, low: -1e3, high: 200.0, axis: None };
     let Outcome::Aborted { reason } = &record.outcome else { panic!("{:?}", record.outcome) };
     assert_eq!(reason.split_whitespace().next(), by_hand.to_string().split_whitespace().next());
     assert_eq!(ramp_steps(&record.procedures[0].history).len(), 6);

@@ -7,7 +7,7 @@ use rand_pcg::rand_core::SeedableRng as _;
 
 use super::bench_fault::{BenchFault, BenchFaults};
 use crate::mechanics::damping::CellDamping;
-use crate::mechanics::maxwell::{Course, MaxwellBranch};
+use crate::mechanics::maxwell::{MaxwellBranch, Travel};
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Interval};
 
@@ -161,8 +161,8 @@ impl Bench {
         // Evenly while it goes, the rest at rest; a ram that lags goes all the time.
         let going = if follows == 1.0 && left != 0.0 { (left.abs() / self.speed).min(seconds) } else { seconds };
         for branch in &mut self.branches {
-            branch.follow(&Course::even((ram - self.ram) / going, going));
-            branch.follow(&Course::rest(seconds - going));
+            branch.follow(&Travel::even((ram - self.ram) / going, going));
+            branch.follow(&Travel::rest(seconds - going));
         }
         if ram != self.ram {
             self.ram = ram;

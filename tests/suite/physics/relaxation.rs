@@ -1,7 +1,7 @@
 //! Force that relaxes, on the virtual rig: the standard linear solid in closed form, whatever the rig does, and the energy of its
 //! cycles.
 
-use psd::mechanics::maxwell::{Course, MaxwellBranch};
+use psd::mechanics::maxwell::{MaxwellBranch, Travel};
 use psd::mechanics::path::Path;
 use psd::plan::{Behaviour, Settle, Specimen, VirtualLink};
 use psd::rig::{Rig, VirtualRig};
@@ -14,7 +14,8 @@ const TAU: f64 = 1.5;
 fn rig(link: VirtualLink, settle: Settle) -> VirtualRig {
     let of = Box::new(Behaviour::Elastic { stiffness: K });
     let behaviour = Some(Behaviour::Maxwell { of, stiffness: K1, time_constant: TAU });
-    let specimen = Specimen { name: "pad".to_owned(), mass: 1.0, frame: None, behaviour, damping: 0.0, coulomb: 0.0 };
+    let specimen =
+        Specimen { name: "pad".to_owned(), mass: 1.0, mass_uncertainty: 0.0, frame: None, behaviour, damping: 0.0, coulomb: 0.0 };
     VirtualRig::new(link, settle, Some(&specimen), -1.0)
 }
 
@@ -105,7 +106,7 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
         let (amplitude, parts) = (1e-3, 4000);
         let seconds = 2.0 * amplitude / velocity;
         let mut branch = MaxwellBranch::new(K1, TAU);
-        branch.follow(&Course::even(velocity, 0.5 * seconds));
+        branch.follow(&Travel::even(velocity, 0.5 * seconds));
         let mut energy = 0.0;
         // Thirty time constants, and a whole cycle at least: e^(−30) is left of how it began.
         let whole = (15.0 * TAU / seconds).ceil().max(1.0);
@@ -115,7 +116,7 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
             energy = if half % 2 == 0 { 0.0 } else { energy };
             for _ in 0..parts {
                 let before = branch.force();
-                branch.follow(&Course::even(way, seconds / f64::from(parts)));
+                branch.follow(&Travel::even(way, seconds / f64::from(parts)));
                 energy += 0.5 * (before + branch.force()) * way * seconds / f64::from(parts);
             }
         }
