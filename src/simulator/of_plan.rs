@@ -84,8 +84,11 @@ fn specimen(plan: &Plan) -> Option<&Specimen> {
 
 /// What the cell carries, N.
 fn capacity(link: &RealLink) -> f64 {
-    let Interval { low, high } = link.readings.force_range;
-    let capacity = low.abs().max(high.abs());
+    let of_axis = |axis| {
+        let Interval { low, high } = link.readings_of(axis).force_range;
+        low.abs().max(high.abs())
+    };
+    let capacity = (0..link.axes.len().max(1)).map(of_axis).fold(0.0, f64::max);
     if capacity.is_finite() && capacity > 0.0 { capacity } else { CAPACITY }
 }
 
