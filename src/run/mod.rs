@@ -13,6 +13,7 @@ mod escalate;
 #[cfg(test)]
 mod escalate_tests;
 mod gate;
+mod gliding;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
@@ -30,6 +31,7 @@ mod sequence_tests;
 mod session;
 mod shake;
 mod shake_results;
+mod shaking;
 mod stiffness_ramp;
 mod stop;
 mod strike;
