@@ -150,11 +150,12 @@ impl Bench {
             return;
         }
         self.time = to;
+        if self.moving() {
+            let velocities = self.velocities();
+            self.structure.goes(&velocities);
+        }
         let mut bent = false;
         for ram in &mut self.rams {
-            if ram.moving() {
-                self.structure.goes(ram.velocity().signum());
-            }
             let before = ram.at;
             ram.advance(seconds);
             bent |= ram.at != before;
@@ -246,11 +247,16 @@ impl Bench {
 
     pub fn force_of(&mut self, ram: usize) -> f64 {
         self.readings += u64::from(ram == 0);
-        let velocities: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.velocity()).collect();
+        let velocities = self.velocities();
         let felt = self.structure.felt(&self.restoring_force, &velocities)[ram];
         let ram = &mut self.rams[ram];
         let at_the_cell = ram.settings.sign * felt;
         ram.force(at_the_cell, self.time)
+    }
+
+    /// Of each ram, as the specimen has it, m/s.
+    fn velocities(&self) -> Vec<f64> {
+        self.rams.iter().map(|ram| ram.settings.sign * ram.velocity()).collect()
     }
 
     /// The force as a raw converter of 24 bits gives it.
@@ -394,7 +400,7 @@ mod tests {
     const RAM: RamSettings = RamSettings { sign: 1.0, noise: 0.0, resolution: 0.0, limits: Interval { low: -0.01, high: 0.01 } };
 
     fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, stiffness, height: None, behaviour }
+        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
     }
 
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.

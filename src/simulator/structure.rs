@@ -4,7 +4,7 @@
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{drifts, floor_forces};
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::{Behaviour, Frame};
+use crate::plan::{Behaviour, Frame, Storey};
 
 #[derive(Debug)]
 pub(super) enum Structure {
@@ -12,10 +12,10 @@ pub(super) enum Structure {
         specimen: Box<SpecimenModel>,
         damping: CellDamping,
     },
-    /// Each storey resists its drift, and what it resists more the faster it is bent.
+    /// Each storey resists its drift, and has what damps it beside.
     Storeys {
         models: Vec<SpecimenModel>,
-        rates: Vec<CellDamping>,
+        dampers: Vec<CellDamping>,
         shear: Vec<f64>,
     },
     /// R = K X, row by row.
@@ -33,10 +33,10 @@ impl Structure {
         if frame.storeys.is_empty() {
             return Self::Matrix(frame.stiffness.clone());
         }
-        let storeys = || frame.storeys.iter().map(|storey| &storey.behaviour);
+        let damper = |storey: &Storey| CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour);
         Self::Storeys {
-            models: storeys().map(SpecimenModel::new).collect(),
-            rates: storeys().map(|behaviour| CellDamping::new(0.0, 0.0).with_rate_of(behaviour)).collect(),
+            models: frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect(),
+            dampers: frame.storeys.iter().map(damper).collect(),
             shear: vec![0.0; frame.storeys.len()],
         }
     }
@@ -62,16 +62,17 @@ impl Structure {
     pub(super) fn felt(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
         match self {
             Self::One { damping, .. } => forces.iter().zip(velocities).map(|(force, v)| damping.felt(*force, *v)).collect(),
-            Self::Storeys { rates, shear, .. } if velocities.iter().any(|velocity| *velocity != 0.0) => {
+            Self::Storeys { dampers, shear, .. } => {
                 let mut apart = vec![0.0; velocities.len()];
                 drifts(velocities, &mut apart);
-                // What a fault of the specimen took away is not felt either: only what speed adds is added.
-                let added = rates.iter_mut().zip(&*shear).zip(apart).map(|((rate, shear), v)| rate.felt(*shear, v) - shear);
+                // What a fault took of the specimen's force is not felt again: only what is beside it is added.
+                let beside =
+                    dampers.iter_mut().zip(&*shear).zip(apart).map(|((damper, shear), v)| damper.felt(*shear, v) - shear);
                 let mut more = vec![0.0; velocities.len()];
-                floor_forces(&added.collect::<Vec<f64>>(), &mut more);
+                floor_forces(&beside.collect::<Vec<f64>>(), &mut more);
                 forces.iter().zip(more).map(|(force, more)| force + more).collect()
             }
-            Self::Storeys { .. } | Self::Matrix(_) => forces.to_vec(),
+            Self::Matrix(_) => forces.to_vec(),
         }
     }
 
@@ -82,10 +83,17 @@ impl Structure {
         }
     }
 
-    /// The ram goes this way now: friction is against the last motion.
-    pub(super) const fn goes(&mut self, direction: f64) {
-        if let Self::One { damping, .. } = self {
-            damping.last_direction = direction;
+    /// The rams go at these velocities now, m/s: friction is against the last motion.
+    pub(super) fn goes(&mut self, velocities: &[f64]) {
+        let mut apart = vec![0.0; velocities.len()];
+        drifts(velocities, &mut apart);
+        let dampers = match self {
+            Self::One { damping, .. } => std::slice::from_mut(damping),
+            Self::Storeys { dampers, .. } => dampers,
+            Self::Matrix(_) => return,
+        };
+        for (damper, velocity) in dampers.iter_mut().zip(apart).filter(|(_, velocity)| *velocity != 0.0) {
+            damper.last_direction = velocity.signum();
         }
     }
 }
