@@ -4,7 +4,6 @@
 
 use super::failpoint::{Guarding, on};
 use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally};
-use crate::mechanics::monitor;
 use crate::plan::{Interval, Limits};
 
 /// A rig and what nothing may drive it past.
@@ -221,8 +220,7 @@ impl<'rig> Guard<'rig> {
     /// Share of the input energy up to which tracking may err: the plan's, else the default.
     #[must_use]
     pub fn tracking_energy_limit(&self) -> Interval {
-        let limit = self.limits.tracking_energy_error;
-        if limit.is_bounded() { limit } else { Interval { low: 0.0, high: monitor::HOLD } }
+        self.limits.held().tracking_energy_error
     }
 
     /// Stops all motion and keeps the load. What was proposed is forgotten.
