@@ -16,7 +16,7 @@ use crate::record::journal::{EntryKind, OLDEST_FORMAT, recover};
 fn retold(mut alter: impl FnMut(&mut Value)) -> Folder {
     let journal = forged(&run()[JOURNAL], |kind, body| {
         if kind == EntryKind::Header {
-            alter(body)
+            alter(body);
         }
     });
     let changed = with(&folder(run()), JOURNAL, Some(journal));
