@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::args::PlanSettings;
 use super::exit::Failure;
 use super::loader::plain;
+use super::room;
 use crate::check::{LoadFault, Loader, Options, check};
 use crate::output::{Provenance, RealRun};
 use crate::plan::Plan;
@@ -72,9 +73,20 @@ pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
 }
 
-/// Opens the record of a run that is about to begin.
+/// Opens the record of a run that is about to begin, where there is room for all of it.
 pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
-    begin_in(Box::new(FileStorage::create(&journal_of(folder))?), plan, header)
+    let path = journal_of(folder);
+    let storage = FileStorage::create(&path)?;
+    // What a client will ask for nobody knows.
+    if header.served.is_none()
+        && let Err(failure) = room::enough(folder, &storage, plan, 0)
+    {
+        drop(storage);
+        // Nothing is left of a run that did not begin, not even its folder if it is empty.
+        let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(folder));
+        return Err(failure);
+    }
+    begin_in(Box::new(storage), plan, header)
 }
 
 /// A record that nobody keeps: the run is the same as one on record, to the last bit of every time.

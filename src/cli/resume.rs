@@ -12,7 +12,7 @@ use super::output::{give, tell};
 use super::record_file::{self, BUILD, ReadRecord, journal_of};
 use super::settings::Settings;
 use super::watch::Attendance;
-use super::{plan_file, provenance, real_rig};
+use super::{plan_file, provenance, real_rig, room};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
@@ -46,6 +46,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     // Before a port is opened or a byte written: the record, by the plan that is to go on.
     tape::same_measure(&read.plan.rig, &plan.rig)?;
     tape::rehearse(&plan, &read.played)?;
+    room::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
 
     let torn = storage.truncate_to(read.recovered.whole)?;
     let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);

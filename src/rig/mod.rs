@@ -10,6 +10,7 @@ pub mod failpoint;
 mod fault_table;
 mod guard;
 mod guard_glide;
+mod guard_way;
 mod load_cell;
 pub mod port;
 pub mod real;

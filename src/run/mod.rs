@@ -18,6 +18,9 @@ mod impact_tests;
 mod inputs;
 mod inspect;
 mod move_to;
+pub mod need;
+#[cfg(test)]
+mod need_tests;
 pub mod rehearsal;
 mod request;
 mod results;
