@@ -4,12 +4,12 @@
 //!
 //! | Row | Fault | Shown by |
 //! |---|---|---|
+//! | 6 | a disk too small for the run | `room::no_rig_writes_more_than_was_reckoned` |
 //! | 10 | no reply | `line::a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held` |
 //! | 11 | parts of replies, two in one read | `line::a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply`, `line::a_reply_cut_anywhere_is_never_a_shorter_number` |
 //! | 12 | garbage, a megabyte without an end | `line::garbage_of_any_kind_is_counted_and_none_of_it_is_used` |
 //! | 13 | every bit of a reply flipped | `line::every_flipped_bit_of_a_reply_is_seen` |
 //! | 14 | doubled, late, out of turn | `line::a_doubled_a_late_and_an_old_reply_are_ignored`, `unnumbered::*` |
-//! | 6 | a disk too small for the run | `room::no_rig_writes_more_than_was_reckoned` |
 //! | 16 | reboot | `device::a_rig_that_starts_anew_is_held_and_not_moved_any_more`, `unnumbered::a_start_of_grbl_is_seen` |
 //! | 18 | lag, stuck | `motion::a_ram_that_sticks_or_lags_is_a_following_error` |
 //! | 19 | sign, unit, scale, offset | `gate::*` |
