@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plan::{Dialect, Interval, Limits, Plan, RealLink, RigPlan};
+use crate::plan::{Dialect, Interval, Limits, Link, Plan, RealLink, RigPlan};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::rig::{DeclaredNoise, Identity};
@@ -76,6 +76,8 @@ pub struct Channel {
     pub factor: f64,
     /// Its number at none of the quantity.
     pub zero: f64,
+    /// Quantum of a displacement (m), standard deviation of one force reading (N), as declared.
+    pub doubt: f64,
     /// The calibration that the factor is traced to.
     pub certificate: Option<String>,
     /// Day until which that holds, `YYYY-MM-DD`.
@@ -97,6 +99,9 @@ pub enum GivenIn {
 pub struct HeldLimit {
     /// As the plan's `limits` call it.
     pub quantity: String,
+    /// From 1, where it is of one axis alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axis: Option<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub low: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -106,15 +111,26 @@ pub struct HeldLimit {
 impl Equipment {
     #[must_use]
     pub fn of(plan: &Plan, device: Device) -> Self {
-        let axes = 1..=plan.degrees_of_freedom();
-        Self { device, channels: axes.flat_map(|axis| channels(&plan.rig, axis)).collect(), limits: held(&plan.limits) }
+        let axes = 0..plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom());
+        let mut limits = held(&plan.limits, None);
+        for axis in axes.clone() {
+            let own = plan.rig.limits_of(axis, &plan.limits);
+            limits.extend(
+                held(&own, Some(axis + 1))
+                    .into_iter()
+                    .filter(|own| !limits.iter().any(|all| all.bounds_as(own)))
+                    .collect::<Vec<_>>(),
+            );
+        }
+        Self { device, channels: axes.flat_map(|axis| channels(&plan.rig, axis)).collect(), limits }
     }
 
     /// What makes the same number another quantity than before, if anything does.
     #[must_use]
     pub fn measures_otherwise(&self, now: &Self) -> Option<&'static str> {
         let scale = |channel: &Channel| {
-            (channel.axis, channel.measures, channel.given_in, channel.factor.to_bits(), channel.zero.to_bits())
+            let resolution = if channel.measures == Measures::Displacement { channel.doubt.to_bits() } else { 0 };
+            (channel.axis, channel.measures, channel.given_in, channel.factor.to_bits(), channel.zero.to_bits(), resolution)
         };
         if !self.channels.iter().map(scale).eq(now.channels.iter().map(scale)) {
             return Some("calibration");
@@ -125,13 +141,18 @@ impl Equipment {
     /// Limits and certificates that are no longer those, in words.
     #[must_use]
     pub fn changes(&self, now: &Self) -> Vec<String> {
-        let mut names: Vec<&str> = self.limits.iter().chain(&now.limits).map(|limit| limit.quantity.as_str()).collect();
-        names.sort_unstable();
-        names.dedup();
-        let limit = |of: &Self, name: &str| of.limits.iter().find(|limit| limit.quantity == name).cloned();
+        let mut named: Vec<(&str, Option<usize>)> =
+            self.limits.iter().chain(&now.limits).map(|limit| (limit.quantity.as_str(), limit.axis)).collect();
+        named.sort_unstable();
+        named.dedup();
+        let limit = |of: &Self, name: (&str, Option<usize>)| {
+            of.limits.iter().find(|limit| (limit.quantity.as_str(), limit.axis) == name).cloned()
+        };
         let told = |limit: Option<HeldLimit>| limit.map_or_else(|| "none".to_owned(), |limit| limit.told());
-        let limits = names.into_iter().filter(|name| limit(self, name) != limit(now, name));
-        let limits = limits.map(|name| format!("limit {name}: {} became {}", told(limit(self, name)), told(limit(now, name))));
+        let limits = named.into_iter().filter(|name| limit(self, *name) != limit(now, *name)).map(|name| {
+            let axis = name.1.map_or_else(String::new, |axis| format!(" of axis {axis}"));
+            format!("limit {}{axis}: {} became {}", name.0, told(limit(self, name)), told(limit(now, name)))
+        });
         let traced = |of: &Self| of.channels.iter().map(|channel| (channel.certificate.clone(), channel.due.clone())).collect();
         let (was, is): (Vec<_>, Vec<_>) = (traced(self), traced(now));
         limits.chain((was != is).then(|| "another calibration certificate is named".to_owned())).collect()
@@ -150,13 +171,18 @@ impl HeldLimit {
         known.map_or(Dimension::NUMBER, |(.., dimension)| dimension)
     }
 
+    /// Whether it bounds the same quantity in the same way, whatever axis it is said of.
+    fn bounds_as(&self, other: &Self) -> bool {
+        (&self.quantity, self.low, self.high) == (&other.quantity, other.low, other.high)
+    }
+
     fn told(&self) -> String {
         let end = |end: Option<f64>| end.map_or_else(|| "any".to_owned(), |end| stated(end, self.dimension()));
         format!("{} .. {}", end(self.low), end(self.high))
     }
 }
 
-/// The two channels of an axis.
+/// The two channels of an axis, by its place.
 fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
     let link = rig.link.as_real();
     let weighs = |link: &RealLink| link.load_cell.as_ref().unwrap_or(&link.actuator).dialect.clone();
@@ -173,23 +199,32 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         }
         _ => (GivenIn::Units, 1.0, 0.0),
     };
-    let channel = |measures, given_in, factor: f64, zero| Channel {
-        axis,
+    let (sign, calibration) = (rig.sign_of(axis), rig.calibration_of(axis));
+    let (resolution, noise) = match &rig.link {
+        Link::Virtual(link) => (link.resolution, link.noise),
+        Link::Real(link) => (link.readings_of(axis).resolution, link.readings_of(axis).noise),
+    };
+    let channel = |measures, given_in, factor: f64, zero, doubt| Channel {
+        axis: axis + 1,
         measures,
         given_in,
-        factor: rig.sign * factor,
+        factor: sign * factor,
         zero,
-        certificate: rig.calibration.reference.clone(),
-        due: rig.calibration.due.clone(),
+        doubt,
+        certificate: calibration.reference.clone(),
+        due: calibration.due.clone(),
     };
-    [channel(Measures::Displacement, length_given, length, 0.0), channel(Measures::Force, force_given, force, zero)]
+    [
+        channel(Measures::Displacement, length_given, length, 0.0, resolution),
+        channel(Measures::Force, force_given, force, zero, noise),
+    ]
 }
 
-fn held(limits: &Limits) -> Vec<HeldLimit> {
+fn held(limits: &Limits, axis: Option<usize>) -> Vec<HeldLimit> {
     let end = |end: f64| Some(end).filter(|end| end.is_finite());
     let bounded = limits.held().named().into_iter().filter(|(_, interval, _)| interval.is_bounded());
     bounded
-        .map(|(name, Interval { low, high }, _)| HeldLimit { quantity: name.to_owned(), low: end(low), high: end(high) })
+        .map(|(name, Interval { low, high }, _)| HeldLimit { quantity: name.to_owned(), axis, low: end(low), high: end(high) })
         .collect()
 }
 

@@ -30,6 +30,8 @@ const LINE: f64 = 96.0;
 pub(crate) const WALL: f64 = 34.0;
 /// The bytes of a target: frames are no longer than 96 bytes.
 const WIRE: f64 = 200.0;
+/// What another axis adds to a frame or to a reply: its target; its place and its force.
+const AXIS: f64 = 60.0;
 /// A reading that was not usable and taken again, a TALLY: one in ten readings.
 const MENDED: f64 = 1.1;
 /// Header, plan texts apart; the gate, events, notes, faults.
@@ -89,7 +91,7 @@ pub fn of(plan: &Plan) -> Need {
         }
     }
     let axes = f64::from(u32::try_from(plan.degrees_of_freedom()).unwrap_or(u32::MAX));
-    let (raw, wire) = plan.rig.link.as_real().map_or((0.0, 0.0), |link| (raw(link), WIRE + WALL));
+    let (raw, wire) = plan.rig.link.as_real().map_or((0.0, 0.0), |link| (raw(link, axes), WIRE + AXIS * (axes - 1.0) + WALL));
     let target = LINE + wire + 90.0 + NUMBER * (4.0 + 2.0 * axes);
     let path = LINE + 20.0 + 2.0 * NUMBER + 5.0 * axes * (NUMBER + 18.0);
     let reading = LINE + 20.0 + NUMBER * (1.0 + 2.0 * axes) + raw + if raw > 0.0 { WALL } else { 0.0 };
@@ -104,7 +106,7 @@ pub fn of(plan: &Plan) -> Need {
 }
 
 fn bytes(text: &str) -> f64 {
-    let count = text.chars().map(|character| if character.is_ascii() { 2 } else { 12 }).fold(0_u64, |sum, count| sum + count);
+    let count: u64 = text.chars().map(|character| if character.is_ascii() { 2 } else { 12 }).sum();
     rounded(count)
 }
 
@@ -126,10 +128,11 @@ fn way(plan: &Plan) -> f64 {
 }
 
 /// The replies of one reading, escaped twice as the record writes them: a byte that is no letter takes five.
-fn raw(link: &RealLink) -> f64 {
+fn raw(link: &RealLink, axes: f64) -> f64 {
     let reply = |dialect: &Dialect| match dialect {
         Dialect::Modbus(_) => 4.0 * 5.0 * 20.0,
-        Dialect::Native | Dialect::Grbl | Dialect::Nees { .. } => 180.0,
+        Dialect::Native => 180.0 + AXIS * (axes - 1.0),
+        Dialect::Grbl | Dialect::Nees { .. } => 180.0,
         Dialect::Instron | Dialect::Mark10 => 120.0,
         Dialect::Hx711 | Dialect::Indicator | Dialect::Scpi { .. } | Dialect::Mark10Gauge => 60.0,
     };
@@ -177,7 +180,7 @@ impl Reckoner<'_> {
             }
             ProcedureKind::Shake(shaking) => {
                 let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;
-                Some(Counts { targets: steps, readings: steps, steps, ways: 0.0 })
+                Some(stepped(shaking.mode, steps))
             }
             ProcedureKind::Cycle(cycle) => {
                 let begin = Counts { targets: self.way, readings: 2.0 + f64::from(cycle.samples), steps: 1.0, ways: 0.0 };
@@ -226,10 +229,15 @@ impl Reckoner<'_> {
         let critical = critical_time_step(self.number(&impact.mass)?, self.number(&impact.stiffness)?);
         let time_step = impact.time_step.evaluate(&self.assumed, Some(critical)).ok()?.value;
         let steps = (self.number(&impact.duration)? / time_step).ceil() + 1.0;
-        let each = match impact.mode {
-            Mode::StepAndPause => Counts { targets: 1.0, readings: 1.0, steps: 1.0, ways: 0.0 },
-            Mode::Continuous { .. } => Counts { targets: 2.0, ways: 2.0, readings: 5.0, steps: 1.0 },
-        };
-        Some(each.times(steps).plus(Counts { targets: 1.0, ways: 1.0, readings: 5.0, steps: 1.0 }))
+        Some(stepped(impact.mode, steps))
     }
+}
+
+/// Steps of a procedure that integrates, the reading before the first and the braking after the last.
+fn stepped(mode: Mode, steps: f64) -> Counts {
+    let each = match mode {
+        Mode::StepAndPause => Counts { targets: 1.0, readings: 1.0, steps: 1.0, ways: 0.0 },
+        Mode::Continuous { .. } => Counts { targets: 2.0, ways: 2.0, readings: 5.0, steps: 1.0 },
+    };
+    each.times(steps).plus(Counts { targets: 1.0, ways: 1.0, readings: 5.0, steps: 1.0 })
 }

@@ -54,6 +54,7 @@ fn cycle(rate: Option<f64>) -> Cycle {
         speed: rate.map(|_| Constant(0.01)),
         rate: rate.map(Constant),
         inspect: Vec::new(),
+        fit: None,
     }
 }
 

@@ -120,7 +120,8 @@ fn limits(run: &Run<'_>) -> Block {
     let equipment = run.equipment();
     let row = |limit: &HeldLimit| {
         let name = if limit.quantity == "nrms_error" { "NRMS tracking error".to_owned() } else { words(&limit.quantity) };
-        (Text::from(name), Text::from(range(limit.interval(), limit.dimension())))
+        let axis = limit.axis.map_or_else(String::new, |axis| format!(", axis {axis}"));
+        (Text::from(name + &axis), Text::from(range(limit.interval(), limit.dimension())))
     };
     let rows: Vec<(Text, Text)> = equipment.limits.iter().map(row).collect();
     if rows.is_empty() { Block::paragraph("Nothing was limited.") } else { Block::Pairs { rows } }
