@@ -78,6 +78,8 @@ pub struct Channel {
     pub zero: f64,
     /// Quantum of a displacement (m), standard deviation of one force reading (N), as declared.
     pub doubt: f64,
+    /// Standard uncertainty of the factor, a share of the quantity, where it is stated.
+    pub uncertainty: f64,
     /// The calibration that the factor is traced to.
     pub certificate: Option<String>,
     /// Day until which that holds, `YYYY-MM-DD`.
@@ -153,7 +155,10 @@ impl Equipment {
             let axis = name.1.map_or_else(String::new, |axis| format!(" of axis {axis}"));
             format!("limit {}{axis}: {} became {}", name.0, told(limit(self, name)), told(limit(now, name)))
         });
-        let traced = |of: &Self| of.channels.iter().map(|channel| (channel.certificate.clone(), channel.due.clone())).collect();
+        let traced = |of: &Self| {
+            let said = |channel: &Channel| (channel.certificate.clone(), channel.due.clone(), channel.uncertainty.to_bits());
+            of.channels.iter().map(said).collect()
+        };
         let (was, is): (Vec<_>, Vec<_>) = (traced(self), traced(now));
         limits.chain((was != is).then(|| "another calibration certificate is named".to_owned())).collect()
     }
@@ -204,19 +209,20 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         Link::Virtual(link) => (link.resolution, link.noise),
         Link::Real(link) => (link.readings_of(axis).resolution, link.readings_of(axis).noise),
     };
-    let channel = |measures, given_in, factor: f64, zero, doubt| Channel {
+    let channel = |measures, given_in, factor: f64, zero, doubt, uncertainty| Channel {
         axis: axis + 1,
         measures,
         given_in,
         factor: sign * factor,
         zero,
         doubt,
+        uncertainty,
         certificate: calibration.reference.clone(),
         due: calibration.due.clone(),
     };
     [
-        channel(Measures::Displacement, length_given, length, 0.0, resolution),
-        channel(Measures::Force, force_given, force, zero, noise),
+        channel(Measures::Displacement, length_given, length, 0.0, resolution, calibration.displacement_uncertainty),
+        channel(Measures::Force, force_given, force, zero, noise, calibration.force_uncertainty),
     ]
 }
 
