@@ -2,14 +2,14 @@
 //! same end with no target carried out twice.
 
 use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
 use super::measured::measured;
 use super::*;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
-use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
+use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, VirtualRig};
@@ -87,45 +87,6 @@ impl Rig for Standing {
     }
 }
 
-/// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
-struct Killed {
-    disk: PowerLoss,
-    left: usize,
-    after: bool,
-    dead: bool,
-}
-
-impl Killed {
-    fn call(&mut self, call: impl FnOnce(&mut PowerLoss) -> std::io::Result<()>) -> std::io::Result<()> {
-        // What is dropped on the way out writes nothing more.
-        if self.dead {
-            return Ok(());
-        }
-        let last = self.left == 0;
-        self.dead = last;
-        if !last || self.after {
-            call(&mut self.disk)?;
-        }
-        if last {
-            resume_unwind(Box::new("killed"));
-        }
-        self.left -= 1;
-        Ok(())
-    }
-}
-
-impl Storage for Killed {
-    fn append(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.call(|disk| disk.append(bytes))
-    }
-    fn sync(&mut self) -> std::io::Result<()> {
-        self.call(Storage::sync)
-    }
-    fn cut(&mut self, length: u64) -> std::io::Result<()> {
-        self.disk.cut(length)
-    }
-}
-
 /// Answers every inspection with a name.
 struct Witness;
 
@@ -174,6 +135,7 @@ pub(crate) fn header() -> Header {
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
+        equipment: None,
         rehearsal: false,
         served: None,
         date: None,
@@ -255,7 +217,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
     for call in 4.. {
         for after in [false, true] {
             let (rig, disk) = (Standing::new(&plan), PowerLoss::new());
-            let storage = Killed { disk: disk.clone(), left: call, after, dead: false };
+            let storage = Killed::at(&disk, call, after);
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 let mut journal = journal(storage);
                 begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
@@ -459,4 +421,12 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
     same_measure(&plan.rig, &turned).unwrap();
     turned.sign = -turned.sign;
     assert_eq!(same_measure(&plan.rig, &turned), Err(Refusal::OtherMeasure { what: "sign" }));
+
+    let fine = DeclaredNoise { force: 1.0, resolution: 1e-6 };
+    same_resolution(fine, DeclaredNoise { force: 2.0, ..fine }).unwrap();
+    assert!(same_resolution(fine, DeclaredNoise { resolution: 1e-5, ..fine }).is_err());
+    let was = Standing::new(&plan).identity();
+    let is = Identity { firmware: "2.0".to_owned(), ..was.clone() };
+    assert!(matches!(same_rig(&was, &is, false), Err(Refusal::OtherFirmware { .. })));
+    same_rig(&was, &is, true).unwrap();
 }
