@@ -12,6 +12,7 @@ mod lost;
 mod named;
 mod needs;
 mod person;
+mod served;
 mod signed;
 mod stage;
 mod terminal;
