@@ -192,5 +192,16 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         None => Some(None),
     };
     let zero_count = checker.constant(block, "zero_count");
-    Some(Calibration { reference: reference?, due: due?, newtons_per_count: newtons_per_count?, zero_count: zero_count? })
+    let (force, displacement) =
+        (checker.constant(block, "force_uncertainty"), checker.constant(block, "displacement_uncertainty"));
+    let zero = checker.constant(block, "zero_uncertainty");
+    Some(Calibration {
+        reference: reference?,
+        due: due?,
+        newtons_per_count: newtons_per_count?,
+        zero_count: zero_count?,
+        force_uncertainty: force?,
+        displacement_uncertainty: displacement?,
+        zero_uncertainty: zero?,
+    })
 }

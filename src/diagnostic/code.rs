@@ -32,6 +32,9 @@ macro_rules! codes {
     };
 }
 
+/// Codes that no plan gives: what they say is of the machine that is to run it.
+pub const OF_THE_MACHINE: &[Code] = &[Code::NoRoom];
+
 codes! {
     // 1: the text
     E101 Syntax Error;
@@ -105,11 +108,13 @@ codes! {
     E626 FrameOnRealRig Error;
     E627 DampingRatios Error;
     E628 NoOneStiffness Error;
+    E629 NoRoom Error;
     E630 CornersDoNotFit Error;
     E631 BadTableFile Error;
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E635 TooUncertain Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;
@@ -131,6 +136,7 @@ codes! {
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
+    W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
     W720 BlowOnBlow Warning;

@@ -13,6 +13,7 @@ mod rig;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};
+use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
 pub use crate::mechanics::multilinear_fit::BreakCount;
@@ -90,6 +91,8 @@ pub struct Specimen {
     pub name: String,
     /// Equivalent mass at the struck section, kg; of a frame, all its floors.
     pub mass: f64,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
     /// The storeys, where it has any; each has an actuator and a load cell.
     pub frame: Option<Frame>,
     /// What a virtual rig bends.
@@ -114,8 +117,12 @@ pub struct Striker {
     pub name: String,
     /// kg
     pub mass: f64,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
     /// m/s, towards the structure.
     pub velocity: f64,
+    /// Standard, m/s; 0 where none is stated.
+    pub velocity_uncertainty: f64,
     /// Distance to the structure at the start, m, at least 0.
     pub gap: f64,
     /// Acceleration along its way, m/s²: gn of a weight that falls.
@@ -181,6 +188,30 @@ impl Limits {
         tracking_energy_error: Interval::ALL,
         nrms_error: Interval::ALL,
     };
+
+    /// As the guard holds them: what tracking does to the energy has a limit always.
+    #[must_use]
+    pub fn held(&self) -> Self {
+        if self.tracking_energy_error.is_bounded() {
+            return *self;
+        }
+        Self { tracking_energy_error: Interval { low: 0.0, high: monitor::HOLD }, ..*self }
+    }
+
+    /// Every limit by the name of its field.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
+        [
+            ("displacement", self.displacement, Dimension::LENGTH),
+            ("force", self.force, Dimension::FORCE),
+            ("speed", self.speed, Dimension::VELOCITY),
+            ("increment", self.increment, Dimension::LENGTH),
+            ("tracking_error", self.tracking_error, Dimension::LENGTH),
+            ("energy_error", self.energy_error, Dimension::NUMBER),
+            ("tracking_energy_error", self.tracking_energy_error, Dimension::NUMBER),
+            ("nrms_error", self.nrms_error, Dimension::NUMBER),
+        ]
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -293,6 +324,8 @@ pub struct Impact {
     pub striker: usize,
     /// M, kg
     pub mass: Formula,
+    /// Standard uncertainty of a mass that is the specimen's, kg; 0 where none is stated, or the mass is another.
+    pub mass_uncertainty: f64,
     /// K0, N/m
     pub stiffness: Formula,
     /// C of eqs. 4–5, N·s/m
