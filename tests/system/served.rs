@@ -258,11 +258,11 @@ fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
 /// Also while it waits for a client, and while a client is silent: nobody moves a rig that is not there.
 #[test]
 fn a_rig_that_goes_away_while_nobody_asks_is_noticed() {
-    let mut served = Served::nees("after 60 readings: hang up");
+    let mut served = Served::nees("after 40 readings: hang up");
     let (code, printed) = served.ended();
     assert!(code == Some(3) && printed.contains("the line is gone"), "{printed}");
 
-    let mut served = Served::nees("after 60 readings: hang up");
+    let mut served = Served::nees("after 40 readings: hang up");
     let mut client = served.connect();
     assert!(is_closed(&mut client));
     assert_eq!(served.ended().0, Some(3));
