@@ -63,10 +63,10 @@ pub fn hold_axes(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)
         let Some(procedure) = procedure else { continue };
         let head = checker.scope.blocks[*block].block.head;
         match procedure.kind {
-            ProcedureKind::Shake(_) if checker.real_rig.is_some() => {
+            ProcedureKind::Shake(_) | ProcedureKind::StoreyImpact(_) if checker.real_rig.is_some() => {
                 checker.faults.push(frames::frame_on_real_rig(&specimen.name, axes, head));
             }
-            ProcedureKind::Shake(_) | ProcedureKind::Inspect { .. } => {}
+            ProcedureKind::Shake(_) | ProcedureKind::StoreyImpact(_) | ProcedureKind::Inspect { .. } => {}
             _ => {
                 let keyword = procedure.kind.keyword();
                 checker.faults.push(frames::one_degree_of_freedom(keyword, &specimen.name, axes, head, declared));

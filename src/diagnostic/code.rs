@@ -107,6 +107,8 @@ codes! {
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E640 WhichStorey Error;
+    E641 NoUseOnAFrame Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;

@@ -2,23 +2,23 @@
 //! floor. Each step: predict, command, settle, pause, read, feed back. In: a frame, a ground motion, a time step. Out: every
 //! step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
 
+use super::axes::{Monitors, Told, report, together};
 use super::inputs::Inputs;
 use super::session::Session;
 use super::shake_results::{ShakeSummary, results};
 use super::stop::Stop;
 use super::triggers::Triggers;
 use super::watch::Watch;
-use super::{AxisReport, Performed, StepReport};
+use super::Performed;
 use crate::formula::{Formula, NoResults};
 use crate::mechanics::frame::{Damping, FrameInput, FrameSolver, FrameState, Tangents, storeys_of};
 use crate::mechanics::frame_properties::FrameProperties;
 use crate::mechanics::ground::{acceleration_at, peak_velocity};
-use crate::mechanics::monitor::{Monitor, Tracking};
+use crate::mechanics::monitor::Tracking;
 use crate::plan::{Frame, Ground, MOST_STEPS, Plan, Shake, ShakeDamping, rayleigh};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::record::{History, ShakeHistory, ShakeStep};
-use crate::rig::Reading;
 
 pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let ground = &whole.grounds[plan.ground];
@@ -70,7 +70,7 @@ pub(super) fn steps(shake: &Shake, plan: &Plan) -> Option<u64> {
 }
 
 /// 0.5 s of 0.01 s are 50 steps, whatever rounding says of the ratio.
-fn steps_in(duration: f64, time_step: f64) -> f64 {
+pub(super) fn steps_in(duration: f64, time_step: f64) -> f64 {
     (duration / time_step * (1.0 - 1e-12)).ceil()
 }
 
@@ -133,7 +133,7 @@ impl Setting {
 }
 
 /// The damping, and a ratio of it for a message.
-fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
+pub(super) fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
     let known = |ratio: f64| match ratio {
         ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
         value => Err(Stop::BadInput { field: "damping_ratio", value, wanted: "between 0 and 1".into() }),
@@ -201,7 +201,7 @@ impl Shaking<'_> {
             session.guard.move_to(&targets, None)?;
             session.guard.pause(*pause)?;
             let reading = session.guard.read()?;
-            let tracking = monitors.take(&targets, &reading);
+            let tracking = together(&monitors.take(&targets, &reading));
             let state = solver.complete(&reading.displacement, &reading.force);
             let told = self.take(state, acceleration, tracking, session);
             self.watch.judge(told.tracking_energy_error, session);
@@ -240,57 +240,5 @@ impl Shaking<'_> {
             tracking,
             tracking_energy_error: tracking.share_of(energy),
         }
-    }
-}
-
-/// The errors of a step.
-struct Told {
-    energy_error: f64,
-    tracking: Tracking,
-    tracking_energy_error: Option<f64>,
-}
-
-/// The monitors of every axis, told as one: energies add, of the others the largest counts.
-struct Monitors(Vec<Monitor>);
-
-impl Monitors {
-    fn new(commanded: &[f64], reading: &Reading) -> Self {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
-    }
-
-    fn take(&mut self, commanded: &[f64], reading: &Reading) -> Tracking {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        let each = self.0.iter_mut().zip(axes).map(|(monitor, (to, (measured, force)))| monitor.take(*to, *measured, *force));
-        each.fold(Tracking::default(), |all, axis| Tracking {
-            energy_error: all.energy_error + axis.energy_error,
-            indicator: all.indicator + axis.indicator,
-            nrms_error: all.nrms_error.max(axis.nrms_error),
-            peak_error: all.peak_error.max(axis.peak_error),
-        })
-    }
-}
-
-fn report(state: &FrameState, told: &Told) -> StepReport {
-    let axis = |floor: usize| AxisReport {
-        command: state.target[floor],
-        displacement: state.measured_displacement[floor],
-        velocity: state.velocity[floor],
-        acceleration: state.acceleration[floor],
-        force: state.restoring_force[floor],
-    };
-    let first = axis(0);
-    StepReport {
-        step: state.step,
-        time: state.time,
-        command: first.command,
-        displacement: first.displacement,
-        velocity: Some(first.velocity),
-        acceleration: Some(first.acceleration),
-        force: first.force,
-        energy_error: Some(told.energy_error),
-        tracking: Some(told.tracking),
-        tracking_energy_error: told.tracking_energy_error,
-        others: (1..state.target.len()).map(axis).collect(),
     }
 }

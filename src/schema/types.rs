@@ -187,6 +187,8 @@ pub struct ResultKind {
     pub count: bool,
     /// Whether it is several numbers of one dimension, read as a list: `max(fatigue.energies)`.
     pub list: bool,
+    /// Whether an impact has it only on a storey of a frame.
+    pub of_storey: bool,
     pub doc: &'static str,
 }
 
@@ -392,7 +394,12 @@ impl Variant {
 
 impl ResultKind {
     pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: false, count: false, list: false, doc }
+        Self { name, dimension, measured: false, count: false, list: false, of_storey: false, doc }
+    }
+
+    /// Of an impact on a storey only.
+    pub(super) const fn of_storey(self) -> Self {
+        Self { of_storey: true, ..self }
     }
 
     pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {

@@ -13,6 +13,7 @@ mod marks;
 mod method;
 mod particulars;
 mod results;
+mod storey;
 
 use super::Run;
 use super::document::{Block, Document, Figure, Text};
