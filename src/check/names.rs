@@ -4,7 +4,7 @@
 use super::checker::{Checker, Node, Place, Reads, Shape, Typed};
 use super::faults::{frames, names as fault, types, values};
 use super::scope::Meaning;
-use super::{specimen, striker};
+use super::{specimen, storey_impact, striker};
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::quantity::Dimension;
 use crate::schema::{self, Kind};
@@ -106,7 +106,7 @@ impl<'a> Checker<'a> {
     fn member(&mut self, block: usize, name: &Ident, span: Span, place: Place) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
         if let (Some(result), Some(procedure)) = (declared.kind.result(&name.node), declared.procedure) {
-            if result.of_storey && self.given(block, "storey").is_none() {
+            if result.of_storey && storey_impact::struck_frame(self, block).is_none() {
                 let fault = frames::result_of_a_storey(result.name, name.span, declared.block.head);
                 return self.fail(fault);
             }

@@ -1,7 +1,7 @@
 //! Charts of an impact on one storey of a frame: those of an impact for striker and contact, those of a frame for floors and
 //! storeys, with the contact shaded in all that run over time. In: a history. Out: [`Chart`]s in SI with their captions.
 
-use super::chart::{Chart, DASHED, Quantity, Style, palette};
+use super::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
 use super::{impact, shake};
 use crate::output::Run;
 use crate::plan::{Figure, FigureKind};
@@ -29,10 +29,13 @@ pub(super) fn chart(
         ),
         FigureKind::Displacement => {
             let mut chart = shaded(history, shake::displacement(&history.floors));
-            let striker = Style::line(palette::BLACK, 1.4, DASHED);
-            chart.series.push(impact::series(&history.blow, "striker Xs", |step| step.striker_displacement, striker));
+            chart.series.push(striker(history));
             chart.references = limits("max_displacement");
-            (chart, format!("{name}: displacement of each floor and of the striker on floor {struck} against virtual time{chosen}."))
+            let caption = format!(
+                "{name}: displacement of each floor, and of the striker on floor {struck} while it is near, against virtual \
+                 time{chosen}."
+            );
+            (chart, caption)
         }
         FigureKind::Drift => (
             shaded(history, shake::drift(&history.floors, &limits("max_drift"))),
@@ -50,7 +53,7 @@ pub(super) fn chart(
         ),
         FigureKind::Velocity => {
             let mut chart = impact::against_time(&history.blow, Quantity::of("Velocity", Dimension::VELOCITY));
-            let floor = Style::line(palette::BLUE, 1.6, super::chart::SOLID);
+            let floor = Style::line(palette::BLUE, 1.6, SOLID);
             let striker = Style::line(palette::VERMILION, 2.0, DASHED);
             chart.series = vec![
                 impact::series(&history.blow, &format!("floor {struck}"), |step| step.velocity, floor),
@@ -82,6 +85,19 @@ pub(super) fn chart(
         ),
         _ => return None,
     })
+}
+
+/// Where the striker is, as long as it is near the floors: one that flies away would leave no room to see them.
+fn striker(history: &StoreyImpactHistory) -> Series {
+    let places = history.floors.iter().flat_map(|floors| floors.computed.iter().copied());
+    let (low, high) = places.fold((0.0_f64, 0.0_f64), |(low, high), place| (low.min(place), high.max(place)));
+    let around = 0.5 * (high - low);
+    let near = |place: f64| place >= low - around && place <= high + around;
+    let style = Style::line(palette::BLACK, 1.4, DASHED);
+    let mut striker = impact::series(&history.blow, "striker Xs", |step| step.striker_displacement, style);
+    let last = striker.points.iter().rposition(|(_, place)| near(*place));
+    striker.points.truncate(last.map_or(striker.points.len(), |last| last + 1));
+    striker
 }
 
 /// The contact behind a chart over virtual time.
