@@ -216,7 +216,7 @@ impl Rig for VirtualFrame {
         } else {
             self.rest(self.settle.timeout);
             self.hold();
-            Err(RigFault::NotSettled { timeout: self.settle.timeout })
+            Err(RigFault::NotSettled { timeout: self.settle.timeout, axis: None })
         }
     }
 

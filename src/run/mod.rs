@@ -4,6 +4,7 @@ mod axes;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
+mod curve;
 mod cycle;
 #[cfg(test)]
 mod cycle_tests;

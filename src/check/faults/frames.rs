@@ -130,15 +130,6 @@ pub fn result_of_a_storey(result: &str, at: Span, head: Span) -> Diagnostic {
         .help("strike a frame: its specimen has `storeys`, and the impact says `storey = 1`")
 }
 
-pub fn frame_on_real_rig(specimen: &str, axes: usize, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::FrameOnRealRig,
-        format!("the frame `{specimen}` needs {axes} actuators with their load cells, and a real rig of this version has one"),
-    )
-    .at(span, "would move every storey")
-    .help("run it on a virtual rig: leave `--rig` out; a frame of one storey runs on a real one")
-}
-
 pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {
     Diagnostic::new(Code::DampingRatios, format!("{found} damping ratios for {modes} modes"))
         .at(span, "a list has one for each mode")

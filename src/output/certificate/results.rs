@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{blows, contact_log, cycles, frames, method, storey, words};
+use super::{blows, contact_log, curve, cycles, frames, method, storey, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -24,6 +24,10 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
         }
         match &procedure.history {
             History::Ramp(history) => {
+                if let Some(fit) = &history.multilinear {
+                    let reach = history.steps.iter().map(|step| step.displacement);
+                    curve::table(fit, reach.fold(0.0, |most, x| if fit.way * x > fit.way * most { x } else { most }), body);
+                }
                 if let Some(fit) = history.fit {
                     body.push(fitted("R = K·X + R₀", ("K", Dimension::STIFFNESS), ("R₀", Dimension::FORCE), fit));
                 }
@@ -65,8 +69,11 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 
 /// Lists whose numbers stand in a table of their own are not printed twice.
 fn table(procedure: &ProcedureRecord) -> Block {
-    let tabled =
-        matches!(procedure.history, History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_));
+    let tabled = match &procedure.history {
+        History::Ramp(history) => history.multilinear.is_some(),
+        History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) => true,
+        _ => false,
+    };
     let results = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
     let columns = vec![
         Column::words("Result", 1),
@@ -92,6 +99,7 @@ fn row(result: &NamedResult) -> Vec<Text> {
             [parts.value.into(), parts.standard.map_or_else(dash, Text::from), parts.expanded.map_or_else(dash, Text::from), unit]
         }
         ResultValue::Number { value: None, .. } => [Text::missing("none in this run"), dash(), dash(), dash()],
+        ResultValue::List(values) if values.is_empty() => [Text::missing("none in this run"), dash(), dash(), dash()],
         ResultValue::List(values) => {
             let text = |value: &f64| if value.is_finite() { number::text(*value, result.dimension) } else { "none".to_owned() };
             let texts: Vec<String> = values.iter().map(text).collect();
