@@ -24,12 +24,7 @@ pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Optio
     (several || checker.given(block, "storey").is_some()).then_some((specimen, frame))
 }
 
-pub fn storey_impact(
-    checker: &mut Checker,
-    block: usize,
-    specimen: usize,
-    frame: Option<&Rc<Frame>>,
-) -> Option<ProcedureKind> {
+pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame: Option<&Rc<Frame>>) -> Option<ProcedureKind> {
     let striker = checker.reference(block, "striker", Kind::Striker);
     // Named or the only one: what is wrong with the name was not said before.
     let named = checker.specimen_block(block);
@@ -173,13 +168,9 @@ pub fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) ->
         let (name, declared) = (tested.name.map_or("", |name| name.node.as_str()), tested.block.head);
         let keyword = this.kind.words();
         sound = match frame::frame(checker, specimen) {
-            Some(frame) => checker.fail(fault::one_degree_of_freedom(
-                &keyword,
-                name,
-                frame.degrees_of_freedom(),
-                at,
-                Some(declared),
-            )),
+            Some(frame) => {
+                checker.fail(fault::one_degree_of_freedom(&keyword, name, frame.degrees_of_freedom(), at, Some(declared)))
+            }
             None => checker.fail(fault::storey_of_none(name, at, declared)),
         };
     }

@@ -126,7 +126,10 @@ impl<'a> DryRun<'a> {
                 section(&heading, [impact(&history.blow), explain_shake::floors(history)].concat());
             }
             if let History::Shake(history) = &procedure.history {
-                section(&format!("{}, modes", procedure.name), explain_shake::modes(history.modes.as_ref(), &history.damping_ratios));
+                section(
+                    &format!("{}, modes", procedure.name),
+                    explain_shake::modes(history.modes.as_ref(), &history.damping_ratios),
+                );
                 section(&format!("{}, shake", procedure.name), explain_shake::steps(history));
             }
         }

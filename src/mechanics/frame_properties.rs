@@ -3,11 +3,11 @@
 
 use thiserror::Error;
 
+use super::frame::BandFactor;
 use super::frame::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand, damping_matrix, modes, storey_stiffness,
 };
 use super::method::longest_stable_step;
-use super::frame::BandFactor;
 use crate::plan::{Frame, Integrator, Striker};
 
 /// A frame, ready to be integrated.

@@ -2,8 +2,8 @@
 //! It knows no procedure's physics.
 
 use super::shake;
-use super::storey_impact;
 use super::stop::Stop;
+use super::storey_impact;
 use super::{Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;

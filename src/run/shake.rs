@@ -2,6 +2,7 @@
 //! floor. Each step: predict, command, settle, pause, read, feed back. In: a frame, a ground motion, a time step. Out: every
 //! step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
 
+use super::Performed;
 use super::axes::{Monitors, Told, report, together};
 use super::inputs::Inputs;
 use super::session::Session;
@@ -9,7 +10,6 @@ use super::shake_results::{ShakeSummary, results};
 use super::stop::Stop;
 use super::triggers::Triggers;
 use super::watch::Watch;
-use super::Performed;
 use crate::formula::{Formula, NoResults};
 use crate::mechanics::frame::{Damping, FrameInput, FrameSolver, FrameState, Tangents, storeys_of};
 use crate::mechanics::frame_properties::FrameProperties;

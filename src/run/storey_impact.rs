@@ -48,7 +48,11 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     let setting = match setting {
         Ok(setting) => setting,
         Err(stop) => {
-            return Performed { results: results(None, None, &history), history: History::StoreyImpact(history), stop: Some(stop) };
+            return Performed {
+                results: results(None, None, &history),
+                history: History::StoreyImpact(history),
+                stop: Some(stop),
+            };
         }
     };
     history.modes = Some(setting.properties.modes.clone());
@@ -205,13 +209,7 @@ impl Striking<'_> {
         Ok(())
     }
 
-    fn solver(
-        &self,
-        plan: &StoreyImpact,
-        start: &[f64],
-        reading: &Reading,
-        unloaded: &[f64],
-    ) -> Result<FrameImpactSolver, Stop> {
+    fn solver(&self, plan: &StoreyImpact, start: &[f64], reading: &Reading, unloaded: &[f64]) -> Result<FrameImpactSolver, Stop> {
         let Setting { properties, tangents, law, striker, time_step, body, .. } = self.setting;
         let input = FrameImpactInput {
             frame: FrameInput {

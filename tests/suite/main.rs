@@ -20,4 +20,5 @@ mod rehearse;
 mod serve;
 mod shake;
 mod specimens_page;
+mod storey;
 mod sweep;

@@ -8,7 +8,14 @@ use crate::mechanics::contact::StepState;
 use crate::mechanics::law::HertzContact;
 
 /// The step from `from`, whose end goes into `to`.
-pub(super) fn pass(law: &HertzContact, passage: &mut Passage, striker: Striker, start: &Start, from: Course, to: &mut Course) -> Passed {
+pub(super) fn pass(
+    law: &HertzContact,
+    passage: &mut Passage,
+    striker: Striker,
+    start: &Start,
+    from: Course,
+    to: &mut Course,
+) -> Passed {
     apart(passage, striker, start, &from, to).unwrap_or_else(|| follow(law, passage, striker, start, from, to))
 }
 

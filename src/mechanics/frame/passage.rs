@@ -1,9 +1,9 @@
 //! Structure and striker on their way through one step, where the contact acts at its own instants. In: a frame, the state
 //! at the step's start. Out: the motion after any part of the step. It knows no contact law.
 
+use super::band::SymmetricBand;
 use super::factor::{BandFactor, NotPositiveDefinite};
 use super::schemes::{Course, Moment, Schemes};
-use super::band::SymmetricBand;
 use crate::mechanics::contact::StepState;
 
 /// The striker of a frame, and where it strikes.

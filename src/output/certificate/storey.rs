@@ -36,8 +36,10 @@ fn told(run: &Run<'_>, impact: &StoreyImpact, procedure: &ProcedureRecord, histo
     let time = |value| number::text(value, Dimension::TIME);
     let step = time(history.blow.time_step);
     let critical = match impact.contact {
-        Contact::Hertz { .. } => "a tenth of the shortest period of the frame with the striker on it, by the contact's tangent at \
-                                  its deepest, is",
+        Contact::Hertz { .. } => {
+            "a tenth of the shortest period of the frame with the striker on it, by the contact's tangent at \
+                                  its deepest, is"
+        }
         _ => "a tenth of the frame's shortest period is",
     };
     let mut sentences = vec![
@@ -94,11 +96,7 @@ fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let whole = energies.iter().fold(0.0, |largest: f64, energy| largest.max(energy.abs()));
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
         let share = if input > 0.0 { percent(energy / input) } else { "—".to_owned() };
-        vec![
-            format!("storey {}", storey + 1).into(),
-            number::text_beside(*energy, whole, Dimension::ENERGY).into(),
-            share.into(),
-        ]
+        vec![format!("storey {}", storey + 1).into(), number::text_beside(*energy, whole, Dimension::ENERGY).into(), share.into()]
     };
     let columns = vec![
         Column::words("Energy in each storey at the end of the run, ∫V dδ", 1),

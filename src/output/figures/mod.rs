@@ -160,9 +160,10 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: Figure, kin
             shake::displacement(&history.steps),
             format!("{name}: displacement of each floor relative to the ground against virtual time{chosen}."),
         ),
-        FigureKind::Drift => {
-            (shake::drift(&history.steps, &limits("max_drift")), format!("{name}: drift of each storey against virtual time{chosen}."))
-        }
+        FigureKind::Drift => (
+            shake::drift(&history.steps, &limits("max_drift")),
+            format!("{name}: drift of each storey against virtual time{chosen}."),
+        ),
         FigureKind::Hysteresis => (
             shake::hysteresis(&history.steps),
             format!(

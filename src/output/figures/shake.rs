@@ -50,7 +50,8 @@ pub(super) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart 
 
 pub(super) fn ground(history: &ShakeHistory) -> Chart {
     let mut chart = over_time(Quantity::of("Acceleration of the ground", Dimension::ACCELERATION));
-    chart.series = vec![one(&history.steps, "as applied", |step| step.ground_acceleration, Style::line(palette::BLUE, 1.4, SOLID))];
+    chart.series =
+        vec![one(&history.steps, "as applied", |step| step.ground_acceleration, Style::line(palette::BLUE, 1.4, SOLID))];
     chart
 }
 
