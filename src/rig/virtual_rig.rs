@@ -1,7 +1,7 @@
 //! The virtual rig: an actuator, a load cell and a specimen between them. In: targets. Out: readings. Its time is
 //! simulated, so that motion, settling and pauses take rig time and no wall time; it reads no clock and no file.
 
-mod glide;
+pub(super) mod glide;
 
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};

@@ -14,6 +14,7 @@ mod escalate;
 #[cfg(test)]
 mod escalate_tests;
 mod gate;
+mod gliding;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
@@ -31,6 +32,7 @@ mod sequence_tests;
 mod session;
 mod shake;
 mod shake_results;
+mod shaking;
 mod stiffness_ramp;
 mod stop;
 mod storey_impact;

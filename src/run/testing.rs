@@ -60,6 +60,8 @@ pub(crate) fn struck_frame() -> Plan {
         stiffness,
         height: None,
         behaviour: Behaviour::Bilinear { stiffness, yield_force, hardening: 0.05 },
+        damping: 0.0,
+        coulomb: 0.0,
     };
     let frame = Frame::of_storeys(vec![storey(500.0, 20.0), storey(300.0, 15.0)]);
     let blow = StoreyImpact {

@@ -19,6 +19,7 @@ mod reference;
 mod rehearse;
 mod serve;
 mod shake;
+mod shake_continuous;
 mod specimens_page;
 mod storey;
 mod sweep;

@@ -282,7 +282,7 @@ fn killed_everywhere(plan: &Plan, least: usize) {
 }
 
 /// What was written is what a killed program leaves: the system still has it.
-fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected: &str, once: &[f64], call: usize) {
+fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected: &str, once: &[Vec<f64>], call: usize) {
     let (recovered, before) = played(&disk.written());
     if before.ended {
         return;
