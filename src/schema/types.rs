@@ -177,6 +177,7 @@ impl Range {
 }
 
 /// A value that can be read from outside a block.
+#[expect(clippy::struct_excessive_bools, reason = "each says one thing of a result, and none follows from another")]
 #[derive(Clone, Copy, Debug)]
 pub struct ResultKind {
     pub name: &'static str,
