@@ -5,6 +5,7 @@ use super::checker::Checker;
 use super::faults::{frames, names as fault, specimens};
 use super::frame;
 use super::limits::CheckedLimits;
+use super::striker::uncertainty;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
@@ -16,7 +17,8 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
         let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
-        return Some(Specimen { name: name?.node.clone(), mass, frame, behaviour: None, damping: 0.0, coulomb: 0.0 });
+        let (mass_uncertainty, behaviour, damping, coulomb) = (0.0, None, 0.0, 0.0);
+        return Some(Specimen { name: name?.node.clone(), mass, mass_uncertainty, frame, behaviour, damping, coulomb });
     }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {
@@ -39,8 +41,16 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
-    let frame = None;
-    Some(Specimen { name: name?.node.clone(), mass: mass?, frame, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
+    let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
+    Some(Specimen {
+        name: name?.node.clone(),
+        mass: mass?,
+        mass_uncertainty: mass_uncertainty?,
+        frame: None,
+        behaviour: behaviour?,
+        damping: damping?,
+        coulomb: coulomb?,
+    })
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {

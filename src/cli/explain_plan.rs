@@ -309,6 +309,7 @@ mod tests {
         let specimen = Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
             damping: 0.0,
@@ -318,6 +319,7 @@ mod tests {
             specimen: 0,
             striker: 0,
             mass: Constant(1.0),
+            mass_uncertainty: 0.0,
             stiffness: Constant(327.65),
             damping: Constant(0.0),
             contact: Contact::Rigid,
@@ -337,7 +339,15 @@ mod tests {
             particulars: Vec::new(),
             parameters: Vec::new(),
             specimens: vec![specimen],
-            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
+            strikers: vec![Striker {
+                name: "hammer".to_owned(),
+                mass: 10.0,
+                mass_uncertainty: 0.0,
+                velocity: 1.0,
+                velocity_uncertainty: 0.0,
+                gap: 0.0,
+                gravity: 0.0,
+            }],
             grounds: Vec::new(),
             rig: RigPlan {
                 name: "noisy".to_owned(),

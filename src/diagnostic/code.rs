@@ -95,6 +95,7 @@ codes! {
     E616 TooManyAxes Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
+    E619 NobodyNamed Error;
     E620 GroundRecord Error;
     E621 BadMatrix Error;
     E622 StoreyStiffness Error;
@@ -109,6 +110,7 @@ codes! {
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E635 TooUncertain Error;
     E640 WhichStorey Error;
     E641 NoUseOnAFrame Error;
     E642 LawNeedsTangent Error;
@@ -132,6 +134,7 @@ codes! {
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
+    W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
     W720 BlowOnBlow Warning;

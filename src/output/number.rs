@@ -84,6 +84,15 @@ pub(super) fn with_uncertainty(value: f64, uncertainty: Option<f64>, dimension: 
     }
 }
 
+/// A part of `whole`, in its unit, to its third digit.
+pub(super) fn part_of(part: f64, whole: f64, dimension: Dimension) -> String {
+    let (unit, factor) = unit(whole, dimension);
+    let decimals = 2.0 - (whole.abs() / factor).log10().floor();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 12")]
+    let decimals = if decimals.is_finite() { decimals.clamp(0.0, 12.0) as usize } else { 0 };
+    join(&minus(&format!("{:.decimals$}", part / factor)), &unit)
+}
+
 /// Decimals that show two digits of the uncertainty; None where plain decimals would not be readable.
 fn decimals_of(value: f64, uncertainty: f64) -> Option<usize> {
     if uncertainty <= 0.0 || value.abs() >= 1e7 {

@@ -121,7 +121,7 @@ impl StoreySummary {
 /// missing if not even the start was read.
 pub(super) fn results(summary: Option<&StoreySummary>, worst: Option<f64>, history: &StoreyImpactHistory) -> Vec<NamedResult> {
     let list = |name, dimension, values: Option<&Vec<f64>>| match values {
-        Some(values) => NamedResult { name, dimension, value: ResultValue::List(values.clone()) },
+        Some(values) => NamedResult { name, dimension, value: ResultValue::List(values.clone()), contributions: Vec::new() },
         None => result(name, dimension, None),
     };
     let blow = summary.map(StoreySummary::blow);

@@ -42,12 +42,21 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
         specimens: vec![Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness }),
             damping: 0.0,
             coulomb: 0.0,
         }],
-        strikers: vec![Striker { name: "pendulum".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
+        strikers: vec![Striker {
+            name: "pendulum".to_owned(),
+            mass: 10.0,
+            mass_uncertainty: 0.0,
+            velocity: 1.0,
+            velocity_uncertainty: 0.0,
+            gap: 0.0,
+            gravity: 0.0,
+        }],
         procedures: procedures.into_iter().enumerate().map(named).collect(),
         ..empty_plan()
     }
@@ -107,6 +116,7 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         specimen: 0,
         striker: 0,
         mass: Formula::Constant(1.0),
+        mass_uncertainty: 0.0,
         stiffness,
         damping: Formula::Constant(0.0),
         contact: Contact::Rigid,

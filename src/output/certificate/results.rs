@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{blows, contact_log, curve, cycles, frames, method, storey, words};
+use super::{blows, budget, contact_log, curve, cycles, frames, method, storey, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -40,6 +40,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::Impact(history) => {
                 force_note(run, index, procedure, history, body);
                 method::note(run, index, history, body);
+                budget::table(run, index, procedure, body);
                 energy_balance(history, body);
                 contact_log::table(history, body);
             }
