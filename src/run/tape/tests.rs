@@ -2,14 +2,14 @@
 //! same end with no target carried out twice.
 
 use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
 use super::measured::measured;
 use super::*;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
-use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
+use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, virtual_rig};
@@ -85,45 +85,6 @@ impl Rig for Standing {
     }
     fn tally(&self) -> Tally {
         Tally { reread: self.1 / 20, ..Tally::default() }
-    }
-}
-
-/// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
-struct Killed {
-    disk: PowerLoss,
-    left: usize,
-    after: bool,
-    dead: bool,
-}
-
-impl Killed {
-    fn call(&mut self, call: impl FnOnce(&mut PowerLoss) -> std::io::Result<()>) -> std::io::Result<()> {
-        // What is dropped on the way out writes nothing more.
-        if self.dead {
-            return Ok(());
-        }
-        let last = self.left == 0;
-        self.dead = last;
-        if !last || self.after {
-            call(&mut self.disk)?;
-        }
-        if last {
-            resume_unwind(Box::new("killed"));
-        }
-        self.left -= 1;
-        Ok(())
-    }
-}
-
-impl Storage for Killed {
-    fn append(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.call(|disk| disk.append(bytes))
-    }
-    fn sync(&mut self) -> std::io::Result<()> {
-        self.call(Storage::sync)
-    }
-    fn cut(&mut self, length: u64) -> std::io::Result<()> {
-        self.disk.cut(length)
     }
 }
 
@@ -266,7 +227,7 @@ fn killed_everywhere(plan: &Plan, least: usize) {
     for call in 4.. {
         for after in [false, true] {
             let (rig, disk) = (Standing::new(plan), PowerLoss::new());
-            let storage = Killed { disk: disk.clone(), left: call, after, dead: false };
+            let storage = Killed::at(&disk, call, after);
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 let mut journal = journal(storage);
                 begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
