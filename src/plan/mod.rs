@@ -25,7 +25,7 @@ pub use figure::{Figure, FigureKind};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::{Integrator, Mode};
-pub use portal::{Loads, Mechanism, Portal};
+pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
     AxisPlan, Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
     SafeState, Settle, VirtualLink,
