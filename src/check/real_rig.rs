@@ -223,6 +223,11 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             calibration.due.is_none(),
         ));
     }
+    if let (Some((_, None)), Some((_, entry))) =
+        (&rig.plan.calibration.displacement, checker.given(block, "displacement_calibration"))
+    {
+        checker.faults.push(fault::displacement_without_day(&rig.plan.name, entry.value.span));
+    }
     if link.readings.resolution == 0.0 {
         let at = checker.given(block, "resolution").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::resolution_unknown(&rig.plan.name, at));

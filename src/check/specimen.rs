@@ -8,6 +8,7 @@ use super::limits::CheckedLimits;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
+use crate::syntax::ast::ExprKind;
 
 /// A specimen whose entries are all right; None where a fault was reported.
 pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
@@ -16,7 +17,15 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
         let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
-        return Some(Specimen { name: name?.node.clone(), mass, frame, behaviour: None, damping: 0.0, coulomb: 0.0 });
+        return Some(Specimen {
+            name: name?.node.clone(),
+            mass,
+            mass_from: None,
+            frame,
+            behaviour: None,
+            damping: 0.0,
+            coulomb: 0.0,
+        });
     }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {
@@ -39,8 +48,15 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
-    let frame = None;
-    Some(Specimen { name: name?.node.clone(), mass: mass?, frame, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
+    Some(Specimen {
+        name: name?.node.clone(),
+        mass: mass?,
+        mass_from: mass_from(checker, block),
+        frame: None,
+        behaviour: behaviour?,
+        damping: damping?,
+        coulomb: coulomb?,
+    })
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
@@ -55,6 +71,15 @@ fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
     let (density, area, length) =
         (checker.constant(block, "density")?, checker.constant(block, "area")?, checker.constant(block, "length")?);
     Some(density * area * length / 2.0)
+}
+
+/// How the plan comes to the mass: its formula where it writes one, and that of the geometry where it gives no mass.
+fn mass_from(checker: &Checker, block: usize) -> Option<String> {
+    match checker.given(block, "mass") {
+        Some((_, entry)) if matches!(entry.value.kind, ExprKind::Number { .. }) => None,
+        Some((_, entry)) => Some(checker.text(entry.value.span).to_owned()),
+        None => Some("density * area * length / 2".to_owned()),
+    }
 }
 
 /// q·A·L, kg.

@@ -298,6 +298,7 @@ mod tests {
         let specimen = Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            mass_from: None,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
             damping: 0.0,

@@ -17,6 +17,7 @@ pub mod method;
 pub mod monitor;
 pub mod path;
 pub mod scheme;
+pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod summary;

@@ -42,6 +42,7 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
         specimens: vec![Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            mass_from: None,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness }),
             damping: 0.0,

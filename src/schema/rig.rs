@@ -119,8 +119,12 @@ pub(super) const RIG: BlockKind = BlockKind {
         Field::quantity("zero_count", Dimension::NUMBER, "count at no force, of a load cell that gives raw counts")
             .or(0.0, "")
             .of_real_rigs(),
-        Field::text("calibration", "reference of the calibration"),
+        Field::text("calibration", "reference of the calibration; of the force alone, where `displacement_calibration` is given"),
         Field::text("calibration_due", "last day on which the calibration holds, `YYYY-MM-DD`"),
+        Field::text("force_class", "class of the force measurement, such as one of ISO 7500-1"),
+        Field::text("displacement_calibration", "reference of the calibration of the displacement, where it has one of its own"),
+        Field::text("displacement_calibration_due", "last day on which that calibration holds, `YYYY-MM-DD`"),
+        Field::text("displacement_class", "class of the displacement measurement, such as one of ISO 9513"),
     ],
     exports: &[],
     results: &[],

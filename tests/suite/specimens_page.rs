@@ -52,9 +52,7 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
         run_id: name.to_owned(),
         psd_version: String::new(),
         plan_sha256: String::new(),
-        date: None,
-        real: None,
-        amends: None,
+        ..Provenance::default()
     };
     let files = vectors(&Run { plan: &plan, record: &record, assessment: &assessment, provenance: &provenance })
         .expect("the outputs can be made");
