@@ -189,7 +189,9 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
     };
     let zero_count = checker.constant(block, "zero_count");
     let (own, own_due) = (own?, own_due?);
-    if own.is_none() && let Some((_, entry)) = checker.given(block, "displacement_calibration_due") {
+    if own.is_none()
+        && let Some((_, entry)) = checker.given(block, "displacement_calibration_due")
+    {
         return checker.fail(rigs::day_of_no_calibration(&entry.key));
     }
     Some(Calibration {

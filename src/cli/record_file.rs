@@ -30,10 +30,7 @@ pub struct Circumstances {
 
 /// What a run starts from.
 pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, circumstances: Circumstances) -> Header {
-    let file = |file: &crate::plan::PlanFile| HeaderFile {
-        name: file.name.clone(),
-        sha256: sha256(file.text.as_bytes()),
-    };
+    let file = |file: &crate::plan::PlanFile| HeaderFile { name: file.name.clone(), sha256: sha256(file.text.as_bytes()) };
     let Circumstances { operator, host, began, served } = circumstances;
     Header {
         run_id: provenance.run_id.clone(),

@@ -111,14 +111,11 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
         return Err(Failure::command_line(format!("not what the run began with:\n  {told}"))
             .help("`--amend` accepts it; who and why go into the record and onto the certificate"));
     }
-    header = Header {
-        psd: env!("CARGO_PKG_VERSION").to_owned(),
-        build: BUILD.to_owned(),
-        toolchain: TOOLCHAIN.to_owned(),
-        ..header
-    };
+    header =
+        Header { psd: env!("CARGO_PKG_VERSION").to_owned(), build: BUILD.to_owned(), toolchain: TOOLCHAIN.to_owned(), ..header };
     let plan_sha256 = header.files.first().map_or_else(String::new, |file| file.sha256.clone());
-    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), build: provenance::this_build(), ..read.provenance.clone() };
+    let provenance =
+        Provenance { plan_sha256, psd_version: header.psd.clone(), build: provenance::this_build(), ..read.provenance.clone() };
     let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
     Ok((plan, provenance, Some((AmendBody { by, reason, differences, header }, texts))))
 }

@@ -117,7 +117,9 @@ pub enum OutputError {
 /// A table, figure or summary that cannot be encoded.
 pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let figures = figures::all(run)?;
-    let tables = tables::all(run)?;
+    let mut tables = tables::all(run)?;
+    // As they will lie in the folder, for the report names them.
+    tell_apart(&mut tables);
     let mut files = Vec::new();
     let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
     if html || pdf {
@@ -131,7 +133,7 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
             files.push(OutputFile { path: "certificate.pdf".to_owned(), bytes });
         }
     }
-    files.push(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() });
+    files.push(summary_file(run)?);
     files.extend(tables);
     for figure in figures {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
@@ -141,6 +143,21 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     tell_apart(&mut files);
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// The files of numbers and words alone: the summary and the tables.
+///
+/// # Errors
+/// A table or a summary that cannot be encoded.
+pub fn numbers(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let mut files = vec![summary_file(run)?];
+    files.extend(tables::all(run)?);
+    tell_apart(&mut files);
+    Ok(files)
+}
+
+fn summary_file(run: &Run<'_>) -> Result<OutputFile, OutputError> {
+    Ok(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() })
 }
 
 /// What the figures of a run plot, for who holds it against another run.

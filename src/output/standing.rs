@@ -2,6 +2,7 @@
 //! gravest first. Days are judged against the run's own from its record: no clock is read.
 
 use super::Run;
+use crate::mechanics::self_test;
 use crate::record::Outcome;
 use crate::run::rehearsal;
 
@@ -69,14 +70,22 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !told(calibration.reference.as_deref()) {
         missing.push("the calibration's reference".to_owned());
     }
-    match (calibration.due.as_deref(), last_day(run)) {
-        (None, _) => missing.push("the day until which the calibration holds".to_owned()),
-        (Some(_), None) => missing.push("the day of the test".to_owned()),
-        (Some(due), Some(day)) if due < day => {
-            missing.push(format!("a valid calibration (it held until {due}, the test ended on {day})"));
+    let mut held = vec![("calibration", calibration.due.as_deref())];
+    held.extend(calibration.displacement.as_ref().map(|(_, due)| ("calibration of the displacement", due.as_deref())));
+    for (what, due) in held {
+        match (due, last_day(run)) {
+            (None, _) => missing.push(format!("the day until which the {what} holds")),
+            (Some(_), None) => missing.push("the day of the test".to_owned()),
+            (Some(due), Some(day)) if due < day => {
+                missing.push(format!("a valid {what} (it held until {due}, the test ended on {day})"));
+            }
+            (Some(_), Some(_)) => {}
         }
-        (Some(_), Some(_)) => {}
     }
+    if !self_test::passed() {
+        missing.push("a program that passes its own test".to_owned());
+    }
+    missing.dedup();
     missing
 }
 

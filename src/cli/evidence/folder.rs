@@ -12,8 +12,8 @@ use sha2::{Digest as _, Sha256};
 
 use crate::cli::exit::Failure;
 use crate::cli::loader::plain;
-use crate::digest::{hex, sha256};
 use crate::cli::record_file::JOURNAL;
+use crate::digest::{hex, sha256};
 
 use super::amending::AMENDMENT;
 use super::signature;

@@ -4,7 +4,7 @@
 use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
-use super::pairs;
+use super::{pairs, particulars};
 use crate::plan::{DeviceLink, Gate, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::record::EventKind;
@@ -12,47 +12,72 @@ use crate::record::EventKind;
 /// The rig of the run.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Equipment and calibration"));
-    body.push(calibration(run));
-    body.push(match run.plan.rig.link.as_real() {
-        Some(link) => real(run, link),
-        None => simulated(run),
-    });
+    match run.plan.rig.link.as_real() {
+        Some(link) => {
+            body.push(calibration(run, link));
+            body.push(real(run, link));
+        }
+        None => body.push(simulated(run)),
+    }
 }
 
-/// What the rig's numbers are traced to, and whether that still held on the day of the test.
-fn calibration(run: &Run<'_>) -> Block {
-    let identity = &run.record.rig;
+/// What is measured, over which range and how well, what that is traced to, and whether it still held on the day of the
+/// test.
+fn calibration(run: &Run<'_>, link: &RealLink) -> Block {
     let calibration = &run.plan.rig.calibration;
-    let told: Vec<&str> =
-        [&identity.model, &identity.serial].into_iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
-    let state = match (calibration.due.as_deref(), standing::last_day(run)) {
+    let both = (calibration.reference.as_deref(), calibration.due.as_deref());
+    let displacement =
+        calibration.displacement.as_ref().map_or(both, |(reference, due)| (Some(reference.as_str()), due.as_deref()));
+    let cell = link.readings.force_range;
+    let travel = run.plan.limits.displacement;
+    let held = |bounded: bool, words: &str, range: String| {
+        if bounded { Text::from(format!("{words}{range}")) } else { Text::given(None) }
+    };
+    let row = |name: &str, range: Text, class: Option<&str>, (reference, due): (Option<&str>, Option<&str>)| {
+        vec![name.into(), range, Text::given(class), Text::given(reference), Text::given(due), state(run, due)]
+    };
+    let force = held(cell.is_bounded(), "", range(cell, Dimension::FORCE));
+    let displaced = held(travel.is_bounded(), "held to ", range(travel, Dimension::LENGTH));
+    let rows = vec![
+        row("Force", force, calibration.force_class.as_deref(), both),
+        row("Displacement", displaced, calibration.displacement_class.as_deref(), displacement),
+    ];
+    let columns = vec![
+        Column::short("Measured"),
+        Column::short("Range"),
+        Column::words("Class", 2),
+        Column::words("Calibration certificate", 3),
+        Column::short("Holds until"),
+        Column::short("State"),
+    ];
+    Block::Table(Table { columns, rows })
+}
+
+/// Whether a calibration held on the last day of the test.
+fn state(run: &Run<'_>, due: Option<&str>) -> Text {
+    match (due, standing::last_day(run)) {
         (None, _) => Text::missing("no due date"),
         (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
         (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),
         (Some(_), None) => Text::missing("day of the test not known"),
-    };
-    let row = vec![
-        Text::from(run.plan.rig.name.as_str()),
-        if told.is_empty() { Text::given(None) } else { told.join(", ").into() },
-        Text::given(calibration.reference.as_deref()),
-        Text::given(calibration.due.as_deref()),
-        state,
-    ];
-    let columns = vec![
-        Column::short("Rig"),
-        Column::words("Model, serial number", 2),
-        Column::words("Calibration certificate", 2),
-        Column::short("Holds until"),
-        Column::short("State"),
-    ];
-    Block::Table(Table { columns, rows: vec![row] })
+    }
 }
 
 fn real(run: &Run<'_>, link: &RealLink) -> Block {
     let identity = &run.record.rig;
     let calibration = &run.plan.rig.calibration;
     let kind = if identity.simulated { "a simulated controller on a real line: nothing real moved" } else { "real" };
-    let mut rows = vec![("Kind", kind.into()), ("Firmware", Text::given(Some(&identity.firmware)))];
+    let stated = |text: &str| Text::given(Some(text));
+    let mut rows = vec![
+        ("Rig", run.plan.rig.name.as_str().into()),
+        ("Kind", kind.into()),
+        ("Model", stated(&identity.model)),
+        ("Serial number", stated(&identity.serial)),
+        ("Firmware", stated(&identity.firmware)),
+    ];
+    if let Some(text) = particulars::stated(run, "equipment") {
+        rows.push(("Other equipment", text.into()));
+    }
     if let Some(boot) = &identity.boot {
         rows.push(("Power-up of the controller", Text::new().id(boot)));
     }
@@ -75,12 +100,17 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
 
 fn simulated(run: &Run<'_>) -> Block {
     let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
-    pairs(vec![
-        ("Kind", "simulated: nothing real moved".into()),
-        ("Firmware", Text::given(Some(&run.record.rig.firmware))),
+    let mut rows = vec![
+        ("Rig", run.plan.rig.name.as_str().into()),
+        ("Kind", "simulated: nothing real moved, nothing was measured".into()),
+        ("Model, firmware", format!("{} {}", run.record.rig.model, run.record.rig.firmware).into()),
         ("Simulated errors", errors(&link).into()),
         ("Settling", settling(run.plan.rig.settle).into()),
-    ])
+    ];
+    if let Some(text) = particulars::stated(run, "equipment") {
+        rows.push(("Other equipment", text.into()));
+    }
+    pairs(rows)
 }
 
 /// What a virtual rig adds to its specimen.

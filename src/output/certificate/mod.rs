@@ -14,10 +14,9 @@ mod method;
 mod particulars;
 mod results;
 
-use super::Run;
 use super::document::{Block, Document, Figure, Text};
 use super::figures::Drawn;
-use super::OutputFile;
+use super::{OutputFile, Run};
 use crate::inert;
 
 /// The whole report; `tables` are the files whose digests it prints.

@@ -71,6 +71,7 @@ fn top(document: &Document) -> Markup {
         div.front {
             @for (name, value) in in_two_columns(&document.front) { div { span.name { (line(name)) } span { (line(value)) } } }
         }
+        @if !document.lacking.is_empty() { p.note.lacking { "Not given: " (document.lacking.join(", ")) "." } }
         div class={ "verdict " (document.verdict.name) } {
             strong { (document.verdict.name.to_uppercase()) }
             (line(&document.verdict.text))
