@@ -65,7 +65,7 @@ fn top(document: &Document) -> Markup {
             }
             div.run {
                 "Report " span.id { (document.id) } br;
-                @if let Some(date) = &document.date { (date) } @else { "date not given" }
+                @if let Some(date) = &document.date { "Tested " (date) } @else { "date of the test not given" }
             }
         }
         div.front {
