@@ -1,10 +1,11 @@
 //! `cycle NAME { … }`: amplitudes, or a protocol that gives them.
 
 use super::checker::{Checker, Place};
+use super::curve;
 use super::faults::{cyclic as fault, names, values};
 use super::fields::whole;
 use crate::formula::{Formula, Operator};
-use crate::plan::{Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
+use crate::plan::{BreakCount, Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
 
 pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let head = checker.scope.blocks[block].block.head;
@@ -27,6 +28,7 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         }
     }
     let inspect = inspections(checker, block);
+    let fit = fit(checker, block);
     let cycle = Cycle {
         specimen: specimen?,
         levels: levels?,
@@ -42,6 +44,7 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         speed: speed?,
         rate: rate?,
         inspect: inspect?,
+        fit: fit?,
     };
     #[expect(clippy::cast_precision_loss, reason = "a count far below 2^53, or far above the bound")]
     let readings = cycle.targets() as f64 * f64::from(cycle.samples);
@@ -50,6 +53,15 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         return checker.fail(values::too_many("readings", readings, MOST_TARGETS, head, help));
     }
     Some(ProcedureKind::Cycle(cycle))
+}
+
+/// The curve of the backbone; None where a fault was reported.
+#[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
+    let Some((entry, _)) = checker.given(block, "fit") else { return Some(None) };
+    let place = checker.place(block, entry);
+    let chosen = checker.choice(block, "fit")?;
+    curve::breaks(checker, &chosen, place).map(Some)
 }
 
 /// The amplitudes in order, each with its number of cycles; None where a fault was reported.

@@ -89,7 +89,9 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
         }
         _ => Some(None),
     };
-    let (mass, height, behaviour) = (mass?, height?, behaviour?);
+    let damping = checker.constant_argument(chosen, "damping", place);
+    let coulomb = checker.constant_argument(chosen, "coulomb", place);
+    let (mass, height, behaviour, damping, coulomb) = (mass?, height?, behaviour?, damping?, coulomb?);
     let stiffness = match (total?, column?, &behaviour) {
         (Some(_), Some(_), _) => {
             let again = chosen.span("column_stiffness").unwrap_or(at);
@@ -101,7 +103,7 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
         (None, None, None) => return checker.fail(fault::storey_without_stiffness(number, at)),
     };
     let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
-    Some(Storey { mass, stiffness, height, behaviour })
+    Some(Storey { mass, stiffness, height, behaviour, damping, coulomb })
 }
 
 /// The frame that the files of its matrices give, with the files.

@@ -1,11 +1,12 @@
 //! `limits`: ranges and bounds, the intersection of the plan's and the rig's, and targets known before the run.
 
 use super::checker::{Checker, Place, Typed};
+use super::choice::Chosen;
 use super::faults::{types, values, whole};
 use crate::formula::Formula;
 use crate::plan::{Interval, Limits, Procedure, ProcedureKind};
 use crate::quantity::Dimension;
-use crate::schema::{FieldType, Kind};
+use crate::schema::{Field, FieldType, Kind};
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind};
 
@@ -45,21 +46,34 @@ impl<'a> Checker<'a> {
     /// A range, or a bound `b`: −b .. b where both signs make sense, else 0 .. b.
     pub fn bounds(&mut self, block: usize, field: &'static str) -> Option<Interval> {
         let Some((entry, written)) = self.given(block, field) else { return Some(Interval::ALL) };
-        let FieldType::Bounds { dimension, symmetric } = self.scope.blocks[block].kind.field(field)?.ty else { return None };
+        let field = self.scope.blocks[block].kind.field(field)?;
         let place = self.place(block, entry);
-        let written = &written.value;
+        self.bounds_of(field, &written.value, place)
+    }
+
+    /// The same of an argument; `Some(None)` where it is left out, None where it is faulty.
+    #[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+    pub fn bounds_argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Option<Interval>> {
+        match chosen.find(name)? {
+            (field, Some(written)) => self.bounds_of(field, written, place).map(Some),
+            (_, None) => Some(None),
+        }
+    }
+
+    fn bounds_of(&mut self, field: &'static Field, written: &'a Expr, place: Place) -> Option<Interval> {
+        let FieldType::Bounds { dimension, symmetric } = field.ty else { return None };
         if let ExprKind::Range { .. } = written.kind {
             let (interval, found) = self.interval(written, place)?;
             let bare = found == Dimension::NUMBER && dimension != Dimension::NUMBER;
             let typed = Typed { bare, ..Typed::number(Formula::Constant(interval.high), found, written.span) };
-            self.expect(typed, dimension, field, written)?;
+            self.expect(typed, dimension, field.name, written)?;
             return Some(interval);
         }
         let typed = self.single(written, place)?;
-        let typed = self.expect(typed, dimension, field, written)?;
+        let typed = self.expect(typed, dimension, field.name, written)?;
         let bound = typed.constant()?;
         if bound < 0.0 {
-            return self.fail(values::negative_bound(field, written.span, self.text(written.span), symmetric));
+            return self.fail(values::negative_bound(field.name, written.span, self.text(written.span), symmetric));
         }
         Some(Interval { low: if symmetric { -bound } else { 0.0 }, high: bound })
     }

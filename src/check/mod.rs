@@ -1,11 +1,13 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod axes;
 mod behaviour;
 mod calendar;
 mod call;
 mod checker;
 mod choice;
+mod curve;
 mod cycle;
 mod damping_sweep;
 mod data;
@@ -142,7 +144,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     real_rig::complete(checker, rig.as_mut(), limits.as_ref());
     let procedures = procedures::procedures(checker);
     procedures::hold_specimen(checker, &procedures);
-    procedures::hold_axes(checker, &procedures, &specimens);
+    procedures::hold_axes(checker, &procedures, &specimens, rig.as_ref());
     if let Some(limits) = &limits {
         limits::hold_targets(checker, limits);
         limits::hold_cycles(checker, &procedures, limits);

@@ -3,7 +3,7 @@
 
 use super::checker::Checker;
 use super::faults::methods as fault;
-use crate::plan::{Impact, Mode, Specimen};
+use crate::plan::{Frame, Impact, Mode, Shake, ShakeDamping, Specimen};
 use crate::schema::Kind;
 
 /// The mode a block names, else step and pause.
@@ -35,6 +35,24 @@ pub fn damping_twice(checker: &mut Checker, block: usize, impact: &Impact, speci
     let of_specimen = checker.scope.of_kind(Kind::Specimen).nth(impact.specimen).map(|(index, _)| index);
     let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
     if let (Some(computed), Some(felt)) = (at(block, "damping"), of_specimen.and_then(|index| at(index, "damping"))) {
+        checker.faults.push(fault::damping_twice(computed, felt));
+    }
+}
+
+/// The same of a frame, whose damping is that of its storeys.
+pub fn storeys_damped_twice(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame) {
+    let computed = match &shake.damping {
+        ShakeDamping::Rayleigh(ratio) => ratio.constant().is_none_or(|ratio| ratio > 0.0),
+        ShakeDamping::Modal(ratios) => ratios.iter().any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
+    };
+    let felt = frame.storeys.iter().any(|storey| storey.damping > 0.0);
+    if !(computed && felt && matches!(shake.mode, Mode::Continuous { .. })) {
+        return;
+    }
+    let of_specimen = checker.scope.of_kind(Kind::Specimen).nth(shake.specimen).map(|(index, _)| index);
+    let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
+    let felt = of_specimen.and_then(|index| at(index, "storeys"));
+    if let (Some(computed), Some(felt)) = (at(block, "damping_ratio"), felt) {
         checker.faults.push(fault::damping_twice(computed, felt));
     }
 }

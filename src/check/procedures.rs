@@ -1,8 +1,9 @@
 //! What is run, in the order written, and on which specimen.
 
 use super::checker::Checker;
-use super::faults::{frames, names, whole as fault};
-use super::{cycle, damping_sweep, escalate, impact, inspect, move_block, shake, stiffness_ramp, unload};
+use super::faults::{axes as axis_faults, frames, names, whole as fault};
+use super::rig::CheckedRig;
+use super::{axes, cycle, damping_sweep, escalate, impact, inspect, move_block, shake, stiffness_ramp, unload};
 use crate::plan::{Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
@@ -50,26 +51,37 @@ pub fn hold_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedu
     }
 }
 
-/// What drives one actuator cannot drive the several of a frame, and a real rig has one.
-pub fn hold_axes(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], specimens: &[Option<Specimen>]) {
+/// What drives one actuator cannot drive the several of a frame, and a real rig has as many as it says.
+pub fn hold_axes(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    specimens: &[Option<Specimen>],
+    rig: Option<&CheckedRig>,
+) {
     let on_rig = procedures.iter().find_map(|(_, procedure)| procedure.as_ref()?.kind.specimen()).unwrap_or(0);
     let Some(Some(specimen)) = specimens.get(on_rig) else { return };
-    let axes = specimen.degrees_of_freedom();
-    if axes == 1 {
+    axes::hold_specimen(checker, rig, specimen);
+    let storeys = specimen.degrees_of_freedom();
+    if storeys == 1 {
         return;
     }
+    // A rig that lists its axes is held to them as a whole.
+    let one_axis = rig.filter(|rig| rig.block.is_some_and(|block| checker.given(block, "axes").is_none()));
+    let one_axis = one_axis.filter(|rig| rig.plan.link.as_real().is_some()).map(|rig| rig.plan.name.clone());
     let declared = checker.scope.of_kind(Kind::Specimen).nth(on_rig).map(|(_, block)| block.block.head);
     for (block, procedure) in procedures {
         let Some(procedure) = procedure else { continue };
         let head = checker.scope.blocks[*block].block.head;
         match procedure.kind {
-            ProcedureKind::Shake(_) if checker.real_rig.is_some() => {
-                checker.faults.push(frames::frame_on_real_rig(&specimen.name, axes, head));
+            ProcedureKind::Shake(_) => {
+                checker
+                    .faults
+                    .extend(one_axis.iter().map(|rig| axis_faults::frame_on_one_axis(&specimen.name, storeys, rig, head)));
             }
-            ProcedureKind::Shake(_) | ProcedureKind::Inspect { .. } => {}
+            ProcedureKind::Inspect { .. } => {}
             _ => {
                 let keyword = procedure.kind.keyword();
-                checker.faults.push(frames::one_degree_of_freedom(keyword, &specimen.name, axes, head, declared));
+                checker.faults.push(frames::one_degree_of_freedom(keyword, &specimen.name, storeys, head, declared));
             }
         }
     }

@@ -1,16 +1,19 @@
 //! A rig that moves a real specimen: its devices fit together, and nothing is missing that keeps a specimen safe. In: the
 //! block of a rig, the limits of the run. Out: a [`RealLink`]. It opens no port.
 
-use super::checker::Checker;
+use super::axes;
+use super::checker::{Checker, Place};
+use super::choice::Chosen;
 use super::device::{Device, device};
 use super::faults::rigs as fault;
 use super::faults::{values, whole};
 use super::fields::whole as whole_number;
 use super::limits::CheckedLimits;
 use super::rig::{CheckedRig, kind, place_of};
-use crate::plan::{DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
+use crate::plan::{AxisPlan, Calibration, DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
 use crate::quantity::Dimension;
 use crate::schema::{Field, Kind, Need, RigKind};
+use crate::syntax::ast::{Argument, Expr, ExprKind};
 
 /// A request is sent after 0, T, 3T and given up after 7T.
 const PATIENCE: f64 = 7.0;
@@ -19,13 +22,18 @@ const PATIENCE: f64 = 7.0;
 pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     let devices = devices(checker, block);
     let safe_state = checker.choice(block, "safe_state").map(|chosen| chosen.variant.name);
-    let gate = gate(checker, block);
+    let axes = axes::axes(checker, block);
+    let gate = gate(checker, block, axes.as_deref().unwrap_or_default());
     let readings = readings(checker, block);
     let watchdog = checker.constant(block, "watchdog");
     let own_speed = checker.constant(block, "speed");
     let (actuator, load_cell) = devices?;
     if let Some(watchdog) = watchdog {
         hold_watchdog(checker, block, watchdog, [Some(&actuator), load_cell.as_ref()].into_iter().flatten())?;
+    }
+    let axes = axes?;
+    if !axes.is_empty() {
+        axes::hold_device(checker, block, axes.len(), &actuator.link.dialect, load_cell.is_none())?;
     }
     Some(RealLink {
         actuator: actuator.link,
@@ -35,6 +43,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         readings: readings?,
         watchdog: watchdog?,
         own_speed: own_speed?,
+        axes,
     })
 }
 
@@ -124,12 +133,21 @@ fn hold_watchdog<'d>(
     checker.fail(fault::watchdog_too_short(watchdog, silence, given.is_some(), given.unwrap_or(slowest.at)))
 }
 
-fn gate(checker: &mut Checker, block: usize) -> Option<Gate> {
+/// The rig's gate; where each axis has its own, the rig needs none.
+fn gate(checker: &mut Checker, block: usize, axes: &[AxisPlan]) -> Option<Gate> {
+    if checker.given(block, "gate").is_none() && axes.iter().all(|axis| axis.gate.is_some()) {
+        return axes.first()?.gate;
+    }
     let place = place_of(checker, block, "gate")?;
     let chosen = checker.choice(block, "gate")?;
-    let probe = checker.constant_argument(&chosen, "displacement", place);
-    let stiffness = checker.interval_argument(&chosen, "stiffness", place);
-    let zero = checker.constant_argument(&chosen, "zero", place);
+    probe(checker, &chosen, place)
+}
+
+/// `probe(…)`, of a rig or of one of its axes.
+pub fn probe<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<Gate> {
+    let probe = checker.constant_argument(chosen, "displacement", place);
+    let stiffness = checker.interval_argument(chosen, "stiffness", place);
+    let zero = checker.constant_argument(chosen, "zero", place);
     Some(Gate { zero: zero?, probe: probe?, stiffness: stiffness? })
 }
 
@@ -164,7 +182,10 @@ pub fn complete(checker: &mut Checker, rig: Option<&mut CheckedRig>, limits: Opt
     for block in real {
         let declared = &checker.scope.blocks[block];
         let required = declared.kind.fields.iter().filter(|field| matches!(field.need, Need::RequiredOn(RigKind::Real, _)));
-        let absent = |field: &&Field| checker.given(block, field.name).is_none() && !checker.misspelt(block, &[field.name]);
+        let absent = |field: &&Field| {
+            let elsewhere = field.name == "gate" && every_axis_has_a_gate(checker, block);
+            checker.given(block, field.name).is_none() && !elsewhere && !checker.misspelt(block, &[field.name])
+        };
         let missing: Vec<&Field> = required.filter(absent).collect();
         let unbounded = limits.filter(|_| of_run == Some(block)).map_or_else(Vec::new, |limits| unbounded(checker, limits));
         if !missing.is_empty() || !unbounded.is_empty() {
@@ -175,6 +196,23 @@ pub fn complete(checker: &mut Checker, rig: Option<&mut CheckedRig>, limits: Opt
         && let Link::Real(link) = &mut plan.link
     {
         hold_own_moves(checker, *block, link, limits);
+    }
+}
+
+fn every_axis_has_a_gate(checker: &Checker, block: usize) -> bool {
+    let Some((_, written)) = checker.given(block, "axes") else { return false };
+    // By its name, or as the second of those without one.
+    let is_gate = |(place, argument): (usize, &Argument)| match &argument.name {
+        Some(name) => name.node == "gate",
+        None => place == 1,
+    };
+    let has = |axis: &Expr| match &axis.kind {
+        ExprKind::Call { arguments, .. } => arguments.iter().enumerate().any(is_gate),
+        _ => false,
+    };
+    match &written.value.kind {
+        ExprKind::List { items, .. } => !items.is_empty() && items.iter().all(has),
+        _ => has(&written.value),
     }
 }
 
@@ -191,10 +229,10 @@ fn unbounded(checker: &Checker, limits: &CheckedLimits) -> Vec<&'static str> {
 
 /// The moves that the rig makes of itself: the probe, and a move for which no speed is said.
 fn hold_own_moves(checker: &mut Checker, block: usize, link: &mut RealLink, limits: &CheckedLimits) {
-    let probe = link.gate.probe;
-    if let (Some((_, gate)), Some(at)) = (checker.given(block, "gate"), limits.displacement_at)
-        && !limits.limits.displacement.contains(probe)
-    {
+    let axes = link.axes.len().max(1);
+    let beyond = (0..axes).map(|axis| link.gate_of(axis).probe).find(|probe| !limits.limits.displacement.contains(*probe));
+    let given = checker.given(block, "gate").or_else(|| checker.given(block, "axes"));
+    if let (Some((_, gate)), Some(at), Some(probe)) = (given, limits.displacement_at, beyond) {
         let interval = limits.limits.displacement;
         checker.faults.push(whole::beyond_limits("gate", probe, Dimension::LENGTH, gate.value.span, interval, at));
     }
@@ -214,21 +252,19 @@ fn hold_own_moves(checker: &mut Checker, block: usize, link: &mut RealLink, limi
 pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     let (Some(block), Some(link)) = (rig.block, rig.plan.link.as_real()) else { return };
     let head = checker.scope.blocks[block].block.head;
-    if rig.plan.calibration.reference.is_none() || rig.plan.calibration.due.is_none() {
-        let calibration = &rig.plan.calibration;
-        checker.faults.push(fault::not_certifiable(
-            &rig.plan.name,
-            head,
-            calibration.reference.is_none(),
-            calibration.due.is_none(),
-        ));
+    let axes = 0..rig.plan.axes().unwrap_or(1);
+    let calibrations: Vec<Calibration> = axes.clone().map(|axis| rig.plan.calibration_of(axis)).collect();
+    let lacks = |of: fn(&Calibration) -> &Option<String>| calibrations.iter().any(|calibration| of(calibration).is_none());
+    let (reference, due) = (lacks(|calibration| &calibration.reference), lacks(|calibration| &calibration.due));
+    if reference || due {
+        checker.faults.push(fault::not_certifiable(&rig.plan.name, head, reference, due));
     }
     if let (Some((_, None)), Some((_, entry))) =
         (&rig.plan.calibration.displacement, checker.given(block, "displacement_calibration"))
     {
         checker.faults.push(fault::displacement_without_day(&rig.plan.name, entry.value.span));
     }
-    if link.readings.resolution == 0.0 {
+    if axes.clone().any(|axis| link.readings_of(axis).resolution == 0.0) {
         let at = checker.given(block, "resolution").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::resolution_unknown(&rig.plan.name, at));
     }

@@ -2,10 +2,10 @@
 
 use super::checker::{Checker, Shape};
 use super::faults::{frames as fault, methods, types, values, whole};
-use super::{frame, impact, integrator};
+use super::{frame, impact, integrator, mode};
 use crate::formula::{Formula, NoResults, Operator};
 use crate::mechanics::frame_properties::FrameProperties;
-use crate::plan::{Frame, Ground, MOST_STEPS, ProcedureKind, Shake, ShakeDamping};
+use crate::plan::{Contact, Frame, Ground, MOST_STEPS, Mode, ProcedureKind, Shake, ShakeDamping};
 use crate::schema::Kind;
 
 pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
@@ -14,8 +14,11 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let ground = checker.reference(block, "ground", Kind::Ground);
     let specimen = checker.specimen_block(block);
     let damping = damping(checker, block);
-    let integrator = integrator::integrator(checker, block, None, None);
+    let mode = mode::mode(checker, block);
+    let integrator = integrator::integrator(checker, block, mode, Some(&Contact::Rigid));
     let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
+    let unsaid = if matches!(mode, Some(Mode::Continuous { .. })) { "true" } else { "false" };
+    let i_modification = checker.word(block, "i_modification", unsaid).map(|word| word == "true");
     let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
     let time_step = match checker.given(block, "time_step") {
         Some(_) => checker.quantity(block, "time_step"),
@@ -38,6 +41,8 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         damping: damping?,
         integrator: integrator?,
         allow_unstable: allow_unstable?,
+        i_modification: i_modification?,
+        mode: mode?,
         max_tangent_ratio: max_tangent_ratio?,
         time_step: time_step?,
         scale: scale?,
@@ -67,6 +72,7 @@ fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
 /// What the time step of a shake must be held against, as far as it is known before the run: stability, the shortest
 /// period, the record, the number of steps.
 pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, ground: &Ground) {
+    mode::storeys_damped_twice(checker, block, shake, frame);
     let head = checker.scope.blocks[block].block.head;
     let at = |checker: &Checker, field| checker.given(block, field).map_or(head, |(_, entry)| entry.value.span);
     let Some(damping) = shake.damping.known() else { return };

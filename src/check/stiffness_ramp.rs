@@ -1,8 +1,9 @@
 //! `stiffness ramp NAME { … }`
 
 use super::checker::Checker;
+use super::curve;
 use super::faults::values;
-use crate::plan::{ProcedureKind, StiffnessRamp};
+use crate::plan::{ProcedureKind, RampFit, StiffnessRamp};
 
 /// Most readings of one ramp.
 pub const MOST_READINGS: f64 = 1e7;
@@ -13,7 +14,7 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
     let pause = checker.quantity(block, "pause");
     let (samples, repeats) = (checker.count(block, "samples"), checker.count(block, "repeats"));
     let return_path = checker.word(block, "return", "false").map(|word| word == "true");
-    let bilinear = checker.word(block, "fit", "linear").map(|word| word == "bilinear");
+    let fit = fit(checker, block);
     let speed = checker.optional(block, "speed");
     let (displacements, samples, repeats) = (displacements?, samples?, repeats?);
     #[expect(clippy::cast_precision_loss, reason = "a list has at most 100,000 entries")]
@@ -29,7 +30,18 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
         samples,
         repeats,
         return_path: return_path?,
-        bilinear: bilinear?,
+        fit: fit?,
         speed: speed?,
     }))
+}
+
+fn fit(checker: &mut Checker, block: usize) -> Option<RampFit> {
+    let Some((entry, _)) = checker.given(block, "fit") else { return Some(RampFit::Linear) };
+    let place = checker.place(block, entry);
+    let chosen = checker.choice(block, "fit")?;
+    match chosen.variant.name {
+        "multilinear" => curve::breaks(checker, &chosen, place).map(RampFit::Multilinear),
+        "bilinear" => Some(RampFit::Bilinear),
+        _ => Some(RampFit::Linear),
+    }
 }

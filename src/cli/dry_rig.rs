@@ -139,9 +139,8 @@ impl Rig for Watched {
     }
 
     fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
-        if let [path] = paths {
-            self.note_target(&[path.to], path.fastest());
-        }
+        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
+        self.note_target(&ends, paths.iter().map(Path::fastest).fold(0.0, f64::max));
         let mut readings = Vec::new();
         let glided = self.inner.glide(paths, samples, &mut |reading| {
             readings.push(reading.clone());

@@ -91,6 +91,8 @@ codes! {
     E612 NotADay Error;
     E613 WatchdogTooShort Error;
     E614 FieldWithoutUse Error;
+    E615 AxesDiffer Error;
+    E616 TooManyAxes Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
     E620 GroundRecord Error;
@@ -114,6 +116,7 @@ codes! {
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;
+    E649 BreaksTwice Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

@@ -58,6 +58,12 @@ impl CellDamping {
         self
     }
 
+    /// Whether the cell reads the restoring force alone, at any velocity.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.viscous == 0.0 && self.coulomb == 0.0 && self.rate.is_none()
+    }
+
     /// All that the cell reads at `velocity` (m/s) of a specimen that resists with `restoring_force` (N) at rest, N.
     pub fn felt(&mut self, restoring_force: f64, velocity: f64) -> f64 {
         let gained = self.rate.map_or(0.0, |rate| restoring_force * rate.gain(velocity));

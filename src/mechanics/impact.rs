@@ -240,13 +240,13 @@ impl ImpactSolver {
         step.scheme.target(prediction)
     }
 
-    /// Velocity that the step is foretold to end with, m/s: exact under `tangent`, ṽ with the acceleration kept under the
-    /// others. A blow changes it.
-    pub fn predicted_velocity(&mut self) -> f64 {
+    /// Velocity that the step is foretold to end with, m/s, and whether a contact force has its share in it: exact under
+    /// `tangent`, with the structure's own acceleration kept under the others. A blow at its end changes it.
+    pub fn predicted_velocity(&mut self) -> (f64, bool) {
         let step = &mut self.step;
         let start = step.start();
         let prediction = self.predicted.get_or_insert_with(|| step.predict());
-        step.scheme.velocity(&step.bodies, &start, prediction)
+        (step.scheme.velocity(&step.bodies, &start, prediction), step.scheme.struck(&start, prediction))
     }
 
     /// Ends the step with what was measured at its end.

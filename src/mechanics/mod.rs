@@ -2,6 +2,7 @@
 
 pub mod backbone;
 pub mod beam;
+pub mod breaks;
 pub mod contact;
 pub mod cyclic;
 pub mod damping;
@@ -15,6 +16,7 @@ pub mod integrator;
 pub mod law;
 pub mod method;
 pub mod monitor;
+pub mod multilinear_fit;
 pub mod path;
 pub mod scheme;
 pub mod self_test;

@@ -21,6 +21,9 @@ pub trait Scheme {
     /// Velocity foretold for the end of the step, m/s.
     fn velocity(&self, bodies: &Bodies, start: &Start, prediction: &Self::Prediction) -> f64;
 
+    /// Whether a contact force has its share in that velocity: its change since the step before is then no trend to go by.
+    fn struck(&self, start: &Start, prediction: &Self::Prediction) -> bool;
+
     /// The end of the step; `force` (N) is what the recursion takes for the one at the target. The structure's restoring
     /// force at its end is that at the computed displacement.
     fn complete(&mut self, bodies: &Bodies, start: &Start, prediction: &Self::Prediction, force: f64) -> Advance;
@@ -43,6 +46,10 @@ impl<L: Law> Scheme for L {
         prediction.structure.velocity
     }
 
+    fn struck(&self, start: &Start, prediction: &Advance) -> bool {
+        start.contact_force > 0.0 || prediction.contact_force > 0.0
+    }
+
     #[inline]
     fn complete(&mut self, _: &Bodies, _: &Start, prediction: &Advance, force: f64) -> Advance {
         at_the_force(*prediction, force)
@@ -63,7 +70,11 @@ impl Scheme for Split {
     }
 
     fn velocity(&self, bodies: &Bodies, start: &Start, _: &f64) -> f64 {
-        start.structure.velocity + bodies.time_step * start.structure.acceleration
+        self.foretold_velocity(bodies, start)
+    }
+
+    fn struck(&self, start: &Start, _: &f64) -> bool {
+        start.contact_force > 0.0
     }
 
     #[inline]
@@ -120,6 +131,13 @@ impl Scheme for AnyScheme {
         match prediction {
             AnyPrediction::Tangent(advance) => advance.structure.velocity,
             AnyPrediction::Split(split, target) => split.velocity(bodies, start, target),
+        }
+    }
+
+    fn struck(&self, start: &Start, prediction: &AnyPrediction) -> bool {
+        match prediction {
+            AnyPrediction::Tangent(advance) => start.contact_force > 0.0 || advance.contact_force > 0.0,
+            AnyPrediction::Split(split, target) => split.struck(start, target),
         }
     }
 

@@ -76,6 +76,15 @@ impl Split {
         from.displacement + time_step * (from.velocity + time_step * pushed)
     }
 
+    /// Velocity foretold for the end of the step, m/s: what the structure does by itself it keeps doing; a blow is over, and the
+    /// half of its impulse that this step still has is all that comes of it; a limit force lasts.
+    #[must_use]
+    pub fn foretold_velocity(&self, bodies: &Bodies, start: &Start) -> f64 {
+        let (smooth, contact) = parts(bodies, start);
+        let to_come = if start.contact_force >= self.force_limit { 1.0 } else { 0.5 };
+        start.structure.velocity + bodies.time_step * (smooth + to_come * contact)
+    }
+
     /// The end of the step, with the force `read` (N) at d̃₁ = `imposed` (m).
     #[inline]
     #[must_use]

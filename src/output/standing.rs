@@ -1,8 +1,11 @@
 //! What a run's report may be taken for. In: a run. Out: its [`Standing`], and every ground against a certificate, the
 //! gravest first. Days are judged against the run's own from its record: no clock is read.
 
+use std::collections::BTreeSet;
+
 use super::Run;
 use crate::mechanics::self_test;
+use crate::plan::Calibration;
 use crate::record::Outcome;
 use crate::run::rehearsal;
 
@@ -66,13 +69,14 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !told(run.provenance.operator()) {
         missing.push("the operator's name".to_owned());
     }
-    let calibration = &run.plan.rig.calibration;
-    if !told(calibration.reference.as_deref()) {
+    let calibrations: Vec<Calibration> =
+        (0..run.plan.rig.axes().unwrap_or(1)).map(|axis| run.plan.rig.calibration_of(axis)).collect();
+    if !calibrations.iter().all(|calibration| told(calibration.reference.as_deref())) {
         missing.push("the calibration's reference".to_owned());
     }
-    let mut held = vec![("calibration", calibration.due.as_deref())];
-    held.extend(calibration.displacement.as_ref().map(|(_, due)| ("calibration of the displacement", due.as_deref())));
-    for (what, due) in held {
+    let own = calibrations.iter().filter_map(|calibration| calibration.displacement.as_ref());
+    let own = own.map(|(_, due)| ("calibration of the displacement", due.as_deref()));
+    for (what, due) in calibrations.iter().map(|calibration| ("calibration", calibration.due.as_deref())).chain(own) {
         match (due, last_day(run)) {
             (None, _) => missing.push(format!("the day until which the {what} holds")),
             (Some(_), None) => missing.push("the day of the test".to_owned()),
@@ -85,7 +89,9 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !self_test::passed() {
         missing.push("a program that passes its own test".to_owned());
     }
-    missing.dedup();
+    // What two axes lack is said once.
+    let mut said = BTreeSet::new();
+    missing.retain(|lack| said.insert(lack.clone()));
     missing
 }
 

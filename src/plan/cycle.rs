@@ -1,5 +1,6 @@
 //! A checked `cycle`: reversed or one-sided cycles of displacement, amplitude by amplitude.
 
+use super::BreakCount;
 use crate::formula::Formula;
 
 /// Displacements of a specimen about one place, over and over.
@@ -23,6 +24,8 @@ pub struct Cycle {
     /// Hz: moved without stopping between the ends, and read at this rate. None: step and pause.
     pub rate: Option<Formula>,
     pub inspect: Vec<CycleInspection>,
+    /// Of the curve that is fitted to the backbone.
+    pub fit: Option<BreakCount>,
 }
 
 /// One amplitude and how often it is run.

@@ -1,7 +1,7 @@
 //! Frames of storeys and the motion of the ground under them: many degrees of freedom, one for each floor, counted from the
 //! ground up. In: what `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
-use super::{Behaviour, InspectTrigger, Integrator};
+use super::{Behaviour, InspectTrigger, Integrator, Mode};
 use crate::formula::Formula;
 use crate::mechanics::frame::Damping;
 
@@ -32,6 +32,10 @@ pub struct Storey {
     pub height: Option<f64>,
     /// Storey shear against drift, what a virtual rig bends.
     pub behaviour: Behaviour,
+    /// On the load cells of a virtual rig, N·s/m of drift velocity.
+    pub damping: f64,
+    /// The same, N: friction against the drift.
+    pub coulomb: f64,
 }
 
 impl Frame {
@@ -111,6 +115,9 @@ pub struct Shake {
     pub integrator: Integrator,
     /// Whether it runs beyond the stability limit of its integrator.
     pub allow_unstable: bool,
+    /// Whether readings are corrected to the targets, r* = `r_m` − K(`d_m` − d̃).
+    pub i_modification: bool,
+    pub mode: Mode,
     /// c of "the tangent stays in 0 .. c·K".
     pub max_tangent_ratio: Formula,
     /// s; may read `critical`.

@@ -15,6 +15,7 @@ mod unload;
 use crate::formula::{Formula, ResultReference};
 use crate::quantity::Dimension;
 
+pub use crate::mechanics::multilinear_fit::BreakCount;
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
@@ -24,8 +25,8 @@ pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
-    Settle, VirtualLink,
+    AxisPlan, Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
+    SafeState, Settle, VirtualLink,
 };
 pub use unload::Unload;
 
@@ -254,10 +255,18 @@ pub struct StiffnessRamp {
     pub repeats: u32,
     /// Also back to the start through the same displacements.
     pub return_path: bool,
-    /// Whether two lines that meet are fitted, in place of one.
-    pub bilinear: bool,
+    pub fit: RampFit,
     /// Actuator speed, m/s.
     pub speed: Option<Formula>,
+}
+
+/// What is fitted to force on displacement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RampFit {
+    Linear,
+    /// Two lines that meet.
+    Bilinear,
+    Multilinear(BreakCount),
 }
 
 /// Sec. 6 (b): constant-velocity ramps at rising velocities.

@@ -1,6 +1,7 @@
 //! What a `cycle` records: every reading, and what each cycle came to.
 
 use crate::mechanics::cyclic::Loop;
+use crate::mechanics::multilinear_fit::MultilinearFit;
 
 /// One reading of a cycle: the mean of the samples at a target, or one on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,4 +47,28 @@ pub struct CycleHistory {
     /// The first is where the cycles begin.
     pub steps: Vec<CycleStep>,
     pub cycles: Vec<WholeCycle>,
+    /// Of the backbone, displacements from the middle and both sides on one, where the plan asks for it.
+    pub backbone: Option<MultilinearFit>,
+}
+
+impl CycleHistory {
+    /// Where the cycles go about, m.
+    #[must_use]
+    pub fn middle(&self) -> f64 {
+        self.steps.first().map_or(0.0, |step| step.command)
+    }
+
+    /// Where they begin and the ends of the first cycle at each amplitude, from the middle: displacement (m) and force (N), those
+    /// of the pull turned to the push.
+    #[must_use]
+    pub fn backbone_points(&self) -> Vec<(f64, f64)> {
+        let middle = self.middle();
+        let folded = |(x, force): (f64, f64)| if x < middle { (middle - x, -force) } else { (x - middle, force) };
+        let first = self.steps.first().map(|step| (step.displacement - middle, step.restoring_force));
+        // One-sided cycles have an end in the middle, where they come back to: that is no backbone.
+        let far = |(x, _): &(f64, f64), amplitude: f64| (x - middle).abs() > 0.5 * amplitude;
+        let first_cycles = self.cycles.iter().filter(|cycle| cycle.repeat == 1);
+        let ends = first_cycles.flat_map(|cycle| cycle.ends.into_iter().filter(|end| far(end, cycle.amplitude)).map(folded));
+        first.into_iter().chain(ends).collect()
+    }
 }

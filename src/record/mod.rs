@@ -15,6 +15,7 @@ pub use crate::mechanics::frame::{FrameEnergies, Modes};
 use crate::mechanics::frame::{drifts, shears};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
+pub use crate::mechanics::multilinear_fit::MultilinearFit;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
@@ -135,6 +136,7 @@ pub struct RampHistory {
     pub fit: Option<LineFit>,
     /// Of a ramp past yield, where the plan asks for it.
     pub bilinear: Option<BilinearFit>,
+    pub multilinear: Option<MultilinearFit>,
 }
 
 /// One reading of a damping sweep.

@@ -3,7 +3,7 @@
 //! no procedure.
 
 use super::failpoint::{Guarding, on};
-use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally};
+use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally, named_axis};
 use crate::mechanics::monitor;
 use crate::plan::{Interval, Limits};
 
@@ -11,6 +11,8 @@ use crate::plan::{Interval, Limits};
 pub struct Guard<'rig> {
     pub(super) rig: &'rig mut dyn Rig,
     pub(super) limits: Limits,
+    /// Of each axis, where one has limits of its own; empty: those above hold for all.
+    pub(super) own: Vec<Limits>,
     /// The last target carried out, m; at first where the rig was found.
     pub(super) commanded: Vec<f64>,
     /// Velocities at the end of the last path, m/s; none at rest.
@@ -34,7 +36,15 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// It cannot be read, or stands outside a limit already.
     pub fn new(rig: &'rig mut dyn Rig, limits: Limits) -> Result<Self, RigFault> {
-        let mut guard = Self { rig, limits, commanded: Vec::new(), going: Vec::new(), settled: false, proposed: None };
+        Self::of_axes(rig, limits, Vec::new())
+    }
+
+    /// The same with displacement and force of each axis inside its `own` limits.
+    ///
+    /// # Errors
+    /// As [`Guard::new`].
+    pub fn of_axes(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
+        let mut guard = Self { rig, limits, own, commanded: Vec::new(), going: Vec::new(), settled: false, proposed: None };
         guard.commanded = guard.read()?.displacement;
         Ok(guard)
     }
@@ -152,11 +162,11 @@ impl<'rig> Guard<'rig> {
         let reading = self.or_hold(reading)?;
         self.check_reading(&reading)?;
         if self.settled {
-            for (measured, target) in reading.displacement.iter().zip(&self.commanded) {
-                let error = (measured - target).abs();
-                if !self.limits.tracking_error.contains(error) {
-                    return Err(self.breach(LimitedQuantity::TrackingError, self.limits.tracking_error, error));
-                }
+            let errors: Vec<f64> =
+                reading.displacement.iter().zip(&self.commanded).map(|(measured, target)| (measured - target).abs()).collect();
+            let limit = self.limits.tracking_error;
+            if let Some(place) = errors.iter().position(|error| !limit.contains(*error)) {
+                return Err(self.breach(LimitedQuantity::TrackingError, Some(place), limit, errors[place]));
             }
         }
         Ok(reading)
@@ -173,11 +183,11 @@ impl<'rig> Guard<'rig> {
         }
         self.settled = false;
         self.going.clear();
-        let limits = self.limits;
+        let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
         let traversed = self.rig.traverse(targets, velocity, samples, &mut |reading| {
-            outside(&limits, &reading).map_or(Ok(()), Err)?;
+            outside(&limits, &own, &reading).map_or(Ok(()), Err)?;
             readings.push(reading);
             Ok(())
         });
@@ -238,26 +248,36 @@ impl<'rig> Guard<'rig> {
             let reason = format!("{} targets for a rig of {} degrees of freedom", targets.len(), self.commanded.len());
             return Err(RigFault::Device(reason));
         }
-        let limit = self.limits.displacement;
         if !on(Guarding::TargetLimits) {
             return Ok(());
         }
-        targets.iter().try_for_each(|target| self.check(LimitedQuantity::TargetDisplacement, limit, *target))
+        (0..).zip(targets).try_for_each(|(place, target)| self.check_target(place, *target))
+    }
+
+    /// Whether the axis at `place` may go to `target` (m).
+    pub(super) fn check_target(&mut self, place: usize, target: f64) -> Result<(), RigFault> {
+        let limit = self.own.get(place).unwrap_or(&self.limits).displacement;
+        if inside(limit, target) {
+            return Ok(());
+        }
+        Err(self.breach(LimitedQuantity::TargetDisplacement, Some(place), limit, target))
     }
 
     fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
-        let found = outside(&self.limits, reading).filter(|_| on(Guarding::ReadingLimits));
+        let found = outside(&self.limits, &self.own, reading).filter(|_| on(Guarding::ReadingLimits));
         let judged = found.map_or(Ok(()), Err);
         self.or_hold(judged)
     }
 
     pub(super) fn check(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> Result<(), RigFault> {
-        if inside(limit, value) { Ok(()) } else { Err(self.breach(quantity, limit, value)) }
+        if inside(limit, value) { Ok(()) } else { Err(self.breach(quantity, None, limit, value)) }
     }
 
-    fn breach(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> RigFault {
+    /// `place`: of the axis, where it is the quantity of one.
+    fn breach(&mut self, quantity: LimitedQuantity, place: Option<usize>, limit: Interval, value: f64) -> RigFault {
         self.hold();
-        RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high }
+        let axis = place.and_then(|place| named_axis(place, self.commanded.len()));
+        RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high, axis }
     }
 
     pub(super) fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {
@@ -273,14 +293,16 @@ fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
 }
 
-/// The first value of a reading that lies outside its limit.
-pub(super) fn outside(limits: &Limits, reading: &Reading) -> Option<RigFault> {
-    let displacements = reading.displacement.iter().map(|x| (LimitedQuantity::MeasuredDisplacement, limits.displacement, *x));
-    let forces = reading.force.iter().map(|force| (LimitedQuantity::Force, limits.force, *force));
-    displacements
-        .chain(forces)
-        .find(|(_, limit, value)| !inside(*limit, *value))
-        .map(|(quantity, limit, value)| RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high })
+/// The first value of a reading that lies outside its limit: those of its axis, where it has any of its own.
+pub(super) fn outside(limits: &Limits, own: &[Limits], reading: &Reading) -> Option<RigFault> {
+    let of = |place: usize| own.get(place).unwrap_or(limits);
+    let places = (0..).zip(&reading.displacement);
+    let displacements = places.map(|(at, x)| (LimitedQuantity::MeasuredDisplacement, at, of(at).displacement, *x));
+    let forces = (0..).zip(&reading.force).map(|(at, force)| (LimitedQuantity::Force, at, of(at).force, *force));
+    displacements.chain(forces).find(|(.., limit, value)| !inside(*limit, *value)).map(|(quantity, at, limit, value)| {
+        let axis = named_axis(at, reading.displacement.len());
+        RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high, axis }
+    })
 }
 
 /// Size of a change of target, m. The rounding of the subtraction is not held against the plan: 0.3 − 0.2 is not quite 0.1.
@@ -430,8 +452,8 @@ mod tests {
             let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
-            let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, commanded: vec![0.001], going: Vec::new(), settled: true, proposed: None };
+            let (commanded, own, going) = (vec![0.001], Vec::new(), Vec::new());
+            let mut guard = Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

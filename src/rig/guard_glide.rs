@@ -15,10 +15,10 @@ impl Guard<'_> {
             return refused(fault);
         }
         self.settled = false;
-        let limits = self.limits;
+        let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         let glided = self.rig.glide(paths, samples, &mut |reading| {
-            outside(&limits, &reading).map_or(Ok(()), Err)?;
+            outside(&limits, &own, &reading).map_or(Ok(()), Err)?;
             readings.push(reading);
             Ok(())
         });
@@ -44,7 +44,7 @@ impl Guard<'_> {
             }
             let (low, high) = path.reach();
             for place in [low, high].into_iter().filter(|_| on(Guarding::TargetLimits)) {
-                self.check(LimitedQuantity::TargetDisplacement, self.limits.displacement, place)?;
+                self.check_target(axis, place)?;
             }
             self.check(LimitedQuantity::Speed, self.limits.speed, path.fastest())?;
         }

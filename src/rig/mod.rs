@@ -11,6 +11,7 @@ mod fault_table;
 mod guard;
 mod guard_glide;
 mod load_cell;
+mod one_or_several;
 pub mod port;
 pub mod real;
 pub mod safety;
@@ -82,11 +83,12 @@ pub struct Offer {
 }
 
 /// The last move a rig remembers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastMove {
     pub id: u64,
-    /// m
-    pub target: f64,
+    /// One an axis, m. On record a rig of one axis has a number here, not a list.
+    #[serde(rename = "target", with = "one_or_several")]
+    pub targets: Vec<f64>,
 }
 
 /// What went wrong on the line and was mended without harm: for the report.
@@ -127,13 +129,32 @@ impl std::fmt::Display for Tally {
 #[serde(rename_all = "snake_case")]
 pub enum RigFault {
     /// A target or reading lies outside a limit: the run is aborted.
-    #[error("{}", breach(*.quantity, *.value, *.low, *.high))]
-    LimitBreached { quantity: LimitedQuantity, value: f64, low: f64, high: f64 },
-    #[error("the rig did not settle within {timeout} s")]
-    NotSettled { timeout: f64 },
+    #[error("{}", breach(*.quantity, *.axis, *.value, *.low, *.high))]
+    LimitBreached {
+        quantity: LimitedQuantity,
+        value: f64,
+        low: f64,
+        high: f64,
+        /// Of a rig of several axes, from 1.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        axis: Option<usize>,
+    },
+    #[error("{} did not settle within {timeout} s", who(*.axis))]
+    NotSettled {
+        timeout: f64,
+        /// Of a rig of several axes the first that did not, from 1.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        axis: Option<usize>,
+    },
     /// The rig says that it has arrived, and stands elsewhere, m.
-    #[error("following error: it stopped {:.6} mm from its target, the band is {:.6} mm", .error * 1e3, .band * 1e3)]
-    Following { error: f64, band: f64 },
+    #[error("following error{}: it stopped {:.6} mm from its target, the band is {:.6} mm", of_axis(*.axis), .error * 1e3, .band * 1e3)]
+    Following {
+        error: f64,
+        band: f64,
+        /// Of a rig of several axes, from 1.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        axis: Option<usize>,
+    },
     /// A person wants the rig held now, not at the end of the step.
     #[error("held on request in the middle of a step")]
     Interrupted,
@@ -142,9 +163,24 @@ pub enum RigFault {
 }
 
 /// Six digits, since a value just beyond its limit must not read as the limit itself.
-fn breach(quantity: LimitedQuantity, value: f64, low: f64, high: f64) -> String {
+fn breach(quantity: LimitedQuantity, axis: Option<usize>, value: f64, low: f64, high: f64) -> String {
     let shown = |value| display::plain(value, quantity.dimension(), 6);
-    format!("{quantity} {} is outside its limit {} .. {}", shown(value), shown(low), shown(high))
+    format!("{quantity}{} {} is outside its limit {} .. {}", of_axis(axis), shown(value), shown(low), shown(high))
+}
+
+/// ` of axis 2`, or nothing.
+pub(crate) fn of_axis(axis: Option<usize>) -> String {
+    axis.map_or_else(String::new, |axis| format!(" of axis {axis}"))
+}
+
+/// `axis 2`, or `the rig`.
+pub(crate) fn who(axis: Option<usize>) -> String {
+    axis.map_or_else(|| "the rig".to_owned(), |axis| format!("axis {axis}"))
+}
+
+/// The number of the axis at this place, from 1, for a fault that names it; None where the rig has no other.
+pub(crate) fn named_axis(place: usize, axes: usize) -> Option<usize> {
+    (axes > 1).then_some(place + 1)
 }
 
 /// What a limit bounds.

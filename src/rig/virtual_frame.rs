@@ -1,6 +1,8 @@
 //! The virtual rig of a frame: an actuator and a load cell for each floor, and storeys between them. In: targets, one a floor.
 //! Out: readings. As the virtual rig of one degree of freedom its time is simulated; each load cell has a seed of its own.
 
+mod glide;
+
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, settling_time};
@@ -8,8 +10,9 @@ use super::virtual_rig::OWN_SPEED;
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
+use crate::mechanics::path::Path;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::{Frame, Settle, VirtualLink};
+use crate::plan::{Frame, Settle, Storey, VirtualLink};
 
 /// Several degrees of freedom: floors from the ground up.
 pub struct VirtualFrame {
@@ -32,15 +35,17 @@ pub struct VirtualFrame {
 struct Axis {
     actuator: Actuator,
     cell: LoadCell,
-    /// Sum of the sizes of a row of K, N/m: how fast its force can change as the floors move.
+    /// Sums of the sizes of a row of K (N/m) and of what damps the storeys (N·s/m): how fast its force can change as the floors
+    /// move.
     stiffness: f64,
+    damping: f64,
 }
 
 /// What gives the floors their forces.
 enum Structure {
     /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift.
-    /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest.
-    Storeys { models: Vec<SpecimenModel>, rates: Vec<CellDamping>, drift: Vec<f64>, shear: Vec<f64> },
+    /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
+    Storeys { models: Vec<SpecimenModel>, dampers: Vec<CellDamping>, drift: Vec<f64>, shear: Vec<f64> },
     /// R = K X.
     Matrix(SymmetricBand),
 }
@@ -53,8 +58,9 @@ impl Structure {
         }
         let nothing = vec![0.0; frame.storeys.len()];
         let models = frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect();
-        let rates = frame.storeys.iter().map(|storey| CellDamping::new(0.0, 0.0).with_rate_of(&storey.behaviour)).collect();
-        Self::Storeys { models, rates, drift: nothing.clone(), shear: nothing }
+        let damper = |storey: &Storey| CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour);
+        let dampers = frame.storeys.iter().map(damper).collect();
+        Self::Storeys { models, dampers, drift: nothing.clone(), shear: nothing }
     }
 
     fn move_to(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
@@ -70,20 +76,41 @@ impl Structure {
         }
     }
 
-    /// What the cells feel of the floors' forces while these move, N.
+    /// The floors go on at these velocities, m/s: each storey's friction knows its direction.
+    fn slide(&mut self, velocities: &[f64]) {
+        if let Self::Storeys { dampers, .. } = self {
+            for (damper, velocity) in dampers.iter_mut().zip(apart(velocities)) {
+                damper.force(velocity);
+            }
+        }
+    }
+
+    /// What the cells feel of the floors' forces at these velocities (m/s), N.
     fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
         let mut felt = restoring_force.to_vec();
-        if let Self::Storeys { rates, shear, .. } = self
-            && velocities.iter().any(|velocity| *velocity != 0.0)
+        if let Self::Storeys { dampers, shear, .. } = self
+            && dampers.iter().any(|damper| !damper.is_none())
         {
-            let mut apart = vec![0.0; velocities.len()];
-            drifts(velocities, &mut apart);
-            let storeys = rates.iter_mut().zip(shear).zip(apart);
-            let shears: Vec<f64> = storeys.map(|((rate, shear), velocity)| rate.felt(*shear, velocity)).collect();
+            let storeys = dampers.iter_mut().zip(shear).zip(apart(velocities));
+            let shears: Vec<f64> = storeys.map(|((damper, shear), velocity)| damper.felt(*shear, velocity)).collect();
             floor_forces(&shears, &mut felt);
         }
         felt
     }
+}
+
+/// Velocities of the drifts, m/s.
+fn apart(velocities: &[f64]) -> Vec<f64> {
+    let mut apart = vec![0.0; velocities.len()];
+    drifts(velocities, &mut apart);
+    apart
+}
+
+/// Of each floor: the sum of the sizes of its row of the storeys' damping matrix, N·s/m.
+fn damping_rows(frame: &Frame) -> Vec<f64> {
+    let of = |storey: usize| frame.storeys.get(storey).map_or(0.0, |storey| storey.damping);
+    let below = |floor: usize| if floor > 0 { 2.0 * of(floor) } else { of(floor) };
+    (0..frame.degrees_of_freedom()).map(|floor| below(floor) + 2.0 * of(floor + 1)).collect()
 }
 
 /// The seed of one load cell: the plan's own for the lowest floor.
@@ -95,12 +122,14 @@ const fn seed_of(seed: u64, axis: u64) -> u64 {
 impl VirtualFrame {
     #[must_use]
     pub fn new(name: &str, link: VirtualLink, settle: Settle, frame: &Frame, sign: f64) -> Self {
-        let axis = |(number, row): (u64, &Vec<f64>)| Axis {
+        let viscous = damping_rows(frame);
+        let axis = |((number, row), damping): ((u64, &Vec<f64>), f64)| Axis {
             actuator: Actuator::new(link.lag, link.tracking),
             cell: LoadCell::new(link.noise, link.force_resolution, link.drift, seed_of(link.seed, number)),
             stiffness: row.iter().map(|entry| entry.abs()).sum(),
+            damping,
         };
-        let axes: Vec<Axis> = (0..).zip(&frame.stiffness).map(axis).collect();
+        let axes: Vec<Axis> = (0..).zip(&frame.stiffness).zip(viscous).map(axis).collect();
         let at_rest = vec![0.0; axes.len()];
         let mut structure = Structure::of(frame);
         let mut restoring_force = at_rest.clone();
@@ -128,8 +157,23 @@ impl VirtualFrame {
             *bent = position;
         }
         if moved {
+            let velocities = self.velocities();
+            self.structure.slide(&velocities);
             self.structure.move_to(&self.bent, &mut self.restoring_force);
         }
+    }
+
+    /// Of the pistons, m/s.
+    fn velocities(&self) -> Vec<f64> {
+        self.axes.iter().map(|axis| axis.actuator.velocity()).collect()
+    }
+
+    fn reading(&mut self) -> Reading {
+        let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
+        let displacement = self.bent.iter().map(|bent| sign * to_quantum(*bent, resolution)).collect();
+        let felt = self.structure.felt(&self.velocities(), &self.restoring_force);
+        let force = self.axes.iter_mut().zip(felt).map(|(axis, force)| sign * axis.cell.read(force, time)).collect();
+        Reading { time, displacement, force, raw: Vec::new() }
     }
 
     /// `seconds` pass with the references at rest.
@@ -149,7 +193,7 @@ impl VirtualFrame {
                 lag: axis.actuator.lag(),
                 miss: (target - aim).abs(),
                 stiffness: axis.stiffness,
-                damping: 0.0,
+                damping: axis.damping,
                 drift: self.link.drift,
                 rate: None,
             };
@@ -216,7 +260,7 @@ impl Rig for VirtualFrame {
         } else {
             self.rest(self.settle.timeout);
             self.hold();
-            Err(RigFault::NotSettled { timeout: self.settle.timeout })
+            Err(RigFault::NotSettled { timeout: self.settle.timeout, axis: None })
         }
     }
 
@@ -226,16 +270,15 @@ impl Rig for VirtualFrame {
     }
 
     fn read(&mut self) -> Result<Reading, RigFault> {
-        let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
-        let displacement = self.bent.iter().map(|bent| sign * to_quantum(*bent, resolution)).collect();
-        let velocities: Vec<f64> = self.axes.iter().map(|axis| axis.actuator.velocity()).collect();
-        let felt = self.structure.felt(&velocities, &self.restoring_force);
-        let force = self.axes.iter_mut().zip(felt).map(|(axis, force)| sign * axis.cell.read(force, time)).collect();
-        Ok(Reading { time, displacement, force, raw: Vec::new() })
+        Ok(self.reading())
     }
 
     fn traverse(&mut self, _: &[f64], _: f64, _: usize, _: EachReading<'_>) -> Result<(), RigFault> {
         Err(RigFault::Device("the axes of a frame go to targets: they are not read on the way".to_owned()))
+    }
+
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.glide_along(paths, samples, each)
     }
 
     fn hold(&mut self) {
@@ -253,12 +296,12 @@ impl Rig for VirtualFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Behaviour, Storey};
+    use crate::plan::Behaviour;
 
     const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
 
     fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, stiffness, height: None, behaviour }
+        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
     }
 
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.

@@ -1,7 +1,7 @@
 //! The virtual rig: an actuator, a load cell and a specimen between them. In: targets. Out: readings. Its time is
 //! simulated, so that motion, settling and pauses take rig time and no wall time; it reads no clock and no file.
 
-mod glide;
+pub(super) mod glide;
 
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
@@ -169,7 +169,7 @@ impl Rig for VirtualRig {
         } else {
             self.rest(self.settle.timeout);
             self.hold();
-            Err(RigFault::NotSettled { timeout: self.settle.timeout })
+            Err(RigFault::NotSettled { timeout: self.settle.timeout, axis: None })
         }
     }
 
@@ -296,7 +296,7 @@ mod tests {
         let link = VirtualLink { tracking: 0.1, ..VirtualLink::default() };
         let mut never = VirtualRig::new(link, settle, Some(&specimen(0.0, 0.0)), 1.0);
         never.propose(&[0.002], Some(0.01)).unwrap();
-        assert_eq!(never.execute(), Err(RigFault::NotSettled { timeout: 10.0 }));
+        assert_eq!(never.execute(), Err(RigFault::NotSettled { timeout: 10.0, axis: None }));
         assert!((never.time() - 10.18).abs() < 1e-12);
     }
 

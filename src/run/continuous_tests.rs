@@ -2,7 +2,7 @@
 
 use super::testing::{elastic_plan, impact, run_unwatched};
 use crate::formula::Formula::Constant;
-use crate::plan::{Impact, Integrator, Interval, Link, Mode, Move, Plan, ProcedureKind, Until, VirtualLink};
+use crate::plan::{Contact, Impact, Integrator, Interval, Link, Mode, Move, Plan, ProcedureKind, Until, VirtualLink};
 use crate::record::{History, ImpactStep, Outcome, Record};
 
 const STIFFNESS: f64 = 300.0;
@@ -99,6 +99,84 @@ fn without_damping_both_modes_are_the_same_run() {
     // A step takes the time scale times Δt of the rig's time, whatever way it goes.
     let wall: Vec<f64> = steps(&one).iter().map(|step| step.wall_time).collect();
     assert!(wall.windows(2).all(|pair| (pair[1] - pair[0] - 0.1).abs() < 1e-9), "{wall:?}");
+}
+
+/// What is read beside K·d̃ is the damper at the velocity with which the target is passed, right after a blow too, to the first
+/// order of the step: a blow is an impulse, and nothing of it lasts. (With the blow's acceleration kept, half its jump
+/// of velocity would be felt besides, at any step.) A limit force lasts, and is kept.
+#[test]
+fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
+    let damper = 50.0;
+    let worst = |contact: Contact, time_step: f64| {
+        let blow = Impact {
+            mode: CONTINUOUS,
+            integrator: Integrator::Explicit,
+            i_modification: true,
+            contact,
+            time_step: Constant(time_step),
+            duration: Constant(0.2),
+            until: Until::Duration,
+            ..impact(Constant(STIFFNESS))
+        };
+        let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
+        plan.specimens[0].damping = damper;
+        let record = run_unwatched(&plan);
+        let steps = steps(&record);
+        let (mut worst, mut jump) = (0.0_f64, 0.0_f64);
+        for three in steps.windows(3) {
+            let forces = [0, 1, 2].map(|step: usize| three[step].contact_force);
+            let velocity = (three[2].command - three[0].command) / (three[2].time - three[0].time);
+            jump = jump.max(forces[1] * time_step);
+            // The blow at the end of a step, and the first and last step of a lasting one, are no smooth motion.
+            if forces[1] == 0.0 || (forces[0] == forces[1] && forces[1] == forces[2]) {
+                let felt = three[1].restoring_force - STIFFNESS * three[1].command;
+                worst = worst.max((felt - damper / SCALE * velocity).abs());
+            }
+        }
+        (worst, damper / SCALE * jump)
+    };
+    for (contact, share) in [(Contact::Rigid, 0.02), (Contact::Limit { force: Constant(1500.0) }, 0.6)] {
+        let ((coarse, jump), (fine, _)) = (worst(contact.clone(), 2e-4), worst(contact.clone(), 1e-4));
+        assert!(coarse < share * jump, "{contact:?}: {coarse} N of {jump} N");
+        assert!((1.7..4.5).contains(&(coarse / fine)), "{contact:?}: {coarse} N and {fine} N");
+    }
+}
+
+/// While a target is computed the actuator goes on at the acceleration it had, but not at that of a blow: a jump of velocity is
+/// no trend.
+#[test]
+fn a_blow_is_no_trend_to_go_on_with() {
+    use crate::record::journal::testing::PowerLoss;
+    use crate::record::journal::{Durability, EntryKind, Journal, recover};
+    use crate::rig::VirtualRig;
+    use crate::run::Unwatched;
+    use crate::run::tape::{begin, record};
+
+    let time_step = 1e-3;
+    let blow = Impact {
+        mode: CONTINUOUS,
+        integrator: Integrator::Explicit,
+        i_modification: true,
+        time_step: Constant(time_step),
+        ..impact(Constant(STIFFNESS))
+    };
+    let plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    begin(&mut journal, &crate::run::tape::tests::header(), &["text".to_owned()]).unwrap();
+    let whole = record(&plan, &mut VirtualRig::of_plan(&plan), &mut Unwatched, journal, Box::new(|| None));
+    let hardest = steps(&whole.record).iter().map(|step| STIFFNESS * step.computed.abs()).fold(0.0, f64::max);
+    assert!(steps(&whole.record).iter().filter(|step| step.contact_force > 0.0).count() > 1);
+    let lines = recover(&disk.written()).unwrap().lines;
+    let number = |path: &serde_json::Value, name: &str| path[name].as_f64().unwrap();
+    let paths: Vec<serde_json::Value> =
+        lines.into_iter().filter(|line| line.kind == EntryKind::Intent).map(|line| line.body["path"][0].clone()).collect();
+    // Every other path is one ahead; the last is the brake.
+    for ahead in paths.iter().step_by(2).take(paths.len() / 2) {
+        let gained = (number(ahead, "end_velocity") - number(ahead, "start_velocity")).abs();
+        let smooth = 1.01 * hardest * number(ahead, "seconds") / SCALE.powi(2);
+        assert!(gained <= smooth, "{gained} m/s gained, {smooth} m/s by the specimen alone: {ahead}");
+    }
 }
 
 /// A lag leaves the piston v·lag behind its target: corrected to it, the run is near the ideal one; read as it stands, the

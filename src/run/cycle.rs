@@ -3,6 +3,7 @@
 //! actuator goes from end to end without stopping.
 
 use super::Performed;
+use super::curve;
 use super::inputs::Inputs;
 use super::results::result;
 use super::samples::{mean, scatter};
@@ -13,11 +14,18 @@ use crate::mechanics::cyclic::{loop_of, work};
 use crate::plan::{Cycle, CycleInspection, MOST_TARGETS};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
-use crate::record::{CycleHistory, CycleStep, History, NamedResult, WholeCycle};
+use crate::record::{CycleHistory, CycleStep, EventKind, History, NamedResult, WholeCycle};
 
 pub(super) fn perform(plan: &Cycle, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut cycling = Cycling { history: CycleHistory::default(), amplitude: 0.0, cycle: 0 };
     let stop = cycling.run(plan, inputs, session).err();
+    if let Some(count) = plan.fit {
+        let (backbone, remarks) = curve::fitted(&cycling.history.backbone_points(), count, "ends of first cycles");
+        cycling.history.backbone = backbone;
+        for text in remarks.into_iter().filter(|_| stop.is_none()) {
+            session.event(EventKind::Remark, text);
+        }
+    }
     let results = results(&cycling.history);
     Performed { history: History::Cycle(cycling.history), results, stop }
 }
@@ -214,7 +222,7 @@ fn results(history: &CycleHistory) -> Vec<NamedResult> {
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
     let count = cycles.len() as f64;
     let total = (!cycles.is_empty()).then(|| cycles.iter().map(|cycle| cycle.found.energy).sum());
-    vec![
+    let mut results = vec![
         result("dissipated_energy", Dimension::ENERGY, total),
         result("max_force", Dimension::FORCE, forces().reduce(f64::max)),
         result("min_force", Dimension::FORCE, forces().reduce(f64::min)),
@@ -226,5 +234,8 @@ fn results(history: &CycleHistory) -> Vec<NamedResult> {
         list("energies", Dimension::ENERGY, |cycle| cycle.found.energy),
         list("damping_ratios", Dimension::NUMBER, |cycle| cycle.found.damping_ratio.unwrap_or(f64::NAN)),
         list("stiffnesses", Dimension::STIFFNESS, |cycle| cycle.found.stiffness.unwrap_or(f64::NAN)),
-    ]
+    ];
+    results.extend(curve::yielding(history.backbone.as_ref()));
+    results.extend(curve::lists(history.backbone.as_ref()));
+    results
 }

@@ -17,6 +17,7 @@ fn cycle(amplitudes: &[f64], cycles: u32) -> Cycle {
         speed: None,
         rate: None,
         inspect: Vec::new(),
+        fit: None,
     }
 }
 

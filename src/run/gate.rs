@@ -4,62 +4,101 @@
 
 use super::session::Session;
 use super::stop::Stop;
-use crate::plan::{Plan, RealLink};
+use crate::plan::{Gate, Plan, RealLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::{readable, stated};
 use crate::record::EventKind;
 use crate::rig::failpoint::{self, Guarding};
+use crate::rig::{Reading, named_axis, of_axis};
 
 /// Time between the two readings at rest, s.
 const REST: f64 = 1.0;
 
-/// Asks for the release, then tries the rig. Nothing else has moved by then; `afterwards` says how it will.
+/// Asks for the release, then tries the rig, axis by axis. Nothing else has moved by then; `afterwards` says how it will.
 pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut Session<'_>) -> Result<(), Stop> {
-    let gate = &link.gate;
-    let probe = stated(gate.probe, Dimension::LENGTH);
-    session.inspect(&format!("release rig {}: it will move by {probe} to prove itself, then {afterwards}", plan.rig.name))?;
+    let axes = session.guard.commanded().len();
+    let gates: Vec<Gate> = (0..axes).map(|axis| link.gate_of(axis)).collect();
+    let by = match gates.as_slice() {
+        [gate] => format!("by {}", stated(gate.probe, Dimension::LENGTH)),
+        several => {
+            let each: Vec<String> = several.iter().map(|gate| stated(gate.probe, Dimension::LENGTH)).collect();
+            format!("each of its {axes} axes in turn, by {}", each.join(", "))
+        }
+    };
+    session.inspect(&format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name))?;
 
-    let (_, first) = session.read()?;
+    let first = session.guard.read()?;
     session.guard.pause(REST)?;
-    let (home_reading, at_rest) = session.read()?;
-    let drift = (at_rest - first) / REST;
-    let shown = |force| readable(force, Dimension::FORCE);
-    if failpoint::on(Guarding::GateZero) && !within(at_rest.abs(), 0.0, gate.zero) {
+    let at_rest = session.guard.read()?;
+    for (axis, (gate, force)) in gates.iter().zip(&at_rest.force).enumerate() {
+        if failpoint::on(Guarding::GateZero) && !within(force.abs(), 0.0, gate.zero) {
+            return refuse(format!(
+                "{} at rest{}, {} is allowed: zero the cell, or take the load off",
+                readable(*force, Dimension::FORCE),
+                of_axis(named_axis(axis, axes)),
+                stated(gate.zero, Dimension::FORCE)
+            ));
+        }
+    }
+    let mut before = at_rest.clone();
+    for (axis, gate) in gates.iter().enumerate() {
+        // Each is held against the reading at rest before it: that after the one before it had come back.
+        let (column, back) = probe(axis, gate, &before, session)?;
+        before = back;
+        let force = readable(at_rest.force[axis], Dimension::FORCE);
+        let drift = readable((at_rest.force[axis] - first.force[axis]) / REST, Dimension::FORCE);
+        let found = readable(column[axis], Dimension::STIFFNESS);
+        let probe = stated(gate.probe, Dimension::LENGTH);
+        let text = format!("{force} at rest, drift {drift}/s, stiffness {found} in a move of {probe}");
+        let text = match named_axis(axis, axes) {
+            None => format!("gate passed: {text}"),
+            Some(axis) => format!("gate passed by axis {axis}: {text}; {}", others(&column, axis)),
+        };
+        session.event(EventKind::Note, text);
+    }
+    Ok(())
+}
+
+/// A tiny move of one axis alone, and back. Gives its column of the stiffness matrix, N/m: the forces that it raised in
+/// every axis, over its way; and the reading where it came back to.
+fn probe(axis: usize, gate: &Gate, before: &Reading, session: &mut Session<'_>) -> Result<(Vec<f64>, Reading), Stop> {
+    let home = session.guard.commanded().to_vec();
+    let mut out = home.clone();
+    out[axis] += gate.probe;
+    session.go_to_all(&out, None)?;
+    let there = session.guard.read()?;
+    session.go_to_all(&home, None)?;
+    let back = session.guard.read()?;
+
+    let probe = stated(gate.probe, Dimension::LENGTH);
+    let of = of_axis(named_axis(axis, home.len()));
+    let moved = there.displacement[axis] - before.displacement[axis];
+    if moved == 0.0 {
         return refuse(format!(
-            "{} at rest, {} is allowed: zero the cell, or take the load off",
-            shown(at_rest),
-            stated(gate.zero, Dimension::FORCE)
+            "the displacement{of} did not change in a move of {probe}: the transducer is dead, or too coarse"
         ));
     }
-
-    let home = session.commanded();
-    session.go_to(home + gate.probe, None)?;
-    let (x, r) = session.read()?;
-    session.go_to(home, None)?;
-    session.read()?;
-    let (moved, change) = (x - home_reading, r - at_rest);
-    if moved == 0.0 {
-        return refuse(format!("the displacement did not change in a move of {probe}: the transducer is dead, or too coarse"));
-    }
-    let stiffness = change / moved;
+    let column: Vec<f64> = there.force.iter().zip(&before.force).map(|(force, rest)| (force - rest) / moved).collect();
+    let stiffness = column[axis];
     if failpoint::on(Guarding::GateSign) && (stiffness < 0.0 || moved * gate.probe < 0.0) {
-        let text = "displacement and force have opposite signs: turn one of them, or the rig's `sign`";
-        return refuse(text.to_owned());
+        return refuse(format!("displacement and force{of} have opposite signs: turn one of them, or the rig's `sign`"));
     }
     let (low, high) = (gate.stiffness.low, gate.stiffness.high);
     let bound = |value| stated(value, Dimension::STIFFNESS);
     let found = readable(stiffness, Dimension::STIFFNESS);
     if failpoint::on(Guarding::GateStiffness) && !within(stiffness, low, high) {
-        return refuse(format!(
-            "the move of {probe} shows {}, outside {} .. {}: look for a wrong unit or scale",
-            found,
-            bound(low),
-            bound(high)
-        ));
+        let (low, high) = (bound(low), bound(high));
+        return refuse(format!("the move{of} of {probe} shows {found}, outside {low} .. {high}: look for a wrong unit or scale"));
     }
-    let text = format!("{} at rest, drift {}/s, stiffness {} in a move of {probe}", shown(at_rest), shown(drift), found);
-    session.event(EventKind::Note, format!("gate passed: {text}"));
-    Ok(())
+    Ok((column, back))
+}
+
+/// What the move of one axis (from 1) raised in the others.
+fn others(column: &[f64], axis: usize) -> String {
+    let felt = (1..).zip(column).filter(|(other, _)| *other != axis);
+    let told: Vec<String> =
+        felt.map(|(other, stiffness)| format!("{} in axis {other}", readable(*stiffness, Dimension::STIFFNESS))).collect();
+    format!("with {}", told.join(", "))
 }
 
 /// NaN is within nothing.
@@ -67,6 +106,6 @@ fn within(value: f64, low: f64, high: f64) -> bool {
     low <= value && value <= high
 }
 
-fn refuse(reason: String) -> Result<(), Stop> {
+fn refuse<T>(reason: String) -> Result<T, Stop> {
     Err(Stop::Gate { reason })
 }

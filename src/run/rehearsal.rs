@@ -4,7 +4,7 @@
 
 use crate::formula::ResultValue;
 use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
-use crate::record::{History, Record};
+use crate::record::{History, RampHistory, Record};
 use crate::rig::VirtualRig;
 
 /// The particular of a plan that says it is a rehearsal, and of what.
@@ -85,10 +85,19 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
             _ => return Err(Unrehearsed::NoStiffness(procedure.name.clone())),
         };
         if let Some(specimen) = model.specimens.get_mut(ramp.specimen) {
-            specimen.behaviour = Some(as_stiff_as(stiffness, specimen));
+            specimen.behaviour = Some(curve_of(&record.history).unwrap_or_else(|| as_stiff_as(stiffness, specimen)));
         }
     }
     Ok(model)
+}
+
+/// The specimen that a ramp past yield measured, where its fitted curve is one: as it yielded, not as the plan expected.
+fn curve_of(history: &History) -> Option<Behaviour> {
+    let History::Ramp(RampHistory { steps, multilinear: Some(fit), .. }) = history else { return None };
+    let reach =
+        steps.iter().map(|step| step.displacement).fold(0.0, |most, x| if fit.way * x > fit.way * most { x } else { most });
+    let corners = fit.corners(reach).filter(|corners| corners.len() > 1)?;
+    Some(Behaviour::Multilinear { corners })
 }
 
 /// A specimen of the measured stiffness (N/m): the expected one with every force in that proportion, so that it yields and
@@ -118,7 +127,7 @@ mod tests {
     use super::super::testing::{elastic_plan, impact, ramp, result_of, run_unwatched};
     use super::*;
     use crate::formula::Formula::Constant;
-    use crate::plan::{InspectTrigger, Move};
+    use crate::plan::{BreakCount, InspectTrigger, Move, RampFit};
 
     fn plan() -> Plan {
         let mut blow = impact(result_of(1, "stiffness"));
@@ -162,6 +171,16 @@ mod tests {
         let model = prediction(&expected, &record).unwrap();
         let Some(Behaviour::Bilinear { stiffness, yield_force, hardening }) = model.specimens[0].behaviour else { panic!() };
         assert!((stiffness - 320.0).abs() < 1e-9 && (yield_force / stiffness - 0.1).abs() < 1e-12 && hardening == 0.1);
+        // A ramp past yield measured how it yields, whatever the plan expects: here 250 N/m and 30 N, a twentieth on.
+        let mut yielding = measured_part(&plan()).unwrap();
+        yielding.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 250.0, yield_force: 30.0, hardening: 0.05 });
+        let mut curve = ramp(2.5e-2);
+        curve.fit = RampFit::Multilinear(BreakCount::ByCriterion { most: 4 });
+        yielding.procedures[1].kind = ProcedureKind::StiffnessRamp(curve);
+        let model = prediction(&expected, &run_unwatched(&yielding)).unwrap();
+        let Some(Behaviour::Multilinear { corners }) = &model.specimens[0].behaviour else { panic!() };
+        assert!((corners[0][0] - 0.12).abs() < 1e-9 && (corners[0][1] - 30.0).abs() < 1e-6, "{corners:?}");
+        assert!((corners[1][1] - 30.0 - 12.5 * 0.13).abs() < 1e-6, "{corners:?}");
         expected.specimens[0].behaviour = None;
         let model = prediction(&expected, &record).unwrap();
         assert!(

@@ -40,7 +40,7 @@ impl<'run> Session<'run> {
         let reckoned = rig.identity().simulated && plan.rig.link.as_real().is_none();
         let wanted = plan.degrees_of_freedom();
         let guard = if axes == wanted {
-            Guard::new(rig, plan.limits)
+            Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
         } else {
             rig.hold();
             let degrees =
@@ -206,7 +206,7 @@ impl<'run> Session<'run> {
     }
 
     /// The same of every axis.
-    fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
+    pub(super) fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
         for target in self.guard.way_to(places) {
             self.guard.move_to(&target, speed)?;
         }

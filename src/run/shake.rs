@@ -1,24 +1,22 @@
 //! `shake` (Melo et al. 2006, eqs. 1 and 1a, Figs. 1 and 2): a frame on moving ground, an actuator and a load cell for each
-//! floor. Each step: predict, command, settle, pause, read, feed back. In: a frame, a ground motion, a time step. Out: every
-//! step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
+//! floor. In: a frame, a ground motion, a time step, each held against what can be integrated. Out: every step and what follows
+//! from them. The steps themselves are `shaking`'s.
 
+use super::Performed;
 use super::inputs::Inputs;
 use super::session::Session;
 use super::shake_results::{ShakeSummary, results};
+use super::shaking::Shaking;
 use super::stop::Stop;
-use super::triggers::Triggers;
 use super::watch::Watch;
-use super::{AxisReport, Performed, StepReport};
 use crate::formula::{Formula, NoResults};
-use crate::mechanics::frame::{Damping, FrameInput, FrameSolver, FrameState, Tangents, storeys_of};
+use crate::mechanics::frame::{Damping, Tangents, storeys_of};
 use crate::mechanics::frame_properties::FrameProperties;
-use crate::mechanics::ground::{acceleration_at, peak_velocity};
-use crate::mechanics::monitor::{Monitor, Tracking};
+use crate::mechanics::ground::peak_velocity;
 use crate::plan::{Frame, Ground, MOST_STEPS, Plan, Shake, ShakeDamping, rayleigh};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
-use crate::record::{History, ShakeHistory, ShakeStep};
-use crate::rig::Reading;
+use crate::record::{History, ShakeHistory};
 
 pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let ground = &whole.grounds[plan.ground];
@@ -75,18 +73,18 @@ fn steps_in(duration: f64, time_step: f64) -> f64 {
 }
 
 /// Everything known before the first step.
-struct Setting {
-    properties: FrameProperties,
-    tangents: Tangents,
+pub(super) struct Setting {
+    pub(super) properties: FrameProperties,
+    pub(super) tangents: Tangents,
     /// s
-    time_step: f64,
-    steps: u64,
+    pub(super) time_step: f64,
+    pub(super) steps: u64,
     /// Factor on the record.
-    scale: f64,
+    pub(super) scale: f64,
     /// s
-    pause: f64,
+    pub(super) pause: f64,
     /// ½ ιᵀMι v², v the largest velocity of the ground, J: what its motion can put in, before it has.
-    ground_energy: f64,
+    pub(super) ground_energy: f64,
 }
 
 impl Setting {
@@ -150,147 +148,4 @@ fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64
             (Damping::Modal(ratios), first)
         }
     })
-}
-
-struct Shaking<'a> {
-    setting: &'a Setting,
-    history: ShakeHistory,
-    summary: ShakeSummary,
-    watch: Watch,
-}
-
-impl Shaking<'_> {
-    fn run(&mut self, plan: &Shake, ground: &Ground, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Setting { properties, tangents, time_step, steps, scale, pause, .. } = self.setting;
-        let matrices = &properties.matrices;
-        let ground_at = |time| scale * acceleration_at(&ground.times, &ground.accelerations, time);
-        let mut triggers = Triggers::new(&plan.inspect);
-        // X starts where the actuators were sent to, and R₀ is read there once, before the first step.
-        let start = session.guard.commanded().to_vec();
-        let reading = session.guard.read()?;
-        let mut load = vec![0.0; matrices.order()];
-        matrices.ground_load(ground_at(0.0), &mut load);
-        let noise = session.guard.declared_noise();
-        let solver = FrameSolver::new(&FrameInput {
-            matrices,
-            operator_stiffness: &matrices.stiffness,
-            integrator: plan.integrator,
-            i_modification: false,
-            tangents: *tangents,
-            time_step: *time_step,
-            initial_displacement: &start,
-            initial_restoring_force: &reading.force,
-            initial_load: &load,
-            force_noise: noise.force,
-            resolution: noise.resolution,
-        });
-        let mut solver = solver.map_err(|error| Stop::BadInput {
-            field: "time_step",
-            value: *time_step,
-            wanted: format!("one that can be stepped: {error}").into(),
-        })?;
-        let mut monitors = Monitors::new(&start, &reading);
-        let mut at_rest = solver.state().clone();
-        at_rest.measured_displacement = reading.displacement;
-        self.take(&at_rest, ground_at(0.0), Tracking::default(), session);
-        for step in 1..=*steps {
-            #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
-            let acceleration = ground_at(step as f64 * time_step);
-            matrices.ground_load(acceleration, &mut load);
-            let targets = solver.predict(&load).to_vec();
-            session.guard.move_to(&targets, None)?;
-            session.guard.pause(*pause)?;
-            let reading = session.guard.read()?;
-            let tracking = monitors.take(&targets, &reading);
-            let state = solver.complete(&reading.displacement, &reading.force);
-            let told = self.take(state, acceleration, tracking, session);
-            self.watch.judge(told.tracking_energy_error, session);
-            session.guard.check_energy_error(told.energy_error)?;
-            session.guard.check_tracking(told.tracking_energy_error, tracking.nrms_error)?;
-            session.step_done(&report(state, &told))?;
-            let base_shear = state.restoring_force.iter().sum();
-            if let Some(reason) = triggers.after(state.step, state.time, base_shear) {
-                session.inspect(&reason)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Keeps a step; gives its errors over the energy of the test.
-    fn take(&mut self, state: &FrameState, ground_acceleration: f64, tracking: Tracking, session: &Session<'_>) -> Told {
-        self.history.steps.push(ShakeStep {
-            step: state.step,
-            time: state.time,
-            wall_time: session.guard.time(),
-            ground_acceleration,
-            command: state.target.clone(),
-            displacement: state.measured_displacement.clone(),
-            computed: state.displacement.clone(),
-            velocity: state.velocity.clone(),
-            acceleration: state.acceleration.clone(),
-            restoring_force: state.restoring_force.clone(),
-            energies: state.energies,
-            tracking,
-        });
-        self.summary.push(state);
-        // An input that begins with nothing divides nothing: until it is larger, what the ground can put in counts.
-        let energy = self.summary.largest_energy().max(self.setting.ground_energy);
-        Told {
-            energy_error: if state.energies.error == 0.0 { 0.0 } else { state.energies.error / energy },
-            tracking,
-            tracking_energy_error: tracking.share_of(energy),
-        }
-    }
-}
-
-/// The errors of a step.
-struct Told {
-    energy_error: f64,
-    tracking: Tracking,
-    tracking_energy_error: Option<f64>,
-}
-
-/// The monitors of every axis, told as one: energies add, of the others the largest counts.
-struct Monitors(Vec<Monitor>);
-
-impl Monitors {
-    fn new(commanded: &[f64], reading: &Reading) -> Self {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
-    }
-
-    fn take(&mut self, commanded: &[f64], reading: &Reading) -> Tracking {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        let each = self.0.iter_mut().zip(axes).map(|(monitor, (to, (measured, force)))| monitor.take(*to, *measured, *force));
-        each.fold(Tracking::default(), |all, axis| Tracking {
-            energy_error: all.energy_error + axis.energy_error,
-            indicator: all.indicator + axis.indicator,
-            nrms_error: all.nrms_error.max(axis.nrms_error),
-            peak_error: all.peak_error.max(axis.peak_error),
-        })
-    }
-}
-
-fn report(state: &FrameState, told: &Told) -> StepReport {
-    let axis = |floor: usize| AxisReport {
-        command: state.target[floor],
-        displacement: state.measured_displacement[floor],
-        velocity: state.velocity[floor],
-        acceleration: state.acceleration[floor],
-        force: state.restoring_force[floor],
-    };
-    let first = axis(0);
-    StepReport {
-        step: state.step,
-        time: state.time,
-        command: first.command,
-        displacement: first.displacement,
-        velocity: Some(first.velocity),
-        acceleration: Some(first.acceleration),
-        force: first.force,
-        energy_error: Some(told.energy_error),
-        tracking: Some(told.tracking),
-        tracking_energy_error: told.tracking_energy_error,
-        others: (1..state.target.len()).map(axis).collect(),
-    }
 }

@@ -3,6 +3,7 @@
 //! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
 
 use super::Performed;
+use super::curve;
 use super::inputs::Inputs;
 use super::results::{largest, measured, result};
 use super::samples::{mean, scatter};
@@ -10,21 +11,29 @@ use super::session::Session;
 use super::stop::Stop;
 use crate::mechanics::backbone::fit_bilinear;
 use crate::mechanics::identification::{fit_line, loop_energy};
-use crate::plan::StiffnessRamp;
+use crate::plan::{RampFit, StiffnessRamp};
 use crate::quantity::Dimension;
-use crate::record::{BilinearFit, EventKind, History, LineFit, NamedResult, RampHistory, RampStep};
+use crate::record::{BilinearFit, EventKind, History, LineFit, MultilinearFit, NamedResult, RampHistory, RampStep};
 
 pub(super) fn perform(plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut ramp = Ramp { steps: Vec::new(), start: None, loops: Vec::new() };
     let stop = ramp.run(plan, inputs, session).err();
-    let bilinear = if plan.bilinear { ramp.bilinear(plan.displacements.len()) } else { None };
-    let fit = if plan.bilinear { None } else { ramp.fit() };
-    if plan.bilinear && bilinear.is_none() && stop.is_none() {
-        let text = "no bilinear fit: the outward steps are fewer than six, or show no knee that softens".to_owned();
-        session.event(EventKind::Remark, text);
+    let fits = ramp.fits(plan);
+    for text in fits.remarks.iter().filter(|_| stop.is_none()) {
+        session.event(EventKind::Remark, text.clone());
     }
-    let results = ramp.results(fit.as_ref(), bilinear.as_ref());
-    Performed { history: History::Ramp(RampHistory { steps: ramp.steps, fit, bilinear }), results, stop }
+    let results = ramp.results(&fits);
+    let Fits { line: fit, bilinear, multilinear, .. } = fits;
+    Performed { history: History::Ramp(RampHistory { steps: ramp.steps, fit, bilinear, multilinear }), results, stop }
+}
+
+/// What was fitted, one at most, and what to know of it.
+#[derive(Default)]
+struct Fits {
+    line: Option<LineFit>,
+    bilinear: Option<BilinearFit>,
+    multilinear: Option<MultilinearFit>,
+    remarks: Vec<String>,
 }
 
 /// A displacement (m) and the force there (N).
@@ -102,43 +111,73 @@ impl Ramp {
         Ok((displacement, restoring_force))
     }
 
-    /// R = intercept + K·X over the outward steps of all repeats.
-    fn fit(&self) -> Option<LineFit> {
-        let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().filter(|step| !step.returning).map(point).unzip();
-        fit_line(&x, &r)
+    /// One line R = intercept + K·X over the outward steps of all repeats. Two or more through those of the first repeat: what
+    /// comes after yield no longer bends as it did.
+    fn fits(&self, plan: &StiffnessRamp) -> Fits {
+        let first = || self.steps.iter().take(plan.displacements.len()).map(point);
+        match plan.fit {
+            RampFit::Linear => {
+                let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().filter(|step| !step.returning).map(point).unzip();
+                Fits { line: fit_line(&x, &r), ..Fits::default() }
+            }
+            RampFit::Bilinear => {
+                let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
+                let bilinear = fit_bilinear(&x, &r);
+                let none = "no bilinear fit: the outward steps are fewer than six, or show no knee that softens";
+                let remarks = if bilinear.is_none() { vec![none.to_owned()] } else { Vec::new() };
+                Fits { bilinear, remarks, ..Fits::default() }
+            }
+            RampFit::Multilinear(count) => {
+                let (multilinear, remarks) = curve::fitted(&first().collect::<Vec<Point>>(), count, "outward steps");
+                Fits { multilinear, remarks, ..Fits::default() }
+            }
+        }
     }
 
-    /// Two lines through the outward steps of the first repeat: what comes after yield no longer bends as it did.
-    fn bilinear(&self, outward: usize) -> Option<BilinearFit> {
-        let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().take(outward).map(point).unzip();
-        fit_bilinear(&x, &r)
-    }
-
-    fn results(&self, fit: Option<&LineFit>, bilinear: Option<&BilinearFit>) -> Vec<NamedResult> {
-        let stiffness = fit.map(|fit| (fit.slope, Some(fit.slope_error)));
-        let stiffness = stiffness.or(bilinear.map(|fit| (fit.stiffness, Some(fit.stiffness_error))));
-        let intercept = fit.map(|fit| (fit.intercept, Some(fit.intercept_error)));
-        let intercept = intercept.or(bilinear.map(|fit| (fit.intercept, Some(fit.intercept_error))));
-        let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(|(value, error)| (value, Some(error)));
+    fn results(&self, fits: &Fits) -> Vec<NamedResult> {
+        let Fits { line: fit, bilinear, multilinear, .. } = fits;
+        let (fit, bilinear, multilinear) = (fit.as_ref(), bilinear.as_ref(), multilinear.as_ref());
+        let told = |(value, error): (f64, f64)| (value, Some(error));
+        let stiffness = fit.map(|fit| (fit.slope, fit.slope_error));
+        let stiffness = stiffness.or(bilinear.map(|fit| (fit.stiffness, fit.stiffness_error)));
+        let stiffness = stiffness.or(multilinear.map(|fit| fit.stiffnesses[0])).map(told);
+        let intercept = fit.map(|fit| (fit.intercept, fit.intercept_error));
+        let intercept = intercept.or(bilinear.map(|fit| (fit.intercept, fit.intercept_error)));
+        let intercept = intercept.or(multilinear.map(|fit| fit.intercept)).map(told);
+        let r_squared = fit.map(|fit| fit.r_squared).or(bilinear.map(|fit| fit.r_squared));
+        let r_squared = r_squared.or(multilinear.map(|fit| fit.r_squared));
+        let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(told);
         let last_outward = self.steps.iter().rev().find(|step| !step.returning);
         let first_secant = self.start.zip(self.steps.first()).and_then(|(start, step)| secant(start, point(step)));
         let relaxation = (!self.steps.is_empty()).then(|| mean(self.steps.iter().map(|step| step.relaxation)));
         let loop_energy = (!self.loops.is_empty()).then(|| mean(self.loops.iter().copied()));
-        vec![
+        let mut results = vec![
             measured("stiffness", Dimension::STIFFNESS, stiffness),
             result("secant_stiffness", Dimension::STIFFNESS, first_secant),
             measured("intercept_force", Dimension::FORCE, intercept),
-            result("r_squared", Dimension::NUMBER, fit.map(|fit| fit.r_squared).or(bilinear.map(|fit| fit.r_squared))),
+            result("r_squared", Dimension::NUMBER, r_squared),
             result("max_force", Dimension::FORCE, largest(self.steps.iter().map(|step| step.restoring_force))),
             result("max_displacement", Dimension::LENGTH, largest(self.steps.iter().map(|step| step.displacement))),
             result("loop_energy", Dimension::ENERGY, loop_energy),
             result("relaxation", Dimension::FORCE, relaxation),
             result("tangent_stiffness", Dimension::STIFFNESS, last_outward.and_then(|step| step.tangent_stiffness)),
-            measured("yield_force", Dimension::FORCE, of(|fit| (fit.yield_force, fit.yield_force_error))),
-            measured("yield_displacement", Dimension::LENGTH, of(|fit| (fit.yield_displacement, fit.yield_displacement_error))),
-            measured("hardened_stiffness", Dimension::STIFFNESS, of(|fit| (fit.hardened, fit.hardened_error))),
-            measured("hardening", Dimension::NUMBER, of(|fit| (fit.hardening, fit.hardening_error))),
-        ]
+        ];
+        if bilinear.is_some() {
+            results.extend([
+                measured("yield_force", Dimension::FORCE, of(|fit| (fit.yield_force, fit.yield_force_error))),
+                measured(
+                    "yield_displacement",
+                    Dimension::LENGTH,
+                    of(|fit| (fit.yield_displacement, fit.yield_displacement_error)),
+                ),
+                measured("hardened_stiffness", Dimension::STIFFNESS, of(|fit| (fit.hardened, fit.hardened_error))),
+                measured("hardening", Dimension::NUMBER, of(|fit| (fit.hardening, fit.hardening_error))),
+            ]);
+        } else {
+            results.extend(curve::yielding(multilinear));
+        }
+        results.extend(curve::lists(multilinear));
+        results
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
     Behaviour, Calibration, Contact, DecisionRule, Impact, Integrator, Limits, Link, Mode, Plan, Procedure, ProcedureKind,
-    Report, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Until, VirtualLink,
+    RampFit, Report, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -63,7 +63,7 @@ pub(crate) fn ramp(step: f64) -> StiffnessRamp {
         samples: 1,
         repeats: 1,
         return_path: false,
-        bilinear: false,
+        fit: RampFit::Linear,
         speed: None,
     }
 }

@@ -184,7 +184,7 @@ fn a_breach_holds_the_rig_and_keeps_what_was_recorded() {
     // The force limit is found out by reading.
     plan.limits = crate::plan::Limits { force: Interval { low: -1e3, high: 200.0 }, ..crate::plan::Limits::NONE };
     let record = run_unwatched(&plan);
-    let by_hand = RigFault::LimitBreached { quantity: LimitedQuantity::Force, value: 213.0, low: -1e3, high: 200.0 };
+    let by_hand = RigFault::LimitBreached { quantity: LimitedQuantity::Force, value: 213.0, low: -1e3, high: 200.0, axis: None };
     let Outcome::Aborted { reason } = &record.outcome else { panic!("{:?}", record.outcome) };
     assert_eq!(reason.split_whitespace().next(), by_hand.to_string().split_whitespace().next());
     assert_eq!(ramp_steps(&record.procedures[0].history).len(), 6);

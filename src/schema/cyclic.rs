@@ -1,5 +1,6 @@
 //! `cycle`: cycles of displacement, their protocols and results.
 
+use super::curves;
 use super::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::quantity::Dimension;
 
@@ -82,6 +83,12 @@ pub(super) const CYCLE: BlockKind = BlockKind {
             ],
             "when a person is asked to look, between two amplitudes",
         ),
+        Field::choice(
+            "fit",
+            &[curves::MULTILINEAR],
+            "what is fitted to the backbone: the ends of the first cycles, both sides on one",
+        )
+        .or_said("nothing"),
     ],
     exports: &[],
     results: &[
@@ -100,6 +107,16 @@ pub(super) const CYCLE: BlockKind = BlockKind {
         ResultKind::list("energies", Dimension::ENERGY, "∫R dX of each cycle"),
         ResultKind::list("damping_ratios", Dimension::NUMBER, "equivalent damping ratio of each cycle"),
         ResultKind::list("stiffnesses", Dimension::STIFFNESS, "secant stiffness of each cycle"),
+        ResultKind::measured("yield_force", Dimension::FORCE, "force where the curve of the backbone first softens"),
+        ResultKind::measured("yield_displacement", Dimension::LENGTH, "displacement there, from the middle of the cycles"),
+        ResultKind::measured("hardened_stiffness", Dimension::STIFFNESS, "slope of the last stretch of the backbone"),
+        ResultKind::measured("hardening", Dimension::NUMBER, "that slope over the first one"),
+        curves::RESULTS[0],
+        curves::RESULTS[1],
+        curves::RESULTS[2],
+        curves::RESULTS[3],
+        curves::RESULTS[4],
+        curves::RESULTS[5],
     ],
     example: "cycle fatigue { amplitudes = [1, 2, 5] mm }",
     doc: "Reversed cycles of displacement at given amplitudes: energy, damping and stiffness of each loop",

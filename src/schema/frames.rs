@@ -15,6 +15,16 @@ const STOREY: &[Variant] = &[Variant::with(
         Field::quantity("height", Dimension::LENGTH, "height of the storey").above_zero(),
         Field::choice("behaviour", BEHAVIOURS, "storey shear against drift, what a virtual rig bends")
             .or_said("elastic, of its stiffness"),
+        Field::quantity(
+            "damping",
+            Dimension::DAMPING,
+            "viscous, c times the velocity of the drift, on a virtual rig's load cells",
+        )
+        .or(0.0, "N*s/m")
+        .at_least_zero(),
+        Field::quantity("coulomb", Dimension::FORCE, "friction against the drift, on a virtual rig's load cells")
+            .or(0.0, "N")
+            .at_least_zero(),
     ],
     "a floor on its columns",
 )];
@@ -65,6 +75,8 @@ pub(super) const SHAKE: BlockKind = BlockKind {
         .or(0.0, ""),
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,
+        methods::I_MODIFICATION,
+        methods::MODE,
         Field::quantity("time_step", Dimension::TIME, "Δt; may read `critical`, a tenth of the shortest period")
             .above_zero()
             .or_said("critical / 5"),

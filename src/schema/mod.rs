@@ -3,6 +3,7 @@
 
 mod behaviours;
 mod columns;
+mod curves;
 mod cyclic;
 mod declarations;
 mod devices;

@@ -1,7 +1,7 @@
 //! What is run: `stiffness ramp`, `damping sweep`, `impact`, `move`, `inspect`.
 
 use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
-use super::{methods, results};
+use super::{curves, methods, results};
 use crate::quantity::Dimension;
 
 pub(super) const SPECIMEN: Field =
@@ -27,6 +27,7 @@ pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
             &[
                 Variant::word("linear", "one straight line through all outward steps"),
                 Variant::word("bilinear", "two lines that meet at a knee, through the outward steps of the first repeat"),
+                curves::MULTILINEAR,
             ],
             "what is fitted to force on displacement",
         )

@@ -1,5 +1,6 @@
 //! What each procedure leaves, in the order of the tables and of `summary.json`.
 
+use super::curves;
 use super::types::ResultKind;
 use crate::quantity::Dimension;
 
@@ -7,7 +8,7 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     ResultKind::measured(
         "stiffness",
         Dimension::STIFFNESS,
-        "slope of the straight line fitted to force on displacement; of a bilinear fit that before the knee",
+        "slope of the straight line fitted to force on displacement; of a bilinear or multilinear fit that of the first stretch",
     ),
     ResultKind::new("secant_stiffness", Dimension::STIFFNESS, "force over displacement of the first increment"),
     ResultKind::measured("intercept_force", Dimension::FORCE, "force of the fitted line at no displacement"),
@@ -21,10 +22,20 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
         Dimension::STIFFNESS,
         "secant of the last outward step: the tangent where the ramp ended",
     ),
-    ResultKind::measured("yield_force", Dimension::FORCE, "force at the knee of a bilinear fit"),
-    ResultKind::measured("yield_displacement", Dimension::LENGTH, "displacement at the knee of a bilinear fit"),
-    ResultKind::measured("hardened_stiffness", Dimension::STIFFNESS, "slope past the knee of a bilinear fit"),
-    ResultKind::measured("hardening", Dimension::NUMBER, "slope past the knee over that before it"),
+    ResultKind::measured(
+        "yield_force",
+        Dimension::FORCE,
+        "force at the knee of a bilinear fit, or where a multilinear one first softens",
+    ),
+    ResultKind::measured("yield_displacement", Dimension::LENGTH, "displacement there"),
+    ResultKind::measured("hardened_stiffness", Dimension::STIFFNESS, "slope past the knee, or of the last stretch"),
+    ResultKind::measured("hardening", Dimension::NUMBER, "that slope over the first one"),
+    curves::RESULTS[0],
+    curves::RESULTS[1],
+    curves::RESULTS[2],
+    curves::RESULTS[3],
+    curves::RESULTS[4],
+    curves::RESULTS[5],
 ];
 
 pub(super) const DAMPING_SWEEP: &[ResultKind] = &[

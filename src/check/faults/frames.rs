@@ -87,15 +87,6 @@ pub fn one_degree_of_freedom(keyword: &str, specimen: &str, axes: usize, span: S
     fault.help("test the storeys by `shake`, or a specimen of one degree of freedom in a plan of its own")
 }
 
-pub fn frame_on_real_rig(specimen: &str, axes: usize, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::FrameOnRealRig,
-        format!("the frame `{specimen}` needs {axes} actuators with their load cells, and a real rig of this version has one"),
-    )
-    .at(span, "would move every storey")
-    .help("run it on a virtual rig: leave `--rig` out; a frame of one storey runs on a real one")
-}
-
 pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {
     Diagnostic::new(Code::DampingRatios, format!("{found} damping ratios for {modes} modes"))
         .at(span, "a list has one for each mode")

@@ -45,5 +45,5 @@ pub fn damping_twice(computed: Span, felt: Span) -> Diagnostic {
     Diagnostic::new(Code::DampingTwice, message)
         .at(computed, "computed here")
         .at(felt, "and felt here, at the speed of the actuator")
-        .help("leave the procedure's `damping` out, or make it what the specimen's does not show: its damping is felt divided by the time scale")
+        .help("leave the procedure's damping out, or make it what the specimen's does not show: its damping is felt divided by the time scale")
 }

@@ -2,6 +2,7 @@
 
 use crate::quantity::{Dimension, display};
 
+pub mod axes;
 pub mod cyclic;
 pub mod files;
 pub mod frames;

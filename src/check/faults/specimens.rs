@@ -1,4 +1,4 @@
-//! Faults of specimens: E630 to E634, and W715.
+//! Faults of specimens: E630 to E634, E649, and W715.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -25,6 +25,13 @@ pub fn corner(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
 pub fn table_file(file: &str, row: Option<&(usize, String)>, reason: &str, named_at: Span, help: &str) -> Diagnostic {
     let place = row.map_or_else(String::new, |(line, text)| format!(", line {line}, `{text}`"));
     Diagnostic::new(Code::BadTableFile, format!("`{file}`{place}: {reason}")).at(named_at, "the table").help(help)
+}
+
+pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
+    Diagnostic::new(Code::BreaksTwice, "`breaks` says how many breaks there are: `most` has nothing to bound")
+        .at(most, "bounds a choice")
+        .at(breaks, "that is made here")
+        .help("remove `most`, or remove `breaks` and let the criterion choose")
 }
 
 /// Two arguments of which one means nothing without the other.

@@ -42,7 +42,7 @@ pub fn jog(rig: &mut dyn Rig, plan: &Plan, asked: &Asked<'_>, wish: &Wish, setti
     let to = asked.to.map(|to| number(to, Dimension::LENGTH, "--to", "1 mm")).transpose()?;
     let speed = asked.speed.map(|speed| number(speed, Dimension::VELOCITY, "--speed", "0.5 mm/s")).transpose()?;
     let _signals = Signals::caught(wish).map_err(Failure::Signals)?;
-    let mut guard = Guard::new(rig, plan.limits).map_err(Failure::Rig)?;
+    let mut guard = Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits)).map_err(Failure::Rig)?;
     let mut person = Person { lines: None, wish, yes: asked.yes };
     if let Some(to) = to {
         return move_to(&mut guard, to, speed, &mut person);

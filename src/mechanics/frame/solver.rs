@@ -166,7 +166,20 @@ impl FrameSolver {
         self.predict_with(load_end, &mut |_, _| 0.0)
     }
 
-    /// The same, with a body that may strike.
+    /// Velocities that the step is foretold to end with, m/s: exact under `tangent`, with the acceleration kept under the
+    /// others. The step is the one predicted last.
+    pub fn predicted_velocity(&self, velocity: &mut [f64]) {
+        if self.schemes.integrator == Integrator::Tangent {
+            velocity.copy_from_slice(&self.next.velocity);
+            return;
+        }
+        let kept = self.state.velocity.iter().zip(&self.state.acceleration);
+        for (to, (now, acceleration)) in velocity.iter_mut().zip(kept) {
+            *to = now + self.schemes.time_step * acceleration;
+        }
+    }
+
+    /// [`FrameSolver::predict`] with a body that may strike.
     pub(super) fn predict_with(&mut self, load_end: &[f64], decide: Decide) -> &[f64] {
         if !self.predicted {
             self.predicted = true;

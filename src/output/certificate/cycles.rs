@@ -2,6 +2,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::number;
+use super::curve;
 use crate::quantity::Dimension;
 use crate::record::{CycleHistory, WholeCycle};
 
@@ -15,6 +16,11 @@ pub(super) fn table(history: &CycleHistory, body: &mut Vec<Block>) {
     }
     if cycles.len() > PRINTED {
         body.push(Block::note(format!("{} more cycles are in the table of this procedure.", cycles.len() - PRINTED)));
+    }
+    if let Some(fit) = &history.backbone {
+        let reach = history.backbone_points().iter().map(|(x, _)| *x).fold(0.0, f64::max);
+        body.push(Block::note("Backbone, from the middle of the cycles on, both sides on one:"));
+        curve::table(fit, reach, body);
     }
     body.push(Block::note(
         "Energy is ∫R dX over the cycle by the trapezoid through the readings. Secant stiffness is from the leftmost to the rightmost \

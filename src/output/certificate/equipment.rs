@@ -24,24 +24,7 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
 /// What is measured, over which range and how well, what that is traced to, and whether it still held on the day of the
 /// test.
 fn calibration(run: &Run<'_>, link: &RealLink) -> Block {
-    let calibration = &run.plan.rig.calibration;
-    let both = (calibration.reference.as_deref(), calibration.due.as_deref());
-    let displacement =
-        calibration.displacement.as_ref().map_or(both, |(reference, due)| (Some(reference.as_str()), due.as_deref()));
-    let cell = link.readings.force_range;
-    let travel = run.plan.limits.displacement;
-    let held = |bounded: bool, words: &str, range: String| {
-        if bounded { Text::from(format!("{words}{range}")) } else { Text::given(None) }
-    };
-    let row = |name: &str, range: Text, class: Option<&str>, (reference, due): (Option<&str>, Option<&str>)| {
-        vec![name.into(), range, Text::given(class), Text::given(reference), Text::given(due), state(run, due)]
-    };
-    let force = held(cell.is_bounded(), "", range(cell, Dimension::FORCE));
-    let displaced = held(travel.is_bounded(), "held to ", range(travel, Dimension::LENGTH));
-    let rows = vec![
-        row("Force", force, calibration.force_class.as_deref(), both),
-        row("Displacement", displaced, calibration.displacement_class.as_deref(), displacement),
-    ];
+    let axes = run.plan.rig.axes().unwrap_or(1);
     let columns = vec![
         Column::short("Measured"),
         Column::short("Range"),
@@ -50,7 +33,37 @@ fn calibration(run: &Run<'_>, link: &RealLink) -> Block {
         Column::short("Holds until"),
         Column::short("State"),
     ];
-    Block::Table(Table { columns, rows })
+    let of = |axis| measured(run, link, axis, if axes > 1 { format!(", axis {}", axis + 1) } else { String::new() });
+    Block::Table(Table { columns, rows: (0..axes).flat_map(of).collect() })
+}
+
+/// Force and displacement of an axis.
+fn measured(run: &Run<'_>, link: &RealLink, axis: usize, which: String) -> Vec<Vec<Text>> {
+    let calibration = run.plan.rig.calibration_of(axis);
+    let both = (calibration.reference.as_deref(), calibration.due.as_deref());
+    let displacement =
+        calibration.displacement.as_ref().map_or(both, |(reference, due)| (Some(reference.as_str()), due.as_deref()));
+    let cell = link.readings_of(axis).force_range;
+    let travel = run.plan.rig.limits_of(axis, &run.plan.limits).displacement;
+    let held = |bounded: bool, words: &str, range: String| {
+        if bounded { Text::from(format!("{words}{range}")) } else { Text::given(None) }
+    };
+    let row = |name: &str, range: Text, class: Option<&str>, (reference, due): (Option<&str>, Option<&str>)| {
+        vec![
+            format!("{name}{which}").into(),
+            range,
+            Text::given(class),
+            Text::given(reference),
+            Text::given(due),
+            state(run, due),
+        ]
+    };
+    let force = held(cell.is_bounded(), "", range(cell, Dimension::FORCE));
+    let displaced = held(travel.is_bounded(), "held to ", range(travel, Dimension::LENGTH));
+    vec![
+        row("Force", force, calibration.force_class.as_deref(), both),
+        row("Displacement", displaced, calibration.displacement_class.as_deref(), displacement),
+    ]
 }
 
 /// Whether a calibration held on the last day of the test.

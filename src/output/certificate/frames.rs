@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, behaviour, number};
-use super::{described, results};
+use super::{described, method, results};
 use crate::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
@@ -25,21 +25,29 @@ pub(super) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     if frame.storeys.is_empty() {
         return;
     }
-    let columns = vec![
+    let mut columns = vec![
         Column::numbers("Storey"),
         Column::numbers("Mass"),
         Column::numbers("Stiffness"),
         Column::numbers("Height"),
         Column::words("Virtual behaviour", 1),
     ];
+    // What only some frames have is a column of those.
+    let damping = frame.storeys.iter().any(|storey| storey.damping != 0.0);
+    let friction = frame.storeys.iter().any(|storey| storey.coulomb != 0.0);
+    columns.extend(damping.then(|| Column::numbers("Virtual damping")));
+    columns.extend(friction.then(|| Column::numbers("Virtual friction")));
     let row = |(index, storey): (usize, &crate::plan::Storey)| -> Vec<Text> {
-        vec![
+        let mut cells: Vec<Text> = vec![
             (index + 1).to_string().into(),
             number::stated(storey.mass, Dimension::MASS).into(),
             number::stated(storey.stiffness, Dimension::STIFFNESS).into(),
             storey.height.map_or_else(|| "—".to_owned(), |height| number::stated(height, Dimension::LENGTH)).into(),
             behaviour::words(&storey.behaviour, &number::stated).into(),
-        ]
+        ];
+        cells.extend(damping.then(|| number::stated(storey.damping, Dimension::DAMPING).into()));
+        cells.extend(friction.then(|| number::stated(storey.coulomb, Dimension::FORCE).into()));
+        cells
     };
     body.push(Block::Table(Table { columns, rows: frame.storeys.iter().enumerate().map(row).collect() }));
 }
@@ -102,6 +110,7 @@ fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
         format!("Integrated by {integrator}. {damping}"),
         format!("Time step {}; a tenth of the shortest period is {}.", time(history.time_step), time(history.critical_time_step)),
     ];
+    sentences.extend(method::driven(shake.i_modification, shake.mode));
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
         sentences.push(format!(
             "The record is linear between its samples, and each step reads it at its end: {}.",

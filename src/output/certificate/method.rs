@@ -10,22 +10,29 @@ use crate::record::ImpactHistory;
 pub(super) fn note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut Vec<Block>) {
     let Some(ProcedureKind::Impact(impact)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
     let mut sentences = vec![integrator(impact)];
-    if impact.i_modification {
+    sentences.extend(driven(impact.i_modification, impact.mode));
+    sentences.extend(tracking(history));
+    body.push(Block::paragraph(sentences.join(" ")));
+}
+
+/// How the actuators went, and what was made of the readings.
+pub(super) fn driven(i_modification: bool, mode: Mode) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if i_modification {
         sentences.push(
             "The force was corrected to where the specimen was to be, r* = r − K(d measured − d commanded), with the initial \
              stiffness (I-modification)."
                 .to_owned(),
         );
     }
-    if let Mode::Continuous { time_scale } = impact.mode {
+    if let Mode::Continuous { time_scale } = mode {
         sentences.push(format!(
             "The actuator did not stop at the steps: it moved at {} times the virtual time, and what a damper of the specimen does \
              at that speed is in the restoring force.",
             number::text(time_scale, Dimension::NUMBER)
         ));
     }
-    sentences.extend(tracking(history));
-    body.push(Block::paragraph(sentences.join(" ")));
+    sentences
 }
 
 fn integrator(impact: &Impact) -> String {

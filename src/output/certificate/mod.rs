@@ -5,6 +5,7 @@ mod appendix;
 mod blows;
 mod conditions;
 mod contact_log;
+mod curve;
 mod cycles;
 mod equipment;
 mod frames;

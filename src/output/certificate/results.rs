@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{blows, contact_log, cycles, frames, method, words};
+use super::{blows, contact_log, curve, cycles, frames, method, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::Dimension;
@@ -22,6 +22,10 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
         results(procedure, body);
         match &procedure.history {
             History::Ramp(history) => {
+                if let Some(fit) = &history.multilinear {
+                    let reach = history.steps.iter().map(|step| step.displacement);
+                    curve::table(fit, reach.fold(0.0, |most, x| if fit.way * x > fit.way * most { x } else { most }), body);
+                }
                 if let Some(fit) = history.fit {
                     body.push(fitted("R = K·X + R₀", ("K", Dimension::STIFFNESS), ("R₀", Dimension::FORCE), fit));
                 }
@@ -62,7 +66,11 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 
 /// Lists whose numbers stand in a table of their own are not printed twice, and what the run did not give is named below.
 fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
-    let tabled = matches!(procedure.history, History::Cycle(_) | History::Escalate(_) | History::Shake(_));
+    let tabled = match &procedure.history {
+        History::Ramp(history) => history.multilinear.is_some(),
+        History::Cycle(_) | History::Escalate(_) | History::Shake(_) => true,
+        _ => false,
+    };
     let printed = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
     let (found, none): (Vec<&NamedResult>, Vec<&NamedResult>) =
         printed.partition(|result| !matches!(result.value, ResultValue::Number { value: None, .. }));
@@ -102,6 +110,7 @@ fn row(result: &NamedResult) -> Vec<Text> {
             [parts.value.into(), parts.standard.map_or_else(dash, Text::from), parts.expanded.map_or_else(dash, Text::from), unit]
         }
         ResultValue::Number { value: None, .. } => [Text::missing("none in this run"), dash(), dash(), dash()],
+        ResultValue::List(values) if values.is_empty() => [Text::missing("none in this run"), dash(), dash(), dash()],
         ResultValue::List(values) => {
             let text = |value: &f64| if value.is_finite() { number::text(*value, result.dimension) } else { "none".to_owned() };
             let texts: Vec<String> = values.iter().map(text).collect();

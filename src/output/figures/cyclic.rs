@@ -1,8 +1,8 @@
 //! Charts of cycles: loops, backbone, energy and stiffness cycle by cycle. In: the history. Out: [`Chart`]s in SI.
 
-use super::chart::{Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
+use super::chart::{Chart, DASHED, LONG, Marker, Quantity, SOLID, Series, Style, palette};
 use crate::quantity::Dimension;
-use crate::record::{CycleHistory, WholeCycle};
+use crate::record::{CycleHistory, MultilinearFit, WholeCycle};
 
 /// Every loop, the last one on top.
 pub(super) fn loops(history: &CycleHistory) -> Chart {
@@ -37,7 +37,11 @@ pub(super) fn backbone(history: &CycleHistory) -> Chart {
     let mut series = vec![Series {
         label: "first cycle of each amplitude".to_owned(),
         points: envelope(&mut first),
-        style: Style { marker: Some(Marker::Disc(3.6)), ..Style::line(palette::BLUE, 1.8, SOLID) },
+        // A fitted curve is the line through them.
+        style: match history.backbone {
+            Some(_) => Style::marker(palette::BLUE, Marker::Disc(3.6)),
+            None => Style { marker: Some(Marker::Disc(3.6)), ..Style::line(palette::BLUE, 1.8, SOLID) },
+        },
     }];
     if repeated {
         series.push(Series {
@@ -46,7 +50,25 @@ pub(super) fn backbone(history: &CycleHistory) -> Chart {
             style: Style { marker: Some(Marker::Ring(4.2)), ..Style::line(palette::VERMILION, 1.4, DASHED) },
         });
     }
+    if let Some(fit) = &history.backbone {
+        series.extend(sides(fit, history));
+    }
     chart(Quantity::along("Displacement X", Dimension::LENGTH), Quantity::of("Restoring force R", Dimension::FORCE), series)
+}
+
+/// The curve on either side that the cycles went to; one name for both.
+fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
+    let middle = history.middle();
+    let reach = history.backbone_points().iter().map(|(x, _)| *x).fold(0.0, f64::max);
+    let places: Vec<f64> = [0.0].into_iter().chain(fit.breaks.iter().map(|(place, _)| *place)).chain([reach]).collect();
+    let went = |way: f64| history.cycles.iter().flat_map(|cycle| cycle.ends).any(|(x, _)| way * (x - middle) > 0.5 * reach);
+    let mut label = format!("fit of {} stretches", fit.stiffnesses.len());
+    let side = |way: f64| Series {
+        label: std::mem::take(&mut label),
+        points: places.iter().map(|x| (middle + way * x, way * fit.force(*x))).collect(),
+        style: Style::line(palette::GREEN, 1.6, LONG),
+    };
+    [1.0, -1.0].into_iter().filter(|way| went(*way)).map(side).collect()
 }
 
 /// What each cycle took, and all so far.

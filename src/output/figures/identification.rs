@@ -4,7 +4,7 @@
 use super::super::number;
 use super::chart::{Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
 use crate::quantity::Dimension;
-use crate::record::{RampHistory, RampStep, SweepHistory, SweepStep};
+use crate::record::{MultilinearFit, RampHistory, RampStep, SweepHistory, SweepStep};
 
 /// Measured points, the way back apart, and the line K·X + intercept.
 pub(super) fn force_displacement(history: &RampHistory) -> Chart {
@@ -29,6 +29,9 @@ pub(super) fn force_displacement(history: &RampHistory) -> Chart {
             style: Style::line(palette::VERMILION, 1.8, SOLID),
         });
     }
+    if let Some(fit) = &history.multilinear {
+        series.push(curve(fit, history));
+    }
     let back = points(true);
     if !back.is_empty() {
         series.push(Series { label: "way back".to_owned(), points: back, style: RETURN });
@@ -40,6 +43,24 @@ pub(super) fn force_displacement(history: &RampHistory) -> Chart {
         bands: Vec::new(),
         series,
         references: Vec::new(),
+    }
+}
+
+/// The stretches, from end to end of the readings, through the breaks.
+fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
+    let [low, high] = ends(history.steps.iter().filter(|step| !step.returning).map(|step| step.displacement));
+    let mut places: Vec<f64> = fit.breaks.iter().map(|(place, _)| *place).chain([low, high]).collect();
+    places.sort_by(f64::total_cmp);
+    let stiffness = number::with_uncertainty(fit.stiffnesses[0].0, Some(fit.stiffnesses[0].1), Dimension::STIFFNESS);
+    let label = match fit.breaks.len() {
+        0 => format!("fit, no break, K = {stiffness}"),
+        1 => format!("fit, 1 break, K = {stiffness} at first"),
+        count => format!("fit, {count} breaks, K = {stiffness} at first"),
+    };
+    Series {
+        label,
+        points: places.into_iter().map(|x| (x, fit.force(x))).collect(),
+        style: Style { marker: Some(Marker::Ring(5.0)), ..Style::line(palette::VERMILION, 1.8, SOLID) },
     }
 }
 

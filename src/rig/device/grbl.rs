@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::asking::Asking;
-use super::{Answer, Device, DeviceFault, DeviceIdentity, Move, Sample, Talk};
+use super::{Answer, Device, DeviceFault, DeviceIdentity, Move, Sample, Talk, one_axis};
 use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::grbl::{self, State, Status, Word};
@@ -188,12 +188,13 @@ impl Device for GrblDevice {
         Ok(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot: None, simulated })
     }
 
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = one_axis(targets)?;
         let jog = grbl::jog(target, speed).map_err(DeviceFault::Unfit)?;
         let top = self.settings.get(&TOP_SPEED).copied().unwrap_or(f64::INFINITY);
         // Grbl would go slower and say nothing.
         if jog.speed * 6e4 <= top * (1.0 + 1e-12) {
-            return Ok(Move { frames: vec![jog.line], target: jog.target, speed: jog.speed, id: None });
+            return Ok(Move { frames: vec![jog.line], targets: vec![jog.target], speed: jog.speed, id: None });
         }
         Err(DeviceFault::Refused { reason: format!("{:.3} mm/min is faster than its `${TOP_SPEED}={top}`", jog.speed * 6e4) })
     }
@@ -209,7 +210,7 @@ impl Device for GrblDevice {
         }
         // An `ok` may answer something older: only the axis itself shows that the move was taken.
         let (status, _) = self.fit_status()?;
-        let arrived = (status.position - going.target).abs() <= self.quantum();
+        let arrived = (status.position - going.targets[0]).abs() <= self.quantum();
         if status.state == State::Jog || status.state == State::Idle && arrived {
             return Ok(());
         }
@@ -234,7 +235,7 @@ impl Device for GrblDevice {
         grbl::HOLD.to_vec()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         // Its travel is a setting of the machine, written to memory that wears: a run does not touch it.
         Ok(())
     }

@@ -51,7 +51,7 @@ fn it_says_who_it_is_and_its_settings_are_looked_at() {
     assert_eq!((identity.model.as_str(), identity.firmware.as_str()), ("Grbl", "1.1h.20190825"));
     assert_eq!((identity.serial.as_str(), identity.simulated), ("PSD-SIM-G", true));
     assert_eq!(sent(&port), ["?", "?", "?", "$I\n", "$$\n"]);
-    assert!(device.narrow_limits(&Limits::NONE).is_ok());
+    assert!(device.narrow_limits(&[Limits::NONE]).is_ok());
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn a_start_while_its_port_is_opened_is_no_loss_and_later_it_is() {
     device.identify().unwrap();
     reply(&port, "<Idle|MPos:0.0\r\nGrbl 1.1h ['$' for help]\r\n");
     assert!(matches!(device.sample(), Err(DeviceFault::Rebooted { .. })));
-    let going = device.encode(0.001, 1e-3).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
     status(&port, "Idle", 0.0);
     reply(&port, "Grbl 1.1h ['$' for help]\r\n");
     assert!(matches!(device.start(&going), Err(DeviceFault::Rebooted { .. })));
@@ -108,8 +108,8 @@ fn a_start_while_its_port_is_opened_is_no_loss_and_later_it_is() {
 #[test]
 fn a_jog_is_taken_when_the_axis_shows_it() {
     let (mut device, port) = identified();
-    let going = device.encode(1.25e-3, 0.5e-3).unwrap();
-    assert_eq!((going.target, going.speed, going.id), (1.25e-3, 0.5e-3, None));
+    let going = device.encode(&[1.25e-3], 0.5e-3).unwrap();
+    assert_eq!((going.targets[0], going.speed, going.id), (1.25e-3, 0.5e-3, None));
     status(&port, "Idle", 0.0);
     reply(&port, "ok<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
     status(&port, "Jog", 0.01);
@@ -127,7 +127,7 @@ fn a_jog_is_taken_when_the_axis_shows_it() {
 #[test]
 fn an_ok_without_motion_is_not_believed_unless_it_is_there() {
     let (mut device, port) = identified();
-    let going = device.encode(0.001, 1e-3).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
     status(&port, "Idle", 0.0);
     reply(&port, "ok\r\n");
     status(&port, "Idle", 0.0);
@@ -143,15 +143,15 @@ fn an_ok_without_motion_is_not_believed_unless_it_is_there() {
 fn what_it_refuses_is_said_in_words() {
     for (answer, expected) in [("error:15\r\n", "outside its travel"), ("error:9\r\n", "alarm"), ("ALARM:1\r\n", "end switch")] {
         let (mut device, port) = identified();
-        let going = device.encode(0.5, 1e-3).unwrap();
+        let going = device.encode(&[0.5], 1e-3).unwrap();
         status(&port, "Idle", 0.0);
         reply(&port, answer);
         let fault = device.start(&going).unwrap_err();
         assert!(matches!(&fault, DeviceFault::Refused { reason } if reason.contains(expected)), "{fault}");
     }
     let (mut device, _) = identified();
-    assert!(reason(device.encode(0.001, 0.009)).contains("$110"), "it would go slower and say nothing");
-    assert!(reason(device.encode(0.001, 1e-5)).contains("slower"));
+    assert!(reason(device.encode(&[0.001], 0.009)).contains("$110"), "it would go slower and say nothing");
+    assert!(reason(device.encode(&[0.001], 1e-5)).contains("slower"));
 }
 
 #[test]
@@ -162,7 +162,7 @@ fn a_hold_ends_a_jog_and_the_next_jog_begins_at_once() {
     status(&port, "Idle", 0.52);
     device.hold().unwrap();
     assert_eq!(sent(&port)[5..], ["!", "?", "?"]);
-    let going = device.encode(0.0, 1e-3).unwrap();
+    let going = device.encode(&[0.0], 1e-3).unwrap();
     status(&port, "Idle", 0.52);
     reply(&port, "ok\r\n");
     status(&port, "Jog", 0.5);
@@ -173,7 +173,7 @@ fn a_hold_ends_a_jog_and_the_next_jog_begins_at_once() {
 #[test]
 fn an_axis_held_at_rest_is_let_go_of_by_who_held_it_and_only_then() {
     let (mut device, port) = identified();
-    let going = device.encode(0.001, 1e-3).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
     status(&port, "Hold:0", 0.0);
     assert!(reason(device.start(&going)).contains("somebody else"));
     port.reply(&[]);
@@ -191,7 +191,7 @@ fn an_axis_held_at_rest_is_let_go_of_by_who_held_it_and_only_then() {
 #[test]
 fn a_jog_without_answer_is_never_let_loose() {
     let (mut device, port) = identified();
-    let going = device.encode(0.001, 1e-3).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
     status(&port, "Idle", 0.0);
     assert_eq!(device.start(&going), Err(DeviceFault::Silent { seconds: 2.0 }));
     port.reply(&[]);

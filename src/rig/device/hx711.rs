@@ -23,7 +23,7 @@ impl Device for Hx711Device {
         Ok(DeviceIdentity { model: "HX711".to_owned(), ..DeviceIdentity::default() })
     }
 
-    fn encode(&mut self, _: f64, _: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
         Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
     }
 
@@ -49,7 +49,7 @@ impl Device for Hx711Device {
         Vec::new()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 
@@ -119,6 +119,6 @@ mod tests {
         }
         let (mut device, _, _) = device();
         assert_eq!(device.identify(), Err(DeviceFault::Silent { seconds: 0.5 }));
-        assert!(device.encode(0.0, 1.0).is_err());
+        assert!(device.encode(&[0.0], 1.0).is_err());
     }
 }

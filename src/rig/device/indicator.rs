@@ -40,7 +40,7 @@ impl Device for IndicatorDevice {
         Ok(DeviceIdentity { model: "weighing indicator".to_owned(), ..DeviceIdentity::default() })
     }
 
-    fn encode(&mut self, _: f64, _: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
         Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
     }
 
@@ -73,7 +73,7 @@ impl Device for IndicatorDevice {
         Vec::new()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 
@@ -159,6 +159,6 @@ mod tests {
             assert!(matches!(device.sample(), Err(DeviceFault::NoReading { .. })), "{line}");
         }
         let (mut device, _) = device();
-        assert!(matches!(device.identify(), Err(DeviceFault::Silent { .. })) && device.encode(0.0, 1.0).is_err());
+        assert!(matches!(device.identify(), Err(DeviceFault::Silent { .. })) && device.encode(&[0.0], 1.0).is_err());
     }
 }

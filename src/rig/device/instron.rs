@@ -3,7 +3,7 @@
 //! asked again. Orders are not answered, so that what they did is asked for.
 
 use super::unnumbered::ask_line;
-use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
 use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::instron::{self, Channel, Movement, Question, Trouble};
@@ -173,7 +173,8 @@ impl Device for Instron {
         Ok(DeviceIdentity { model: "Instron 8800-style console".to_owned(), ..DeviceIdentity::default() })
     }
 
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = one_axis(targets)?;
         let from = self.last.ok_or_else(|| DeviceFault::Unfit("where it stands is not known: read first".to_owned()))?;
         let unsayable = || DeviceFault::Unfit(format!("the console cannot say {target} m at {speed} m/s"));
         let full_scale = self.position.full_scale;
@@ -187,7 +188,7 @@ impl Device for Instron {
         // The last bit of a float is no part of what the bytes say; the time was rounded up.
         let target = if (said - target).abs() <= 4.0 * f64::EPSILON * target.abs() { target } else { said };
         let speed = if way > 0.0 { (way / seconds).min(speed) } else { speed };
-        Ok(Move { frames, target, speed, id: None })
+        Ok(Move { frames, targets: vec![target], speed, id: None })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -196,7 +197,7 @@ impl Device for Instron {
         self.make_ready(&going.frames[..ready])?;
         for _ in 0..TRIES {
             self.talk.send(&start.concat())?;
-            if self.is_under_way(going.target)? {
+            if self.is_under_way(going.targets[0])? {
                 return Ok(());
             }
             self.talk.tally_mut().resent += 1;
@@ -213,7 +214,7 @@ impl Device for Instron {
         let force = self.feedback(Channel::Load, &mut raw)?;
         self.last = Some(displacement);
         let (displacement, force) = (Some(displacement), Some(Force::Newtons(force)));
-        Ok(Sample { time: None, displacement, force, moving: Some(moving), flags, raw })
+        Ok(Sample { time: None, displacement, force, moving: Some(moving), flags, others: Vec::new(), raw })
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
@@ -231,7 +232,7 @@ impl Device for Instron {
         instron::hold().concat()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 

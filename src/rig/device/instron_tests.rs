@@ -69,8 +69,8 @@ fn readings_are_fractions_of_full_scale_and_polls_keep_their_distance() {
 fn a_ramp_is_read_back_before_it_starts() {
     let (mut console, mut script) = opened();
     // From 1 mm to 5 mm at 0.8 mm/s: 5 s.
-    let going = console.encode(0.005, 0.0008).unwrap();
-    assert_eq!((going.target, going.speed), (0.005, 0.0008));
+    let going = console.encode(&[0.005], 0.0008).unwrap();
+    assert_eq!((going.targets[0], going.speed), (0.005, 0.0008));
     assert_eq!(text(&going.frames.concat()), format!("{RAMP}{START}"));
     // The first set of orders is cut short: the old target stands.
     script.on(RAMP, "").on("Q4,1 ", "0.01").on("Q86,1 ", "5");
@@ -85,7 +85,7 @@ fn a_ramp_is_read_back_before_it_starts() {
 #[test]
 fn a_ramp_that_is_never_read_back_is_never_started() {
     let (mut console, mut script) = opened();
-    let going = console.encode(0.005, 0.0008).unwrap();
+    let going = console.encode(&[0.005], 0.0008).unwrap();
     for _ in 0..3 {
         script.on(RAMP, "").on("Q4,1 ", "0.5").on("Q86,1 ", "5");
     }
@@ -98,12 +98,12 @@ fn a_move_says_what_its_bytes_say_and_is_never_faster_than_asked() {
     let (mut console, ..) = opened();
     for step in 0..500 {
         let (target, speed) = (f64::from(step) * 1.237e-5 - 0.002, 1e-6 + f64::from(step) * 3.1e-6);
-        let going = console.encode(target, speed).unwrap();
-        assert!((going.target - target).abs() <= 0.5e-9 + 1e-15, "{target}");
+        let going = console.encode(&[target], speed).unwrap();
+        assert!((going.targets[0] - target).abs() <= 0.5e-9 + 1e-15, "{target}");
         assert!(going.speed <= speed, "{target} {speed}");
     }
     for (target, speed) in [(0.2, 1e-3), (f64::NAN, 1e-3), (0.0, 0.0), (0.0, f64::NAN), (0.0, -1.0)] {
-        assert!(matches!(console.encode(target, speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
+        assert!(matches!(console.encode(&[target], speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
     }
 }
 

@@ -3,7 +3,7 @@
 //! so are the targets. Lines have no check: what came unasked is thrown away, and after a silence all is asked twice.
 
 use super::unnumbered::ask_line;
-use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
 use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::mark10::{self, Side, Status};
@@ -91,7 +91,8 @@ impl Device for Mark10 {
         Ok(DeviceIdentity { model: "Mark-10 stand".to_owned(), ..DeviceIdentity::default() })
     }
 
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = one_axis(targets)?;
         let from = self.last.ok_or_else(|| DeviceFault::Unfit("where it stands is not known: read first".to_owned()))?;
         let unsayable = || DeviceFault::Unfit(format!("the stand cannot say {target} m at {speed} m/s"));
         let (speed_setting, speed) = mark10::speed(speed).ok_or_else(unsayable)?;
@@ -102,7 +103,7 @@ impl Device for Mark10 {
         if (target - from).abs() > THERE {
             frames.push(if side == Side::Lower { mark10::DOWN } else { mark10::UP }.to_vec());
         }
-        Ok(Move { frames, target, speed, id: None })
+        Ok(Move { frames, targets: vec![target], speed, id: None })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -110,15 +111,15 @@ impl Device for Mark10 {
             return Err(DeviceFault::Unfit("this is no move of the stand".to_owned()));
         };
         let side = if limit.starts_with(b"g") { Side::Lower } else { Side::Upper };
-        self.set_limit(&[speed.clone(), limit.clone()], side, going.target)?;
+        self.set_limit(&[speed.clone(), limit.clone()], side, going.targets[0])?;
         let Some(direction) = direction.first() else { return Ok(()) };
         if !self.ask_status()?.0.limit_mode {
             return Err(DeviceFault::Unfit("the stand left limit mode: nothing would stop it at its target".to_owned()));
         }
-        self.going = Some((side, going.target));
+        self.going = Some((side, going.targets[0]));
         for _ in 0..TRIES {
             self.talk.send(direction)?;
-            if self.ask_status()?.0.moving || (self.ask_travel(mark10::ASK_TRAVEL)?.0 - going.target).abs() <= THERE {
+            if self.ask_status()?.0.moving || (self.ask_travel(mark10::ASK_TRAVEL)?.0 - going.targets[0]).abs() <= THERE {
                 return Ok(());
             }
             self.talk.tally_mut().resent += 1;
@@ -148,6 +149,7 @@ impl Device for Mark10 {
             // Its limits are its targets: to be at one is to have arrived.
             flags: Flags::default(),
             raw: vec![said_status, said_travel, said_force],
+            others: Vec::new(),
         })
     }
 
@@ -159,7 +161,7 @@ impl Device for Mark10 {
         EMERGENCY.to_vec()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 
@@ -186,7 +188,7 @@ impl Device for Mark10Gauge {
         Ok(DeviceIdentity { model: "Mark-10 gauge".to_owned(), ..DeviceIdentity::default() })
     }
 
-    fn encode(&mut self, _: f64, _: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
         Err(DeviceFault::Unfit("a gauge does not move".to_owned()))
     }
 
@@ -208,7 +210,7 @@ impl Device for Mark10Gauge {
         Vec::new()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 

@@ -58,8 +58,8 @@ fn a_sample_is_status_travel_and_force() {
 #[test]
 fn a_target_is_a_limit_that_is_read_back_before_the_stand_sets_off() {
     let (mut stand, mut script) = opened();
-    let going = stand.encode(0.002_504, 0.01).unwrap();
-    assert_eq!((going.target, going.speed), (0.002_5, 0.01), "hundredths of a millimetre");
+    let going = stand.encode(&[0.002_504], 0.01).unwrap();
+    assert_eq!((going.targets[0], going.speed), (0.002_5, 0.01), "hundredths of a millimetre");
     assert_eq!(going.frames, [b"e0600.0".to_vec(), b"h002.50".to_vec(), b"u".to_vec()]);
     // A letter is lost on the way: the old limit is heard, and it is set again.
     script.on("e0600.0h002.50", "").on("v", "300.00").on("e0600.0h002.50", "").on("v", "2.50");
@@ -67,19 +67,19 @@ fn a_target_is_a_limit_that_is_read_back_before_the_stand_sets_off() {
     script.on("p", "SL").on("u", "").on("p", "SL").on("x", "1.00").on("u", "").on("p", "UL");
     stand.start(&going).unwrap();
     script.done();
-    let down = stand.encode(-0.001, 0.01).unwrap();
+    let down = stand.encode(&[-0.001], 0.01).unwrap();
     assert_eq!(down.frames, [b"e0600.0".to_vec(), b"g-001.00".to_vec(), b"d".to_vec()]);
-    let here = stand.encode(0.001_003, 0.01).unwrap();
-    assert_eq!((here.frames.len(), here.target), (2, 0.001), "it stands there already");
+    let here = stand.encode(&[0.001_003], 0.01).unwrap();
+    assert_eq!((here.frames.len(), here.targets[0]), (2, 0.001), "it stands there already");
     for (target, speed) in [(1.0, 0.01), (f64::NAN, 0.01), (0.0, 0.0), (0.0, f64::NAN)] {
-        assert!(matches!(stand.encode(target, speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
+        assert!(matches!(stand.encode(&[target], speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
     }
 }
 
 #[test]
 fn it_never_sets_off_with_another_limit_or_outside_limit_mode() {
     let (mut stand, mut script) = opened();
-    let going = stand.encode(0.002, 0.01).unwrap();
+    let going = stand.encode(&[0.002], 0.01).unwrap();
     for _ in 0..3 {
         script.on("e0600.0h002.00", "").on("v", "20.00");
     }
@@ -95,7 +95,7 @@ fn it_never_sets_off_with_another_limit_or_outside_limit_mode() {
 #[test]
 fn a_stand_past_its_limit_is_stopped() {
     let (mut stand, mut script) = opened();
-    let going = stand.encode(0.002, 0.01).unwrap();
+    let going = stand.encode(&[0.002], 0.01).unwrap();
     script.on("e0600.0h002.00", "").on("v", "2.00").on("p", "SL").on("u", "").on("p", "UL");
     stand.start(&going).unwrap();
     script.on("p", "UL").on("x", "2.10").on("s", "").on("p", "SL");
@@ -151,5 +151,5 @@ fn the_gauge_alone_weighs_and_does_not_move() {
     assert_eq!(gauge.sample().unwrap().force, Some(Force::Newtons(19.6133)));
     assert!(matches!(gauge.sample(), Err(DeviceFault::NoReading { .. })));
     script.done();
-    assert!(gauge.encode(0.0, 0.01).is_err() && gauge.emergency().is_empty() && gauge.hold().is_ok());
+    assert!(gauge.encode(&[0.0], 0.01).is_err() && gauge.emergency().is_empty() && gauge.hold().is_ok());
 }

@@ -103,8 +103,8 @@ fn read(device: &mut dyn Device) -> (f64, f64, Option<bool>) {
 fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolution: f64) {
     device.identify().unwrap();
     for target in [0.002_5, -0.001] {
-        let going = device.encode(target, 0.001).unwrap();
-        assert!((going.target - target).abs() < 1e-9 && going.speed <= 0.001, "{going:?}");
+        let going = device.encode(&[target], 0.001).unwrap();
+        assert!((going.targets[0] - target).abs() < 1e-9 && going.speed <= 0.001, "{going:?}");
         device.start(&going).unwrap();
         let mut polls = 0;
         while read(device).2 == Some(true) {
@@ -115,7 +115,7 @@ fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolut
         let (displacement, force, _) = read(device);
         assert!((displacement - target).abs() <= resolution, "{displacement}");
         assert!((force - STIFFNESS * target).abs() <= 0.02, "{force}");
-        assert!((controller.targets().last().unwrap() - going.target).abs() < 1e-12);
+        assert!((controller.targets().last().unwrap() - going.targets[0]).abs() < 1e-12);
     }
     assert_eq!(controller.targets().len(), 2);
     assert_eq!((device.tally().ignored, device.tally().resent), (0, 0));
@@ -125,7 +125,7 @@ fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolut
 fn stays_where_it_is_stopped(device: &mut dyn Device, controller: &Controller) {
     for emergency in [false, true] {
         let from = read(device).0;
-        let going = device.encode(if from < 0.005 { 0.01 } else { 0.0 }, 0.001).unwrap();
+        let going = device.encode(&[if from < 0.005 { 0.01 } else { 0.0 }], 0.001).unwrap();
         device.start(&going).unwrap();
         controller.clock.advance(1.0);
         if emergency {
@@ -136,7 +136,7 @@ fn stays_where_it_is_stopped(device: &mut dyn Device, controller: &Controller) {
         let there = read(device).0;
         controller.clock.advance(5.0);
         let (later, _, moving) = read(device);
-        assert!(later == there && (there - from).abs() > 0.000_5 && (there - going.target).abs() > 0.000_5, "{there}");
+        assert!(later == there && (there - from).abs() > 0.000_5 && (there - going.targets[0]).abs() > 0.000_5, "{there}");
         assert_eq!(moving, Some(false));
     }
 }
@@ -197,7 +197,7 @@ fn a_nees_rig() {
     let controller = Controller::new(Box::new(firmware::Nees::new("MDL-00-01", 0.001)));
     let mut device = Nees::new(controller.talk(), "MDL-00-01".to_owned(), 5.0);
     goes_there_and_back(&mut device, &controller, 1e-12);
-    let beyond = device.encode(0.07, 0.001).unwrap();
+    let beyond = device.encode(&[0.07], 0.001).unwrap();
     let targets = controller.shared.lock().unwrap().bench.targets().len();
     assert!(matches!(device.start(&beyond), Err(DeviceFault::Refused { .. })));
     assert_eq!(controller.shared.lock().unwrap().bench.targets().len(), targets, "the rig itself refuses, and nothing moves");

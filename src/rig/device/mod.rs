@@ -49,9 +49,9 @@ pub struct DeviceIdentity {
 pub struct Move {
     /// What is sent, in this order; each waits for its answer.
     pub frames: Vec<Vec<u8>>,
-    /// m, read back from the bytes.
-    pub target: f64,
-    /// m/s, read back from the bytes, or as asked where they carry none.
+    /// One an axis, m, read back from the bytes.
+    pub targets: Vec<f64>,
+    /// m/s, of the axis with the farthest way; read back from the bytes, or as asked where they carry none.
     pub speed: f64,
     /// Where the device remembers it.
     pub id: Option<u64>,
@@ -62,14 +62,35 @@ pub struct Move {
 pub struct Sample {
     /// The device's own clock, s.
     pub time: Option<f64>,
+    /// Of its first axis, m.
+    pub displacement: Option<f64>,
+    /// Of its first axis.
+    pub force: Option<Force>,
+    /// Whether it says that any axis still moves.
+    pub moving: Option<bool>,
+    /// Of its first axis, and of itself.
+    pub flags: Flags,
+    /// Its other axes, in order; most devices have none.
+    pub others: Vec<Channel>,
+    /// The bytes of the answer, one entry a reply.
+    pub raw: Vec<Vec<u8>>,
+}
+
+impl Sample {
+    /// Every axis, in order.
+    pub fn axes(&self) -> impl Iterator<Item = Channel> + '_ {
+        let first = Channel { displacement: self.displacement, force: self.force, flags: self.flags };
+        std::iter::once(first).chain(self.others.iter().copied())
+    }
+}
+
+/// What one axis of a device says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Channel {
     /// m
     pub displacement: Option<f64>,
     pub force: Option<Force>,
-    /// Whether it says it is still moving.
-    pub moving: Option<bool>,
     pub flags: Flags,
-    /// The bytes of the answer, one entry a reply.
-    pub raw: Vec<Vec<u8>>,
 }
 
 /// Force as the device gives it.
@@ -132,11 +153,17 @@ pub trait Device: Send {
     /// It does not answer, or is not fit.
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault>;
 
-    /// The bytes of a move to `target` (m, absolute) at `speed` (m/s), and what they say when read back. Sends nothing.
+    /// How many axes it moves or weighs, from `identify`.
+    fn axes(&self) -> usize {
+        1
+    }
+
+    /// The bytes of a move to `targets` (m, absolute, one an axis) at `speed` (m/s, of the axis with the farthest way; all
+    /// arrive at once), and what they say when read back. Sends nothing.
     ///
     /// # Errors
-    /// The device cannot move, or cannot say this.
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault>;
+    /// The device cannot move, has another number of axes, or cannot say this.
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault>;
 
     /// Sends a move and gives back once it is accepted, not when it is done.
     ///
@@ -144,7 +171,7 @@ pub trait Device: Send {
     /// It was refused or not heard.
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault>;
 
-    /// Asks once for a reading; a reply that is none is [`DeviceFault::NoReading`].
+    /// Asks once for a reading of every axis; a reply that is none is [`DeviceFault::NoReading`].
     ///
     /// # Errors
     /// As every call.
@@ -159,11 +186,11 @@ pub trait Device: Send {
     /// Bytes that stop the device whatever it is doing, sent without waiting for an answer. Empty: there are none.
     fn emergency(&self) -> Vec<u8>;
 
-    /// Tells the device the limits of this run, where it can hold them too. It may only narrow its own.
+    /// Tells the device the limits of this run, one entry an axis, where it can hold them too. It may only narrow its own.
     ///
     /// # Errors
     /// It refuses them.
-    fn narrow_limits(&mut self, limits: &Limits) -> Result<(), DeviceFault>;
+    fn narrow_limits(&mut self, limits: &[Limits]) -> Result<(), DeviceFault>;
 
     /// The last move it remembers, from `identify`.
     fn last_move(&self) -> Option<LastMove> {
@@ -172,6 +199,14 @@ pub trait Device: Send {
 
     /// What was mended on the line so far.
     fn tally(&self) -> Tally;
+}
+
+/// The target of a device that moves one axis.
+fn one_axis(targets: &[f64]) -> Result<f64, DeviceFault> {
+    match targets {
+        [target] => Ok(*target),
+        _ => Err(DeviceFault::Unfit(format!("it moves one axis, not {}", targets.len()))),
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! another frame it may not be heard, so that it replaces no wired emergency stop.
 
 use super::unnumbered::{clear, fault, fresh, order};
-use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
 use crate::plan::{Limits, ModbusMap, ModbusNumber};
 use crate::rig::Tally;
 use crate::rig::dialect::modbus::{self, Fault, Table};
@@ -140,9 +140,10 @@ impl Device for Modbus {
         Ok(DeviceIdentity { model: format!("Modbus unit {}", self.map.unit), ..DeviceIdentity::default() })
     }
 
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = one_axis(targets)?;
         let (target_frame, target) = self.target_frame(target)?;
-        let mut going = Move { frames: Vec::new(), target, speed, id: None };
+        let mut going = Move { frames: Vec::new(), targets: vec![target], speed, id: None };
         // Before the target, since some drives set off as soon as they have one.
         if let Some(register) = self.map.speed {
             let (words, said) = self.say_speed(speed)?;
@@ -196,7 +197,7 @@ impl Device for Modbus {
         self.stop_frame().unwrap_or_default()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 

@@ -90,12 +90,12 @@ fn three_and_a_half_characters_of_silence_come_before_every_question() {
 #[test]
 fn a_move_is_speed_target_start_and_its_numbers_are_those_of_its_registers() {
     let (mut device, port, _) = device(MAP);
-    let going = device.encode(0.001_3, 0.003).unwrap();
+    let going = device.encode(&[0.001_3], 0.003).unwrap();
     let short = |value: f32| value.to_bits().to_be_bytes();
     assert_eq!(going.frames[0][7..11], short(3.0));
     assert_eq!(going.frames[1][7..11], short(1.3));
     assert_eq!(going.frames[2], sealed(&[1, 6, 0, 60, 0, 1]));
-    assert_eq!(going.target, f64::from(1.3_f32) * 1e-3, "1.3 is no short float");
+    assert_eq!(going.targets[0], f64::from(1.3_f32) * 1e-3, "1.3 is no short float");
     assert_eq!(going.speed, 0.003);
     for frame in &going.frames {
         let echo = if frame[1] == 6 { frame.clone() } else { sealed(&frame[..6]) };
@@ -109,20 +109,20 @@ fn a_move_is_speed_target_start_and_its_numbers_are_those_of_its_registers() {
 fn no_speed_is_rounded_up_and_no_number_is_clamped() {
     let whole = ModbusMap { number: ModbusNumber::Int16, length_unit: 1e-5, speed_unit: 1e-5, ..MAP };
     let (mut device, ..) = device(whole);
-    let going = device.encode(0.012_344, 0.001_239).unwrap();
-    assert!((going.target - 0.012_34).abs() < 1e-15 && (going.speed - 0.001_23).abs() < 1e-15, "{going:?}");
+    let going = device.encode(&[0.012_344], 0.001_239).unwrap();
+    assert!((going.targets[0] - 0.012_34).abs() < 1e-15 && (going.speed - 0.001_23).abs() < 1e-15, "{going:?}");
     for step in 1..2000 {
         let asked = f64::from(step) * 1e-5;
-        let going = device.encode(asked, asked).unwrap();
-        assert_eq!((going.target, going.speed), (asked, asked), "the last bit of turning units is not held against it");
+        let going = device.encode(&[asked], asked).unwrap();
+        assert_eq!((going.targets[0], going.speed), (asked, asked), "the last bit of turning units is not held against it");
     }
     for (target, speed) in [(0.4, 1e-3), (f64::NAN, 1e-3), (0.0, 1e-6), (0.0, f64::NAN), (0.0, -1.0)] {
-        assert!(matches!(device.encode(target, speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
+        assert!(matches!(device.encode(&[target], speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
     }
     let (mut device, ..) = self::device(MAP);
     for step in 1..2000 {
         let asked = f64::from(step) * 1.7e-6;
-        let said = device.encode(0.0, asked).unwrap().speed;
+        let said = device.encode(&[0.0], asked).unwrap().speed;
         assert!(said <= asked && said > asked * (1.0 - 1e-6), "{said} {asked}");
     }
 }
@@ -130,7 +130,7 @@ fn no_speed_is_rounded_up_and_no_number_is_clamped() {
 #[test]
 fn an_exception_is_a_refusal_in_words() {
     let (mut device, port, _) = device(MAP);
-    let going = device.encode(0.001, 0.001).unwrap();
+    let going = device.encode(&[0.001], 0.001).unwrap();
     port.reply(&at_once(sealed(&[1, 0x90, 3])));
     let refused = DeviceFault::Refused { reason: "the value is not allowed (exception 3)".to_owned() };
     assert_eq!(device.start(&going), Err(refused));
@@ -220,7 +220,7 @@ fn a_transmitter_with_input_registers_only_is_found_out() {
     assert_eq!(device.identify().unwrap().model, "Modbus unit 1");
     assert_eq!(force(&device.sample().unwrap()), 6.0);
     assert_eq!(frames(&port)[3], sealed(&[1, 4, 0, 20, 0, 2]));
-    assert!(matches!(device.encode(0.0, 1.0), Err(DeviceFault::Unfit(_))), "it cannot move");
+    assert!(matches!(device.encode(&[0.0], 1.0), Err(DeviceFault::Unfit(_))), "it cannot move");
 }
 
 #[test]

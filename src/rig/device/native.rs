@@ -1,9 +1,9 @@
 //! A rig that speaks psd's own line protocol. In: moves and questions in SI. Out: replies that are whole, in order and
 //! from the same power-up. The bytes are `dialect::native`'s; it judges no reading.
 
-use super::{Answer, Device, DeviceFault, DeviceIdentity, Force, Move, Sample, Talk};
+use super::{Answer, Channel, Device, DeviceFault, DeviceIdentity, Force, Move, Sample, Talk};
 use crate::plan::Limits;
-use crate::rig::dialect::native::{self, Bounds, Hello, Kind, Reply, Request, State};
+use crate::rig::dialect::native::{self, AxisBounds, Bounds, Hello, Kind, Reply, Request, State};
 use crate::rig::dialect::number;
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{LastMove, Tally};
@@ -31,8 +31,8 @@ pub struct NativeDevice {
 /// A move that has not been accepted.
 struct Proposed {
     id: u64,
-    /// As it is written.
-    target: String,
+    /// As they are written.
+    targets: String,
     sent: bool,
 }
 
@@ -74,7 +74,7 @@ impl NativeDevice {
     fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Answered, DeviceFault> {
         if self.out_of_step {
             self.say_hello()?;
-            if let Some(bounds) = self.narrowed {
+            if let Some(bounds) = self.narrowed.clone() {
                 self.request(&Request::Limits(&bounds), Kind::Ack)?;
             }
         }
@@ -99,12 +99,15 @@ impl NativeDevice {
     fn say_hello(&mut self) -> Result<(), DeviceFault> {
         let frame = framed(self.sequence.wrapping_add(1), &Request::Hello)?;
         let Answered { reply, line } = self.exchange(&frame, Kind::Ack)?;
-        let hello = native::hello(&reply.words).filter(|hello| {
-            let Bounds { displacement, force, top_speed } = hello.bounds;
-            displacement.low <= displacement.high && force.low <= force.high && top_speed > 0.0
-        });
+        let hello = native::hello(&reply.words).filter(|hello| hello.bounds.allow_something());
         let strange = || DeviceFault::Unfit(format!("`{}` does not say what rig it is", line.escape_ascii()));
-        self.hello = Some(hello.ok_or_else(strange)?);
+        let hello = hello.ok_or_else(strange)?;
+        if let Some(before) = &self.hello
+            && before.bounds.axes.len() != hello.bounds.axes.len()
+        {
+            return Err(strange());
+        }
+        self.hello = Some(hello);
         self.boot = Some(reply.boot);
         Ok(())
     }
@@ -157,25 +160,29 @@ impl Device for NativeDevice {
         }
         (self.held, self.proposed) = (false, None);
         let hello = self.hello()?.clone();
-        self.next_id = hello.last.map_or(0, |last| last.id) + 1;
+        self.next_id = hello.last.as_ref().map_or(0, |last| last.id) + 1;
         let simulated = hello.model.starts_with(SIMULATED);
         let Hello { model, serial, firmware, .. } = hello;
         Ok(DeviceIdentity { model, serial, firmware, boot: self.boot.clone(), simulated })
     }
 
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
-        let bounds = self.hello()?.bounds;
+    fn axes(&self) -> usize {
+        self.hello.as_ref().map_or(1, |hello| hello.bounds.axes.len())
+    }
+
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let bounds = &self.hello()?.bounds;
         if self.out_of_step {
             return Err(DeviceFault::Unfit("an answer is missing: the rig must be read before it moves again".to_owned()));
         }
-        let said = |meant: f64| {
-            let written = native::length(meant)?;
-            let heard = number::read_back(&written, 1e3, meant)?;
-            Some((written, heard))
-        };
-        let unsaid = || DeviceFault::Unfit(format!("a move to {target} m at {speed} m/s cannot be said"));
-        let ((written, target), (_, speed)) = said(target).zip(said(speed)).ok_or_else(unsaid)?;
-        if !bounds.displacement.contains(target) {
+        if targets.len() != bounds.axes.len() {
+            return Err(DeviceFault::Unfit(format!("it has {} axes, not {}", bounds.axes.len(), targets.len())));
+        }
+        let said = |meant: f64| number::read_back(&native::length(meant)?, 1e3, meant);
+        let heard: Option<Vec<f64>> = targets.iter().map(|target| said(*target)).collect();
+        let unsaid = || DeviceFault::Unfit(format!("a move to {targets:?} m at {speed} m/s cannot be said"));
+        let (written, (targets, speed)) = native::lengths(targets).zip(heard.zip(said(speed))).ok_or_else(unsaid)?;
+        if !bounds.axes.iter().zip(&targets).all(|(axis, target)| axis.displacement.contains(*target)) {
             return Err(DeviceFault::Refused { reason: format!("{written} mm is outside the limits the rig says it has") });
         }
         // A speed that is written as nothing would never arrive.
@@ -183,12 +190,12 @@ impl Device for NativeDevice {
             return Err(DeviceFault::Refused { reason: format!("{} mm/s is no speed of this rig", speed * 1e3) });
         }
         let id = match &self.proposed {
-            Some(proposed) if proposed.target == written || !proposed.sent => proposed.id,
-            // The rig may have heard the other target under this number.
+            Some(proposed) if proposed.targets == written || !proposed.sent => proposed.id,
+            // The rig may have heard the other targets under this number.
             Some(proposed) => proposed.id + 1,
             None => self.next_id,
         };
-        let moving = Request::Move { id, target, speed };
+        let moving = Request::Move { id, targets: &targets, speed };
         let requests = if self.held { vec![Request::Clear, moving] } else { vec![moving] };
         let mut sequence = self.sequence;
         let frames = requests.iter().map(|request| {
@@ -197,8 +204,8 @@ impl Device for NativeDevice {
         });
         let frames = frames.collect::<Result<_, _>>()?;
         let sent = self.proposed.as_ref().is_some_and(|proposed| proposed.sent && proposed.id == id);
-        self.proposed = Some(Proposed { id, target: written, sent });
-        Ok(Move { frames, target, speed, id: Some(id) })
+        self.proposed = Some(Proposed { id, targets: written, sent });
+        Ok(Move { frames, targets, speed, id: Some(id) })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -221,17 +228,19 @@ impl Device for NativeDevice {
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         let Answered { reply, line } = self.request(&Request::Measure { readings: 1 }, Kind::Data)?;
-        let Some(data) = native::data(&reply.words) else {
+        let data = native::data(&reply.words).filter(|data| data.axes.len() == self.axes());
+        let Some(data) = data else {
             return Err(DeviceFault::NoReading { raw: line, reason: "a field is missing, too many or no number".to_owned() });
         };
-        Ok(Sample {
-            time: Some(data.time),
-            displacement: Some(data.displacement),
-            force: Some(Force::Newtons(data.force)),
-            moving: Some(data.state == State::Moving),
-            flags: data.flags,
-            raw: vec![line],
-        })
+        let mut axes = data.axes.iter().map(|axis| Channel {
+            displacement: Some(axis.displacement),
+            force: Some(Force::Newtons(axis.force)),
+            flags: axis.flags,
+        });
+        let Channel { displacement, force, flags } = axes.next().unwrap_or_default();
+        let others = axes.collect();
+        let moving = Some(data.state == State::Moving);
+        Ok(Sample { time: Some(data.time), displacement, force, moving, flags, others, raw: vec![line] })
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
@@ -247,15 +256,20 @@ impl Device for NativeDevice {
         b"!".to_vec()
     }
 
-    fn narrow_limits(&mut self, limits: &Limits) -> Result<(), DeviceFault> {
-        let own = self.hello()?.bounds;
-        let bounds = Bounds {
+    fn narrow_limits(&mut self, limits: &[Limits]) -> Result<(), DeviceFault> {
+        let own = &self.hello()?.bounds;
+        if limits.len() != own.axes.len() {
+            return Err(DeviceFault::Unfit(format!("it has {} axes, not {}", own.axes.len(), limits.len())));
+        }
+        let narrower = |(own, limits): (&AxisBounds, &Limits)| AxisBounds {
             displacement: own.displacement.intersection(limits.displacement),
             force: own.force.intersection(limits.force),
-            top_speed: own.top_speed.min(limits.speed.high),
         };
-        let Bounds { displacement, force, top_speed } = bounds;
-        if !(displacement.low <= displacement.high && force.low <= force.high && top_speed > 0.0) {
+        let bounds = Bounds {
+            axes: own.axes.iter().zip(limits).map(narrower).collect(),
+            top_speed: limits.iter().map(|limits| limits.speed.high).fold(own.top_speed, f64::min),
+        };
+        if !bounds.allow_something() {
             return Err(DeviceFault::Unfit("the limits of the plan and those of the rig have nothing in common".to_owned()));
         }
         self.command(&Request::Limits(&bounds))?;
@@ -264,7 +278,7 @@ impl Device for NativeDevice {
     }
 
     fn last_move(&self) -> Option<LastMove> {
-        self.hello.as_ref().and_then(|hello| hello.last)
+        self.hello.as_ref().and_then(|hello| hello.last.clone())
     }
 
     fn tally(&self) -> Tally {

@@ -58,7 +58,7 @@ fn a_rig_is_asked_who_it_is_and_let_go_of_what_held_it_between_runs() {
     let identity = device.identify().unwrap();
     assert_eq!((identity.model.as_str(), identity.serial.as_str(), identity.firmware.as_str()), ("PSD-SIM-1", "0042", "1.3"));
     assert_eq!((identity.boot.as_deref(), identity.simulated), (Some("7F3A"), true));
-    assert_eq!(device.last_move(), Some(LastMove { id: 17, target: 1.25e-3 }));
+    assert_eq!(device.last_move(), Some(LastMove { id: 17, targets: vec![1.25e-3] }));
     assert_eq!(sent(&port), ["HELLO 1", "STAT 2", "CLR 3"]);
 }
 
@@ -82,9 +82,9 @@ fn limits_are_only_narrowed_a_move_is_accepted_and_a_reading_read() {
     let displacement = Interval { low: -0.001, high: 0.5 };
     let limits = Limits { displacement, speed: Interval { low: 0.0, high: 0.01 }, ..Limits::NONE };
     say(&port, "ACK 3 7F3A IDLE");
-    device.narrow_limits(&limits).unwrap();
-    let going = device.encode(1.25e-3, 0.5e-3).unwrap();
-    assert_eq!((going.target, going.speed, going.id, going.frames.len()), (1.25e-3, 0.5e-3, Some(18), 1));
+    device.narrow_limits(&[limits]).unwrap();
+    let going = device.encode(&[1.25e-3], 0.5e-3).unwrap();
+    assert_eq!((going.targets[0], going.speed, going.id, going.frames.len()), (1.25e-3, 0.5e-3, Some(18), 1));
     say(&port, "ACK 4 7F3A MOVING");
     device.start(&going).unwrap();
     say(&port, &reading(5, "512.375"));
@@ -95,7 +95,7 @@ fn limits_are_only_narrowed_a_move_is_accepted_and_a_reading_read() {
     let expected = ["LIM 3 -1.000000 25.000000 -2000.000 12000.000 10.000000", "MOVE 4 18 1.250000 0.500000", "MEAS 5 1"];
     assert_eq!(sent(&port)[2..], expected);
     let nowhere = Limits { displacement: Interval { low: 0.03, high: 0.04 }, ..Limits::NONE };
-    assert!(matches!(device.narrow_limits(&nowhere), Err(DeviceFault::Unfit(_))));
+    assert!(matches!(device.narrow_limits(&[nowhere]), Err(DeviceFault::Unfit(_))));
 }
 
 fn reading_line(sequence: u32) -> Vec<u8> {
@@ -110,24 +110,24 @@ fn what_cannot_be_said_or_lies_outside_the_rig_is_not_offered() {
     for (target, speed) in
         [(0.0251, 1e-3), (-0.0021, 1e-3), (f64::NAN, 1e-3), (0.0, 0.0), (0.0, 1e-11), (0.0, 0.13), (0.0, f64::NAN), (0.0, -1e-3)]
     {
-        assert!(device.encode(target, speed).is_err(), "{target} {speed}");
+        assert!(device.encode(&[target], speed).is_err(), "{target} {speed}");
     }
-    assert!(device.encode(0.025, 0.12).is_ok(), "the limits themselves are inside");
-    assert_eq!(device.encode(0.000_999_999_96, 1e-3).unwrap().target, 0.001, "what the bytes say");
+    assert!(device.encode(&[0.025], 0.12).is_ok(), "the limits themselves are inside");
+    assert_eq!(device.encode(&[0.000_999_999_96], 1e-3).unwrap().targets[0], 0.001, "what the bytes say");
     assert_eq!(port.sent().len(), 2, "nothing of it was sent");
 }
 
 #[test]
 fn a_number_belongs_to_one_target_until_a_move_is_accepted() {
     let (mut device, port) = identified();
-    let id = |device: &mut NativeDevice, target| device.encode(target, 1e-3).unwrap().id;
+    let id = |device: &mut NativeDevice, target| device.encode(&[target], 1e-3).unwrap().id;
     assert_eq!((id(&mut device, 0.001), id(&mut device, 0.002)), (Some(18), Some(18)), "neither was sent");
-    let going = device.encode(0.002, 1e-3).unwrap();
+    let going = device.encode(&[0.002], 1e-3).unwrap();
     say(&port, "ERR 3 7F3A BUSY");
     let refused = device.start(&going).unwrap_err();
     assert!(refused.to_string().contains("still moving"), "{refused}");
     assert_eq!((id(&mut device, 0.002), id(&mut device, 0.003)), (Some(18), Some(19)), "the rig may know 18 by its target");
-    let going = device.encode(0.003, 1e-3).unwrap();
+    let going = device.encode(&[0.003], 1e-3).unwrap();
     say(&port, "ACK 4 7F3A MOVING");
     device.start(&going).unwrap();
     assert_eq!(id(&mut device, 0.003), Some(20), "a move accepted is over");
@@ -136,7 +136,7 @@ fn a_number_belongs_to_one_target_until_a_move_is_accepted() {
 #[test]
 fn a_move_is_sent_as_it_was_made_or_not_at_all() {
     let (mut device, port) = identified();
-    let going = device.encode(0.001, 1e-3).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
     say(&port, &reading(3, "1.0"));
     device.sample().unwrap();
     assert!(matches!(device.start(&going), Err(DeviceFault::Unfit(_))));
@@ -252,10 +252,10 @@ fn a_whole_reply_with_a_field_missing_is_no_reading() {
 fn after_silence_the_conversation_is_taken_up_before_anything_else() {
     let (mut device, port) = identified();
     say(&port, "ACK 3 7F3A IDLE");
-    device.narrow_limits(&Limits::NONE).unwrap();
-    let going = device.encode(0.001, 1e-3).unwrap();
+    device.narrow_limits(&[Limits::NONE]).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
     assert_eq!(device.start(&going), Err(DeviceFault::Silent { seconds: 2.0 }));
-    assert!(device.encode(0.001, 1e-3).is_err() && device.start(&going).is_err(), "first the rig is read");
+    assert!(device.encode(&[0.001], 1e-3).is_err() && device.start(&going).is_err(), "first the rig is read");
     say(&port, &format!("ACK 5 7F3A {}", WHO.replace("17 1.25", "18 1.00")));
     say(&port, "ACK 6 7F3A IDLE");
     say(&port, &reading(7, "1.0"));
@@ -263,7 +263,7 @@ fn after_silence_the_conversation_is_taken_up_before_anything_else() {
     let sent = sent(&port);
     assert_eq!(sent[3..7], vec!["MOVE 4 18 1.000000 1.000000"; 4]);
     assert_eq!(sent[7..], ["HELLO 5", "LIM 6 -2.000000 25.000000 -2000.000 12000.000 120.000000", "MEAS 7 1"]);
-    assert_eq!(device.encode(0.001, 1e-3).unwrap().id, Some(18), "said again under its number, it is not done twice");
+    assert_eq!(device.encode(&[0.001], 1e-3).unwrap().id, Some(18), "said again under its number, it is not done twice");
 }
 
 #[test]
@@ -273,7 +273,7 @@ fn a_hold_is_said_at_once_and_let_go_of_only_with_the_next_move() {
     say(&port, "ACK 3 7F3A HELD");
     device.hold().unwrap();
     assert_eq!(sent(&port)[2..], ["!", "STOP 3"]);
-    let going = device.encode(0.0, 1e-3).unwrap();
+    let going = device.encode(&[0.0], 1e-3).unwrap();
     say(&port, "ACK 4 7F3A IDLE");
     say(&port, "ACK 5 7F3A MOVING");
     device.start(&going).unwrap();
@@ -284,8 +284,8 @@ fn a_hold_is_said_at_once_and_let_go_of_only_with_the_next_move() {
 #[test]
 fn a_hold_by_the_rig_itself_is_not_let_go_of() {
     let (mut device, port) = identified();
-    let going = device.encode(0.001, 1e-3).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
     say(&port, "ERR 3 7F3A HELD");
     assert!(matches!(device.start(&going), Err(DeviceFault::Refused { .. })));
-    assert_eq!(device.encode(0.001, 1e-3).unwrap().frames.len(), 1);
+    assert_eq!(device.encode(&[0.001], 1e-3).unwrap().frames.len(), 1);
 }

@@ -3,7 +3,7 @@
 //! execution when its motion is done, and hears nothing before: `start` waits that long. There is no stop out of band:
 //! holding is `cancel`, heard when the rig next listens. The protocol has no speed: the rig's own is to be below it.
 
-use super::{Answer, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use super::{Answer, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
 use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::nees::{self, Reply};
@@ -108,14 +108,15 @@ impl Device for Nees {
         Ok(DeviceIdentity { model: format!("NEES control point {}{model}", self.control_point), ..DeviceIdentity::default() })
     }
 
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = one_axis(targets)?;
         if !(speed > 0.0 && speed.is_finite()) {
             return Err(DeviceFault::Unfit(format!("nothing moves at {speed} m/s")));
         }
         let transaction = self.next_transaction();
         let (proposal, target) = nees::propose(&transaction, &self.control_point, target)
             .ok_or_else(|| DeviceFault::Unfit(format!("{target} m is no target")))?;
-        Ok(Move { frames: vec![proposal, nees::execute(&transaction)], target, speed, id: None })
+        Ok(Move { frames: vec![proposal, nees::execute(&transaction)], targets: vec![target], speed, id: None })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -127,7 +128,7 @@ impl Device for Nees {
         };
         let wait = self.talk.reply_timeout();
         self.request(proposal, Some(&transaction), wait)?;
-        let way = self.last.map_or(0.0, |last| (going.target - last).abs());
+        let way = self.last.map_or(0.0, |last| (going.targets[0] - last).abs());
         let motion = 2.0 * way / going.speed + self.settling.max(wait);
         self.executing = Some(transaction.clone());
         self.request(execution, Some(&transaction), motion)?;
@@ -153,6 +154,7 @@ impl Device for Nees {
             moving: Some(self.executing.is_some()),
             flags: Flags::default(),
             raw: vec![raw],
+            others: Vec::new(),
         })
     }
 
@@ -165,7 +167,7 @@ impl Device for Nees {
         self.executing.as_deref().map(nees::cancel).unwrap_or_default()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 

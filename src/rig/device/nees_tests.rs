@@ -49,8 +49,8 @@ fn a_session_is_opened_and_read_before_anything_moves_and_closed_at_the_end() {
 #[test]
 fn a_move_is_a_proposal_and_an_execution_that_is_waited_for() {
     let (mut rig, port, clock, _) = opened();
-    let going = rig.encode(0.011, 0.001).unwrap();
-    assert_eq!(going.target, 0.011);
+    let going = rig.encode(&[0.011], 0.001).unwrap();
+    assert_eq!(going.targets[0], 0.011);
     // 10 mm at 1 mm/s: answered after 15 s, waited for 2 · 10 + 5 s.
     port.reply(&[after(0.1, "OK 0 psd-000003")]);
     port.reply(&[after(15.0, "OK 0 psd-000003")]);
@@ -58,7 +58,7 @@ fn a_move_is_a_proposal_and_an_execution_that_is_waited_for() {
     assert!(clock.now() > 15.0);
     assert_eq!(sent(&port)[3..], ["propose psd-000003 MDL-00-01 x displacement 1.1000000000E-02\n", "execute psd-000003\n"]);
     assert!(rig.emergency().is_empty(), "nothing is being executed");
-    let going = rig.encode(0.011, 0.001).unwrap();
+    let going = rig.encode(&[0.011], 0.001).unwrap();
     let began = clock.now();
     port.reply(&[after(0.1, "OK 0 psd-000004")]);
     assert!(matches!(rig.start(&going), Err(DeviceFault::Silent { .. })));
@@ -70,7 +70,7 @@ fn a_move_is_a_proposal_and_an_execution_that_is_waited_for() {
 fn a_proposal_that_is_refused_is_not_executed() {
     for refusal in ["NOT\u{a0}OK", "NOTOK 0", "NOTOK 3 psd-000003 beyond", "ERROR"] {
         let (mut rig, port, ..) = opened();
-        let going = rig.encode(0.002, 0.001).unwrap();
+        let going = rig.encode(&[0.002], 0.001).unwrap();
         port.reply(&[after(0.1, refusal)]);
         assert!(matches!(rig.start(&going), Err(DeviceFault::Refused { .. })), "{refusal}");
         assert_eq!(sent(&port).len(), 4, "one proposal, no execution");
@@ -109,14 +109,14 @@ fn holding_cancels_what_is_being_executed_and_says_nothing_at_rest() {
     let (mut rig, port, _, wish) = opened();
     rig.hold().unwrap();
     assert_eq!(sent(&port).len(), 3);
-    let going = rig.encode(0.011, 0.001).unwrap();
+    let going = rig.encode(&[0.011], 0.001).unwrap();
     port.reply(&[after(0.1, "OK 0 psd-000003")]);
     wish.hold_now();
     assert_eq!(rig.start(&going), Err(DeviceFault::Interrupted));
     rig.hold().unwrap();
     assert_eq!(sent(&port).len(), 4, "not executed: nothing to cancel");
     wish.heed();
-    let going = rig.encode(0.011, 0.001).unwrap();
+    let going = rig.encode(&[0.011], 0.001).unwrap();
     port.reply(&[after(0.1, "OK 0 psd-000003"), after(0.1, "OK 0 psd-000004")]);
     assert!(matches!(rig.start(&going), Err(DeviceFault::Silent { .. })));
     assert_eq!(rig.sample(), Err(DeviceFault::Silent { seconds: T }), "it hears nothing yet");
@@ -130,7 +130,7 @@ fn holding_cancels_what_is_being_executed_and_says_nothing_at_rest() {
 #[test]
 fn the_late_answer_to_an_execution_says_that_it_is_over() {
     let (mut rig, port, ..) = opened();
-    let going = rig.encode(0.002, 0.001).unwrap();
+    let going = rig.encode(&[0.002], 0.001).unwrap();
     port.reply(&[after(0.1, "OK 0 psd-000003")]);
     assert!(matches!(rig.start(&going), Err(DeviceFault::Silent { .. })));
     let reading = "OK 0 psd-000004 MDL-00-01 x displacement 2.0E-03 x force 2.0E+02";
@@ -144,7 +144,7 @@ fn the_late_answer_to_an_execution_says_that_it_is_over() {
 fn targets_and_names_that_cannot_be_said_are_refused() {
     let (mut rig, ..) = opened();
     for (target, speed) in [(f64::NAN, 1e-3), (f64::INFINITY, 1e-3), (0.0, 0.0), (0.0, f64::NAN)] {
-        assert!(matches!(rig.encode(target, speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
+        assert!(matches!(rig.encode(&[target], speed), Err(DeviceFault::Unfit(_))), "{target} {speed}");
     }
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);

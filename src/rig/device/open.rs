@@ -50,7 +50,7 @@ mod tests {
             };
             let port = ScriptedPort::new(&clock);
             let mut device = open(&link, Box::new(port.clone()), Box::new(clock.clone()), Wish::default(), 10.0);
-            assert_eq!(device.encode(0.001, 1e-3).is_ok(), moves, "{}", link.dialect.name());
+            assert_eq!(device.encode(&[0.001], 1e-3).is_ok(), moves, "{}", link.dialect.name());
             assert!(port.sent().is_empty());
             assert_eq!(device.emergency().is_empty(), !moves);
         }

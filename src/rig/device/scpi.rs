@@ -93,7 +93,7 @@ impl Device for ScpiDevice {
         Ok(DeviceIdentity { model, serial: who.serial, firmware: who.firmware, boot: None, simulated })
     }
 
-    fn encode(&mut self, _: f64, _: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
         Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
     }
 
@@ -121,7 +121,7 @@ impl Device for ScpiDevice {
         Vec::new()
     }
 
-    fn narrow_limits(&mut self, _: &Limits) -> Result<(), DeviceFault> {
+    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
         Ok(())
     }
 
@@ -202,6 +202,6 @@ mod tests {
         let began = device.talk.now();
         assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
         assert!(device.talk.now() - began < 10.0 * 0.5);
-        assert!(device.encode(0.0, 1.0).is_err());
+        assert!(device.encode(&[0.0], 1.0).is_err());
     }
 }

@@ -2,7 +2,8 @@
 //! is. It keeps no conversation: which reply answers which request is the driver's business.
 //!
 //! # The protocol
-//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request is at most 96 bytes with its ending, a reply at most 512.
+//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request is at most 96 bytes with its ending, of a rig of several
+//! axes 512; a reply at most 512.
 //!
 //! ```text
 //! request = ">" VERB  SP SEQ          *(SP word) "*" CRC LF
@@ -16,16 +17,19 @@
 //! A frame that is broken is not answered. The rig keeps its last reply: the same SEQ again is answered by it and does
 //! nothing; any other than the next is `ERR SEQ`. HELLO is taken with every SEQ, is carried out each time, and sets SEQ.
 //!
+//! A rig has 1 to 6 axes. What stands in braces is said for each axis in turn, the first one first, so that a rig of one
+//! axis says each once; how many axes it has is told by the number of words of its reply to HELLO.
+//!
 //! | Request | Reply |
 //! |---|---|
-//! | `HELLO` | `ACK model serial firmware d_low d_high f_low f_high v_high last_id last_target`: the rig's own limits and the last move it began (id 0: none since power-up). The limits of a run are gone after it. |
-//! | `LIM d_low d_high f_low f_high v_high` | `ACK state`: the limits of this run. Wider than the rig's own: `ERR LIMIT`. |
-//! | `MOVE id target rate` | `ACK state`: goes to the absolute target. An id is greater than every one before. The last id with its target again: `ACK` without motion; with another target, or an older id: `ERR ID`. |
-//! | `MEAS n` | `DATA t disp force raw flags state`: the median of n readings of each channel. |
-//! | `STAT` | `ACK state flags` |
-//! | `STOP` | `ACK HELD`: stops, keeps the load, and stays held until `CLR`. |
+//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move it began (id 0: none since power-up). The limits of a run are gone after it. |
+//! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Wider than the rig's own: `ERR LIMIT`. |
+//! | `MOVE id {target} rate` | `ACK state`: all axes go to their absolute targets together, and arrive together, the one with the farthest way at the rate. An id is greater than every one before. The last id with its targets again: `ACK` without motion; with others, or an older id: `ERR ID`. |
+//! | `MEAS n` | `DATA t {disp force raw flags} state`: the median of n readings of each channel. |
+//! | `STAT` | `ACK state flags`: a bit is set where it is of any axis. |
+//! | `STOP` | `ACK HELD`: stops all axes, keeps the load, and stays held until `CLR`. |
 //! | `CLR` | `ACK state`: lets go of a latched hold. Nothing moves. |
-//! | `REF token` | `ACK state`: its position is to be trusted from now on; the token is whose word that is. |
+//! | `REF token` | `ACK state`: its position is to be trusted from now on, of all axes; the token is whose word that is. |
 //!
 //! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3
 //! lower limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` carries
@@ -41,28 +45,58 @@ use crate::rig::LastMove;
 use crate::rig::device::Flags;
 use crate::rig::failpoint::{Guarding, on};
 
-/// Longest request with its ending, bytes.
+/// Longest request with its ending, bytes: of one axis, of several.
 pub const LONGEST_FRAME: usize = 96;
+pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
+
+/// Axes of a rig, at most: the reply to HELLO is no longer than a reply may be.
+pub const MOST_AXES: usize = 6;
 
 /// What is asked. Lengths m, speeds m/s, forces N.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request<'a> {
     Hello,
     Limits(&'a Bounds),
-    Move { id: u64, target: f64, speed: f64 },
-    Measure { readings: u32 },
+    /// Targets of every axis.
+    Move {
+        id: u64,
+        targets: &'a [f64],
+        speed: f64,
+    },
+    Measure {
+        readings: u32,
+    },
     Status,
     Stop,
     Clear,
-    Reference { token: &'a str },
+    Reference {
+        token: &'a str,
+    },
 }
 
-/// What a rig keeps to: m, N, m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a rig keeps to.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
+    /// One entry an axis.
+    pub axes: Vec<AxisBounds>,
+    /// m/s, of the axis that is fastest.
+    pub top_speed: f64,
+}
+
+/// What one axis keeps to: m, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisBounds {
     pub displacement: Interval,
     pub force: Interval,
-    pub top_speed: f64,
+}
+
+impl Bounds {
+    /// Whether every axis has a place to stand, and a speed to go at.
+    #[must_use]
+    pub fn allow_something(&self) -> bool {
+        let some = |bounds: Interval| bounds.low <= bounds.high;
+        self.top_speed > 0.0 && self.axes.iter().all(|axis| some(axis.displacement) && some(axis.force))
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,28 +139,44 @@ pub enum State {
     Held,
 }
 
-/// A reading: s, m, N.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A reading of every axis.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Data {
+    /// s
     pub time: f64,
+    pub axes: Vec<AxisData>,
+    pub state: State,
+}
+
+/// What one axis says: m, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisData {
     pub displacement: f64,
     pub force: f64,
     pub raw: i64,
     pub flags: Flags,
-    pub state: State,
 }
 
 /// The frame of a request; nothing where one of its numbers cannot be said or it would be too long.
 #[must_use]
 pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
+    let mut longest = LONGEST_FRAME;
+    let mut several = |axes: usize| {
+        if axes > 1 {
+            longest = LONGEST_FRAME_OF_SEVERAL;
+        }
+    };
     let body = match request {
         Request::Hello => format!("HELLO {sequence}"),
         Request::Limits(bounds) => {
-            let (low, high) = (length(bounds.displacement.low)?, length(bounds.displacement.high)?);
-            let (least, most) = (number::write(bounds.force.low, 3)?, number::write(bounds.force.high, 3)?);
-            format!("LIM {sequence} {low} {high} {least} {most} {}", length(bounds.top_speed)?)
+            several(bounds.axes.len());
+            let axes: Vec<String> = bounds.axes.iter().map(bounds_of).collect::<Option<_>>()?;
+            format!("LIM {sequence} {} {}", axes.join(" "), length(bounds.top_speed)?)
         }
-        Request::Move { id, target, speed } => format!("MOVE {sequence} {id} {} {}", length(*target)?, length(*speed)?),
+        Request::Move { id, targets, speed } => {
+            several(targets.len());
+            format!("MOVE {sequence} {id} {} {}", lengths(targets)?, length(*speed)?)
+        }
         Request::Measure { readings } => format!("MEAS {sequence} {readings}"),
         Request::Status => format!("STAT {sequence}"),
         Request::Stop => format!("STOP {sequence}"),
@@ -137,7 +187,20 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
         }
     };
     let frame = format!(">{body}*{:04X}\n", checksum(body.as_bytes()));
-    (frame.len() <= LONGEST_FRAME).then(|| frame.into_bytes())
+    (frame.len() <= longest).then(|| frame.into_bytes())
+}
+
+/// `d_low d_high f_low f_high`
+fn bounds_of(axis: &AxisBounds) -> Option<String> {
+    let (low, high) = (length(axis.displacement.low)?, length(axis.displacement.high)?);
+    let (least, most) = (number::write(axis.force.low, 3)?, number::write(axis.force.high, 3)?);
+    Some(format!("{low} {high} {least} {most}"))
+}
+
+/// Lengths after each other.
+pub(crate) fn lengths(values: &[f64]) -> Option<String> {
+    let words: Vec<String> = values.iter().map(|value| length(*value)).collect::<Option<_>>()?;
+    Some(words.join(" "))
 }
 
 /// The sequence number of a frame to be sent.
@@ -191,31 +254,47 @@ pub fn hello(words: &[String]) -> Option<Hello> {
     if words.iter().any(String::is_empty) {
         return None;
     }
-    let [low, high, least, most, top_speed, id, target] = numbers else { return None };
-    let (id, target) = (number::count(id.as_bytes())?, millimetres(target)?);
-    let bounds = Bounds {
-        displacement: Interval { low: millimetres(low)?, high: millimetres(high)? },
-        force: Interval { low: number::fixed(least.as_bytes())?, high: number::fixed(most.as_bytes())? },
-        top_speed: millimetres(top_speed)?,
+    // For each axis four limits and a target, and two words for all.
+    let axes = numbers.len().checked_sub(2).filter(|words| words.is_multiple_of(5)).map(|words| words / 5)?;
+    if !(1..=MOST_AXES).contains(&axes) {
+        return None;
+    }
+    let (limits, rest) = numbers.split_at(4 * axes);
+    let [top_speed, id, targets @ ..] = rest else { return None };
+    let axis = |words: &[String]| {
+        let [low, high, least, most] = words else { return None };
+        Some(AxisBounds {
+            displacement: Interval { low: millimetres(low)?, high: millimetres(high)? },
+            force: Interval { low: number::fixed(least.as_bytes())?, high: number::fixed(most.as_bytes())? },
+        })
     };
-    let last = (id > 0).then_some(LastMove { id, target });
+    let axes = limits.chunks_exact(4).map(axis).collect::<Option<_>>()?;
+    let bounds = Bounds { axes, top_speed: millimetres(top_speed)? };
+    let id = number::count(id.as_bytes())?;
+    let targets = targets.iter().map(|target| millimetres(target)).collect::<Option<_>>()?;
+    let last = (id > 0).then_some(LastMove { id, targets });
     Some(Hello { model: model.clone(), serial: serial.clone(), firmware: firmware.clone(), bounds, last })
 }
 
 /// The reading of a `DATA` reply.
 #[must_use]
 pub fn data(words: &[String]) -> Option<Data> {
-    let [time, displacement, force, raw, flags, state] = words else { return None };
+    let [time, axes @ .., state] = words else { return None };
+    if axes.is_empty() || !axes.len().is_multiple_of(4) {
+        return None;
+    }
     #[expect(clippy::cast_precision_loss, reason = "ms since power-up")]
     let time = number::count(time.as_bytes())? as f64 / 1e3;
-    Some(Data {
-        time,
-        displacement: millimetres(displacement)?,
-        force: number::fixed(force.as_bytes())?,
-        raw: number::whole(raw.as_bytes())?,
-        flags: self::flags(flags)?,
-        state: self::state(state)?,
-    })
+    let axis = |words: &[String]| {
+        let [displacement, force, raw, flags] = words else { return None };
+        Some(AxisData {
+            displacement: millimetres(displacement)?,
+            force: number::fixed(force.as_bytes())?,
+            raw: number::whole(raw.as_bytes())?,
+            flags: self::flags(flags)?,
+        })
+    };
+    Some(Data { time, axes: axes.chunks_exact(4).map(axis).collect::<Option<_>>()?, state: self::state(state)? })
 }
 
 /// mm as m.

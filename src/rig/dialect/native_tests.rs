@@ -17,15 +17,15 @@ fn words(body: &str) -> Vec<String> {
 #[test]
 fn the_vectors_of_the_specification() {
     assert_eq!(checksum(b"123456789"), 0x29b1);
-    let moving = Request::Move { id: 17, target: 1.25e-3, speed: 0.5e-3 };
+    let moving = Request::Move { id: 17, targets: &[1.25e-3], speed: 0.5e-3 };
     assert_eq!(frame(41, &moving).unwrap(), b">MOVE 41 17 1.250000 0.500000*6858\n");
     assert_eq!(frame(42, &Request::Measure { readings: 5 }).unwrap(), b">MEAS 42 5*5976\n");
     let accepted = reply(ACK).unwrap();
     assert_eq!((accepted.kind, accepted.sequence, accepted.boot.as_str()), (Kind::Ack, 41, "7F3A"));
     assert_eq!(state(&accepted.words[0]), Some(State::Moving));
     let read = data(&reply(DATA).unwrap().words).unwrap();
-    assert_eq!((read.time, read.displacement, read.force, read.raw), (118.203, 1.249_871e-3, 512.375, 812_344));
-    assert_eq!((read.flags, read.state), (Flags::default(), State::Idle));
+    let axis = AxisData { displacement: 1.249_871e-3, force: 512.375, raw: 812_344, flags: Flags::default() };
+    assert_eq!((read.time, read.axes, read.state), (118.203, vec![axis], State::Idle));
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn each_request_says_its_verb() {
         frame[1..].split('*').next().unwrap().to_owned()
     };
     let (displacement, force) = (Interval { low: -0.002, high: 0.025 }, Interval { low: -2000.0, high: 12_000.0 });
-    let bounds = Bounds { displacement, force, top_speed: 0.12 };
+    let bounds = Bounds { axes: vec![AxisBounds { displacement, force }], top_speed: 0.12 };
     assert_eq!(body(Request::Hello), "HELLO 7");
     assert_eq!(body(Request::Limits(&bounds)), "LIM 7 -2.000000 25.000000 -2000.000 12000.000 120.000000");
     assert_eq!(body(Request::Status), "STAT 7");
@@ -47,7 +47,7 @@ fn each_request_says_its_verb() {
 
 #[test]
 fn what_cannot_be_said_is_not_said() {
-    let target = |target| frame(1, &Request::Move { id: 1, target, speed: 1e-3 });
+    let target = |target| frame(1, &Request::Move { id: 1, targets: &[target], speed: 1e-3 });
     assert!(target(0.0).is_some());
     assert_eq!((target(f64::NAN), target(f64::INFINITY), target(1e60)), (None, None, None));
     assert_eq!(frame(1, &Request::Reference { token: "two words" }), None);
@@ -59,9 +59,9 @@ fn a_rig_says_who_it_is() {
     let said = "PSD-BENCH 0042 1.3 -2.000000 25.000000 -2000.000 12000.000 120.000000 17 1.250000";
     let rig = hello(&words(said)).unwrap();
     assert_eq!((rig.model.as_str(), rig.serial.as_str(), rig.firmware.as_str()), ("PSD-BENCH", "0042", "1.3"));
-    assert_eq!((rig.bounds.displacement.low, rig.bounds.displacement.high), (-0.002, 0.025));
-    assert_eq!((rig.bounds.force.low, rig.bounds.force.high, rig.bounds.top_speed), (-2000.0, 12_000.0, 0.12));
-    assert_eq!(rig.last, Some(LastMove { id: 17, target: 1.25e-3 }));
+    let (displacement, force) = (Interval { low: -0.002, high: 0.025 }, Interval { low: -2000.0, high: 12_000.0 });
+    assert_eq!(rig.bounds, Bounds { axes: vec![AxisBounds { displacement, force }], top_speed: 0.12 });
+    assert_eq!(rig.last, Some(LastMove { id: 17, targets: vec![1.25e-3] }));
     assert_eq!(hello(&words(&said.replace("17 1.25", "0 0.00"))).unwrap().last, None);
     assert_eq!(hello(&words(&said.replace("25.000000", "inf"))), None);
     assert_eq!(hello(&words(&said.replace(" 0042", ""))), None);
@@ -88,7 +88,7 @@ fn without_its_checksum_a_false_number_would_pass() {
     let at = DATA.iter().position(|byte| *byte == b'5').unwrap();
     flipped[at] = b'9';
     assert_eq!(reply(&flipped), Err(Broken::Checksum));
-    let force = without(Guarding::Checksum, || data(&reply(&flipped).unwrap().words).unwrap().force);
+    let force = without(Guarding::Checksum, || data(&reply(&flipped).unwrap().words).unwrap().axes[0].force);
     assert_eq!(force, 912.375);
 }
 

@@ -48,6 +48,7 @@ pub(super) fn plan_of(procedures: Vec<ProcedureKind>) -> Plan {
         },
         watchdog: 3.0,
         own_speed: 0.01,
+        axes: Vec::new(),
     });
     plan.limits = Limits {
         displacement: Interval { low: -0.002, high: 0.01 },

@@ -1,5 +1,5 @@
-//! A rig that moves a real specimen. In: targets, and one or two devices. Out: settled readings in the plan's sign, each
-//! judged; whatever goes wrong holds the rig. It knows no dialect and no procedure; what a procedure may ask for is the
+//! A rig that moves a real specimen. In: targets, one an axis, and one or two devices. Out: settled readings in the plan's
+//! sign, each axis judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
 mod motion;
@@ -9,7 +9,7 @@ mod settle;
 mod stroke;
 mod validity;
 
-use crate::plan::{Calibration, Limits, RealLink, Settle};
+use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
 
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
@@ -20,13 +20,11 @@ use validity::Judge;
 /// What six decimals of a millimetre cannot say, m.
 const WIRE_ROUNDING: f64 = 0.5e-9;
 
-/// An actuator and what weighs what it bends.
+/// Actuators and what weighs what they bend.
 pub struct RealRig {
     link: RealLink,
     settle: Settle,
-    limits: Limits,
-    /// +1 or −1: how displacement and force of the devices count in the plan.
-    sign: f64,
+    axes: Vec<Axis>,
     calibration: Calibration,
     identity: Identity,
     actuator: Box<dyn Device>,
@@ -37,9 +35,6 @@ pub struct RealRig {
     began: f64,
     /// The clock when the devices were last heard, s.
     heard: f64,
-    judge: Judge,
-    /// The last reading on the way was outside a limit.
-    outside: bool,
     proposed: Option<Proposed>,
     reread: u64,
     /// Why its position is not to be trusted.
@@ -48,14 +43,25 @@ pub struct RealRig {
     deaf: bool,
 }
 
+/// One actuator with its load cell.
+struct Axis {
+    /// +1 or −1: how displacement and force of the devices count in the plan.
+    sign: f64,
+    limits: Limits,
+    rules: ReadingRules,
+    judge: Judge,
+    /// The last reading on the way was outside a limit.
+    outside: bool,
+}
+
 /// A move that was offered and not yet sent.
 #[derive(Clone, Debug)]
 struct Proposed {
     going: Move,
     /// m, in the plan's sign.
-    target: f64,
+    targets: Vec<f64>,
     /// Where it stood when it was offered, m.
-    from: f64,
+    from: Vec<f64>,
 }
 
 impl RealRig {
@@ -101,6 +107,16 @@ impl RealRig {
     }
 }
 
+/// As a sentence has it.
+fn degrees_of_freedom(count: usize) -> String {
+    if count == 1 { "one degree of freedom".to_owned() } else { format!("{count} degrees of freedom") }
+}
+
+/// m, after each other.
+fn places(places: &[f64]) -> String {
+    places.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+}
+
 /// Which device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -114,7 +130,7 @@ impl Rig for RealRig {
     }
 
     fn degrees_of_freedom(&self) -> usize {
-        1
+        self.axes.len()
     }
 
     fn time(&self) -> f64 {
@@ -126,28 +142,37 @@ impl Rig for RealRig {
         if let Some(reason) = &self.untrusted {
             return Err(RigFault::Device(format!("not moved any more: {reason}")));
         }
-        let target = match targets {
-            [target] if target.is_finite() => *target,
-            [target] => return Err(RigFault::Device(format!("the target {target} m is no place"))),
-            _ => return Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", targets.len()))),
-        };
+        if targets.len() != self.axes.len() {
+            let reason = format!("this rig has {}, not {}", degrees_of_freedom(self.axes.len()), targets.len());
+            return Err(RigFault::Device(reason));
+        }
+        if let Some(target) = targets.iter().find(|target| !target.is_finite()) {
+            return Err(RigFault::Device(format!("the target {target} m is no place")));
+        }
         let speed = speed.unwrap_or(self.link.own_speed);
         // Asked before the bytes are made, for between them and their sending nothing is asked.
         // What it says of itself there may be a reason to hold, as anywhere.
         let polled = self.poll();
         let from = self.or_hold(polled)?.displacement;
-        let going = self.actuator.encode(self.sign * target, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
-        let said = self.sign * going.target;
+        let turned: Vec<f64> = self.axes.iter().zip(targets).map(|(axis, target)| axis.sign * target).collect();
+        let going = self.actuator.encode(&turned, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let said: Vec<f64> = self.axes.iter().zip(&going.targets).map(|(axis, target)| axis.sign * target).collect();
         // What the devices resolve is as near as they can say it.
-        let allowed = WIRE_ROUNDING.max(self.link.readings.resolution / 2.0) * (1.0 + 1e-6);
-        let error = (said - target).abs();
-        let apt = error <= allowed && going.speed > 0.0 && going.speed.is_finite();
+        let apt = |(axis, (said, target)): (&Axis, (&f64, &f64))| {
+            let allowed = WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6);
+            (said - target).abs() <= allowed
+        };
+        let apt = going.speed > 0.0
+            && going.speed.is_finite()
+            && said.len() == targets.len()
+            && self.axes.iter().zip(said.iter().zip(targets)).all(apt);
         if on(Guarding::WireNumber) && !apt {
-            let reason = format!("asked for {target} m, the bytes say {said} m at {} m/s: not sent", going.speed);
+            let [asked, said] = [targets, &said].map(places);
+            let reason = format!("asked for {asked} m, the bytes say {said} m at {} m/s: not sent", going.speed);
             return Err(RigFault::Device(reason));
         }
-        let offer = Offer { targets: vec![said], speed: going.speed, wire: going.frames.concat(), move_id: going.id };
-        self.proposed = Some(Proposed { going, target, from });
+        let offer = Offer { targets: said, speed: going.speed, wire: going.frames.concat(), move_id: going.id };
+        self.proposed = Some(Proposed { going, targets: targets.to_vec(), from });
         Ok(offer)
     }
 
@@ -186,12 +211,13 @@ impl Rig for RealRig {
     }
 
     fn declared_noise(&self) -> DeclaredNoise {
-        DeclaredNoise { force: self.link.readings.noise, resolution: self.link.readings.resolution }
+        let largest = |of: fn(&ReadingRules) -> f64| self.axes.iter().map(|axis| of(&axis.rules)).fold(0.0, f64::max);
+        DeclaredNoise { force: largest(|rules| rules.noise), resolution: largest(|rules| rules.resolution) }
     }
 
     fn last_move(&self) -> Option<LastMove> {
         let last = self.actuator.last_move()?;
-        Some(LastMove { target: self.sign * last.target, ..last })
+        Some(LastMove { id: last.id, targets: self.axes.iter().zip(&last.targets).map(|(axis, at)| axis.sign * at).collect() })
     }
 
     fn tally(&self) -> Tally {

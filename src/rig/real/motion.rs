@@ -6,21 +6,22 @@ use super::settle::Settling;
 use super::{Part, Proposed, RealRig};
 use crate::rig::device::SLICE;
 use crate::rig::failpoint::{Guarding, on};
-use crate::rig::{LimitedQuantity, RigFault};
+use crate::rig::{LimitedQuantity, RigFault, named_axis};
 
 impl RealRig {
     /// Sends the offered move and waits until settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
-        let (target, seconds) = self.set_off()?;
+        let (targets, seconds) = self.set_off()?;
         let arrival = self.clock.now() + seconds;
-        let mut settling = Settling::new(self.settle, target);
+        let mut settling = Settling::of(self.settle, &targets);
         let mut rested = None;
         loop {
             let point = self.poll()?;
             let now = self.clock.now();
             self.watch(&point)?;
+            let astray = first_astray(&settling, &point);
             // One that cannot say whether it moves, or says so before it has begun, is given the time that the way takes.
-            let there = point.moving == Some(false) && settling.in_position(point.displacement);
+            let there = point.moving == Some(false) && astray.is_none();
             let rests = there || point.moving != Some(true) && now >= arrival;
             if rests {
                 rested.get_or_insert(now);
@@ -29,16 +30,15 @@ impl RealRig {
             if !on(Guarding::Settling) && rests {
                 return Ok(());
             }
-            if settling.met(now, point.displacement, point.force, steady) {
-                return Ok(());
-            }
+            let readings = settling.iter_mut().zip(point.displacement.iter().zip(&point.force));
+            let met: Vec<bool> = readings.map(|(axis, (x, force))| axis.met(now, *x, *force, steady)).collect();
+            let Some(unmet) = met.iter().position(|met| !met) else { return Ok(()) };
             if now - rested.unwrap_or(arrival) > self.settle.timeout {
-                let error = (point.displacement - target).abs();
-                return match rested {
-                    Some(_) if settling.in_position(point.displacement) => Err(self.unsettled()),
-                    Some(_) if on(Guarding::Following) => Err(RigFault::Following { error, band: self.settle.band }),
-                    Some(_) => Ok(()),
-                    None => Err(self.unsettled()),
+                return match (rested, astray) {
+                    (Some(_), Some(axis)) if on(Guarding::Following) => Err(self.following(axis, &point, &targets)),
+                    (Some(_), Some(_)) => Ok(()),
+                    (Some(_), None) => Err(self.unsettled(Some(unmet))),
+                    (None, axis) => Err(self.unsettled(axis)),
                 };
             }
             self.wait_until(now + self.period())?;
@@ -59,16 +59,18 @@ impl RealRig {
 
     /// Holds a reading on the way against the limits: the settled one would come too late. One alone may be a spike.
     pub(super) fn watch(&mut self, point: &Point) -> Result<(), RigFault> {
-        let displacement = (LimitedQuantity::MeasuredDisplacement, self.limits.displacement, point.displacement);
-        let force = (LimitedQuantity::Force, self.limits.force, point.force);
-        let breach = [displacement, force].into_iter().find(|(_, limit, value)| !limit.contains(*value));
-        let again = std::mem::replace(&mut self.outside, breach.is_some());
-        match breach {
-            Some((quantity, limit, value)) if again && on(Guarding::ReadingLimits) => {
-                Err(RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high })
-            }
-            _ => Ok(()),
+        let count = self.axes.len();
+        let mut found = None;
+        for (place, axis) in self.axes.iter_mut().enumerate() {
+            let displacement = (LimitedQuantity::MeasuredDisplacement, axis.limits.displacement, point.displacement[place]);
+            let force = (LimitedQuantity::Force, axis.limits.force, point.force[place]);
+            let breach = [displacement, force].into_iter().find(|(_, limit, value)| !limit.contains(*value));
+            let again = std::mem::replace(&mut axis.outside, breach.is_some());
+            found = found.or(breach.filter(|_| again && on(Guarding::ReadingLimits)).map(|(quantity, limit, value)| {
+                RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high, axis: named_axis(place, count) }
+            }));
         }
+        found.map_or(Ok(()), Err)
     }
 
     /// Waits without asking anything.
@@ -86,18 +88,34 @@ impl RealRig {
         }
     }
 
-    /// Sends the offered move. Gives its target (m) and the time the way takes, s.
-    pub(super) fn set_off(&mut self) -> Result<(f64, f64), RigFault> {
+    /// Sends the offered move. Gives its targets (m) and the time the farthest way takes, s.
+    pub(super) fn set_off(&mut self) -> Result<(Vec<f64>, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
-        let Proposed { going, target, from } = self.proposed.take().ok_or_else(nothing)?;
+        let Proposed { going, targets, from } = self.proposed.take().ok_or_else(nothing)?;
         self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         self.deaf = false;
-        self.outside = false;
+        for axis in &mut self.axes {
+            axis.outside = false;
+        }
         self.look_up()?;
-        Ok((target, (target - from).abs() / going.speed))
+        let farthest = targets.iter().zip(&from).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+        Ok((targets, farthest / going.speed))
     }
 
-    pub(super) const fn unsettled(&self) -> RigFault {
-        RigFault::NotSettled { timeout: self.settle.timeout }
+    /// It says that it has arrived, and the axis at this place stands elsewhere.
+    pub(super) fn following(&self, place: usize, point: &Point, targets: &[f64]) -> RigFault {
+        let error = (point.displacement[place] - targets[place]).abs();
+        RigFault::Following { error, band: self.settle.band, axis: named_axis(place, self.axes.len()) }
     }
+
+    /// Too late; the axis at `place` is the first of those that kept it waiting, where that is known.
+    pub(super) fn unsettled(&self, place: Option<usize>) -> RigFault {
+        let axis = place.and_then(|place| named_axis(place, self.axes.len()));
+        RigFault::NotSettled { timeout: self.settle.timeout, axis }
+    }
+}
+
+/// The first axis that is not in position.
+pub(super) fn first_astray(settling: &[Settling], point: &Point) -> Option<usize> {
+    settling.iter().zip(&point.displacement).position(|(axis, displacement)| !axis.in_position(*displacement))
 }

@@ -2,11 +2,11 @@
 //! and has been read once, or why not. Nothing moves.
 
 use super::validity::Judge;
-use super::{Part, RealRig};
+use super::{Axis, Part, RealRig, degrees_of_freedom};
 use crate::plan::{DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
 use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::port::Clock;
-use crate::rig::{Identity, Rig as _, RigFault, Wish};
+use crate::rig::{Identity, Rig as _, RigFault, Wish, named_axis};
 
 impl RealRig {
     /// Asks both devices who they are, tells them the limits, and reads once.
@@ -25,8 +25,7 @@ impl RealRig {
         let began = clock.now();
         let mut rig = Self {
             settle: plan.settle,
-            limits: *limits,
-            sign: plan.sign,
+            axes: axes(plan, &link, limits),
             calibration: plan.calibration.clone(),
             identity: nobody(&plan.name),
             actuator,
@@ -35,8 +34,6 @@ impl RealRig {
             wish,
             began,
             heard: began,
-            judge: Judge::default(),
-            outside: false,
             proposed: None,
             reread: 0,
             untrusted: None,
@@ -44,7 +41,8 @@ impl RealRig {
             link,
         };
         rig.meet()?;
-        rig.narrow(limits)?;
+        rig.count_axes()?;
+        rig.narrow()?;
         rig.heard = rig.clock.now();
         if rig.poll()?.moving == Some(true) {
             rig.hold();
@@ -78,18 +76,48 @@ impl RealRig {
         Ok(())
     }
 
+    /// Whether the devices have as many axes as the plan says, no more and no less.
+    fn count_axes(&mut self) -> Result<(), RigFault> {
+        let wanted = self.axes.len();
+        let cell = self.load_cell.as_ref().map(|cell| (Part::LoadCell, cell.axes()));
+        let other = [Some((Part::Actuator, self.actuator.axes())), cell].into_iter().flatten().find(|(_, axes)| *axes != wanted);
+        other.map_or(Ok(()), |(part, axes)| {
+            let wanted = degrees_of_freedom(wanted);
+            Err(self.told(part, &DeviceFault::Unfit(format!("it has {axes}, and the plan's rig is of {wanted}"))))
+        })
+    }
+
     /// Tells the devices the limits, in their own sign.
-    fn narrow(&mut self, limits: &Limits) -> Result<(), RigFault> {
-        let turned = |interval: Interval| {
-            if self.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
-        };
-        let own = Limits { displacement: turned(limits.displacement), force: turned(limits.force), ..*limits };
+    fn narrow(&mut self) -> Result<(), RigFault> {
+        let own: Vec<Limits> = self.axes.iter().map(Axis::limits_at_the_device).collect();
         self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, &fault))?;
         if let Some(cell) = &mut self.load_cell {
             cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, &fault))?;
         }
         Ok(())
     }
+}
+
+impl Axis {
+    fn limits_at_the_device(&self) -> Limits {
+        let turned = |interval: Interval| {
+            if self.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
+        };
+        Limits { displacement: turned(self.limits.displacement), force: turned(self.limits.force), ..self.limits }
+    }
+}
+
+/// What the plan says of each axis.
+fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
+    let count = plan.axes().unwrap_or(1);
+    let axis = |place| Axis {
+        sign: plan.sign_of(place),
+        limits: plan.limits_of(place, limits),
+        rules: link.readings_of(place),
+        judge: Judge::of_axis(named_axis(place, count)),
+        outside: false,
+    };
+    (0..count).map(axis).collect()
 }
 
 /// Whether nothing measures where the actuator is.

@@ -3,7 +3,7 @@
 
 use super::validity::{Invalid, Said};
 use super::{Part, RealRig};
-use crate::rig::device::{DeviceFault, Flags, Force, Sample};
+use crate::rig::device::{Channel, DeviceFault, Flags, Force, Sample};
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
 
@@ -15,10 +15,10 @@ const REREADS: u32 = 3;
 pub(super) struct Point {
     /// Rig time, s.
     pub(super) time: f64,
-    /// m
-    pub(super) displacement: f64,
-    /// N
-    pub(super) force: f64,
+    /// One an axis, m.
+    pub(super) displacement: Vec<f64>,
+    /// One an axis, N.
+    pub(super) force: Vec<f64>,
     /// Whether the actuator says it still moves.
     pub(super) moving: Option<bool>,
     /// A device itself says its reading has not settled.
@@ -63,13 +63,19 @@ impl RealRig {
             forces.push(point.force);
             raw.extend(point.raw);
         }
-        Ok(Reading { time, displacement: vec![representative(displacements)], force: vec![representative(forces)], raw })
+        Ok(Reading { time, displacement: self.medians(&displacements), force: self.medians(&forces), raw })
+    }
+
+    /// The median of each axis.
+    fn medians(&self, readings: &[Vec<f64>]) -> Vec<f64> {
+        let of_axis = |axis: usize| readings.iter().map(|reading| reading[axis]).collect();
+        (0..self.axes.len()).map(|axis| representative(of_axis(axis))).collect()
     }
 
     /// A reading on the way: one, not a median.
     pub(super) fn reading_now(&mut self) -> Result<Reading, RigFault> {
         let Point { time, displacement, force, raw, .. } = self.poll()?;
-        Ok(Reading { time, displacement: vec![displacement], force: vec![force], raw })
+        Ok(Reading { time, displacement, force, raw })
     }
 
     /// s between two polls.
@@ -101,23 +107,33 @@ impl RealRig {
                 let weighed = cell.sample();
                 self.sampled(Part::LoadCell, weighed, raw)?
             }
-            None => Sample { force: moved.force, ..Sample::default() },
+            None => moved.clone(),
         };
-        let lacks = |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
-        let displacement = moved.displacement.ok_or_else(|| lacks("displacement"))?;
-        let original = weighed.force.ok_or_else(|| lacks("force"))?;
-        let force = self.newtons(original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
-        let flags = either(moved.flags, weighed.flags);
-        let said = Said { displacement, force, original, flags, device_time: moved.time };
-        self.judge.judge(&said, &self.link.readings).map_err(|invalid| self.refuse(invalid))?;
-        Ok(Point {
-            time: self.clock.now() - self.began,
-            displacement: self.sign * displacement,
-            force: self.sign * force,
-            moving: moved.moving,
-            unsettled: flags.unsettled,
-            raw: Vec::new(),
-        })
+        let (places, forces): (Vec<Channel>, Vec<Channel>) = (moved.axes().collect(), weighed.axes().collect());
+        if places.len() != self.axes.len() || forces.len() != self.axes.len() {
+            let (found, wanted) = (places.len().min(forces.len()), self.axes.len());
+            return Err(Unusable::Fault(RigFault::Device(format!("an answer of {found} axes, the rig has {wanted}"))));
+        }
+        let time = self.clock.now() - self.began;
+        let (displacement, force) = (Vec::with_capacity(places.len()), Vec::with_capacity(places.len()));
+        let mut point = Point { time, displacement, force, moving: moved.moving, unsettled: false, raw: Vec::new() };
+        for (place, (moved_axis, weighed_axis)) in places.iter().zip(&forces).enumerate() {
+            let lacks = |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
+            let displacement = moved_axis.displacement.ok_or_else(|| lacks("displacement"))?;
+            let original = weighed_axis.force.ok_or_else(|| lacks("force"))?;
+            let force = self.newtons(original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
+            let flags = either(moved_axis.flags, weighed_axis.flags);
+            // One clock for all axes: the first judges it.
+            let device_time = moved.time.filter(|_| place == 0);
+            let said = Said { displacement, force, original, flags, device_time };
+            let axis = &mut self.axes[place];
+            let judged = axis.judge.judge(&said, &axis.rules);
+            point.displacement.push(axis.sign * displacement);
+            point.force.push(axis.sign * force);
+            point.unsettled |= flags.unsettled;
+            judged.map_err(|invalid| self.refuse(invalid))?;
+        }
+        Ok(point)
     }
 
     /// Keeps the bytes, also of what is no reading.

@@ -16,6 +16,11 @@ pub(super) struct Settling {
 }
 
 impl Settling {
+    /// One for each axis.
+    pub(super) fn of(settle: Settle, targets: &[f64]) -> Vec<Self> {
+        targets.iter().map(|target| Self::new(settle, *target)).collect()
+    }
+
     pub(super) const fn new(settle: Settle, target: f64) -> Self {
         Self { settle, target, window: VecDeque::new() }
     }

@@ -1,6 +1,7 @@
 //! A stroke of a real rig: an even way, read as it goes. In: a target, a velocity, how many readings are wanted. Out: as
 //! many as the line can carry, each with its own time and place, and the rig at rest at the end of the way.
 
+use super::motion::first_astray;
 use super::settle::Settling;
 use super::{Proposed, RealRig};
 use crate::rig::failpoint::{Guarding, on};
@@ -19,12 +20,15 @@ impl RealRig {
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
+        if self.axes.len() > 1 {
+            return Err(RigFault::Device("the axes of a frame go to targets: they are not read on the way".to_owned()));
+        }
         self.propose(targets, Some(velocity.abs()))?;
-        let ahead = self.proposed.as_ref().is_some_and(|Proposed { target, from, .. }| (target - from) * velocity > 0.0);
+        let ahead = self.proposed.as_ref().is_some_and(|Proposed { targets, from, .. }| (targets[0] - from[0]) * velocity > 0.0);
         if samples == 0 || !ahead {
             return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
         }
-        let (target, seconds) = self.set_off()?;
+        let (targets, seconds) = self.set_off()?;
         let began = self.clock.now();
         #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
         let interval = seconds / samples as f64;
@@ -43,30 +47,26 @@ impl RealRig {
             let reason = format!("the readings cannot keep up: {taken} in a stroke of {seconds:.3} s, {samples} are wanted");
             return Err(RigFault::Device(reason));
         }
-        self.come_to_rest(target, began + seconds)
+        self.come_to_rest(&targets, began + seconds)
     }
 
     /// Waits at the end of a stroke until it rests there, so that the next one sets off from rest. How the force settles
     /// is of no matter to a stroke.
-    fn come_to_rest(&mut self, target: f64, arrival: f64) -> Result<(), RigFault> {
-        let settling = Settling::new(self.settle, target);
+    fn come_to_rest(&mut self, targets: &[f64], arrival: f64) -> Result<(), RigFault> {
+        let settling = Settling::of(self.settle, targets);
         let deadline = arrival + self.settle.timeout;
         loop {
             let point = self.poll()?;
             let now = self.clock.now();
             self.watch(&point)?;
             let rests = point.moving != Some(true) && now >= arrival;
-            if rests && settling.in_position(point.displacement) {
-                return Ok(());
-            }
+            let astray = first_astray(&settling, &point);
+            let Some(axis) = astray.or((!rests).then_some(0)) else { return Ok(()) };
             if now > deadline {
                 return match rests {
-                    true if on(Guarding::Following) => {
-                        let error = (point.displacement - target).abs();
-                        Err(RigFault::Following { error, band: self.settle.band })
-                    }
+                    true if on(Guarding::Following) => Err(self.following(axis, &point, targets)),
                     true => Ok(()),
-                    false => Err(self.unsettled()),
+                    false => Err(self.unsettled(None)),
                 };
             }
             self.wait_until(self.heard + self.period())?;

@@ -26,6 +26,7 @@ fn plan() -> RigPlan {
         readings,
         watchdog: 3.0,
         own_speed: 0.001,
+        axes: Vec::new(),
     };
     let settle = Settle { band: 1e-5, force_rate: 5.0, dwell: 0.5, timeout: 5.0 };
     RigPlan { name: "frame".to_owned(), link: Link::Real(link), settle, sign: 1.0, calibration: Calibration::default() }
@@ -125,14 +126,14 @@ fn a_device_that_cannot_say_whether_it_moves_is_given_the_time_of_the_way() {
 #[test]
 fn a_negative_sign_turns_targets_readings_limits_and_the_remembered_move() {
     let turned = RigPlan { sign: -1.0, ..plan() };
-    let remember = |device: &FakeDevice| device.inside().last_move = Some(LastMove { id: 7, target: -0.003 });
+    let remember = |device: &FakeDevice| device.inside().last_move = Some(LastMove { id: 7, targets: vec![-0.003] });
     let mut stand = opened(&turned, remember).unwrap();
     assert_eq!(stand.go(0.002), Ok((0.002, 200.0)));
     assert_eq!(stand.device.inside().started, [-0.002]);
     let narrowed = stand.device.inside().narrowed.unwrap();
     assert_eq!(narrowed.displacement, Interval { low: -0.02, high: 0.001 });
     assert_eq!(narrowed.force, Interval { low: -5000.0, high: 100.0 });
-    assert_eq!(stand.rig.last_move(), Some(LastMove { id: 7, target: 0.003 }));
+    assert_eq!(stand.rig.last_move(), Some(LastMove { id: 7, targets: vec![0.003] }));
 }
 
 #[test]
@@ -162,7 +163,7 @@ fn what_never_settles_is_held_after_the_timeout() {
         Ok(())
     });
     let began = stand.rig.time();
-    assert_eq!(stand.go(0.002), Err(RigFault::NotSettled { timeout: 5.0 }));
+    assert_eq!(stand.go(0.002), Err(RigFault::NotSettled { timeout: 5.0, axis: None }));
     assert!((7.0..7.3).contains(&(stand.rig.time() - began)));
     assert_eq!(stand.device.inside().holds, 1);
 }
@@ -186,7 +187,7 @@ fn a_ram_that_stops_short_is_a_following_error() {
         stand.fault()
     };
     assert_eq!(without(Guarding::Following, fault), None);
-    let Some(RigFault::Following { error, band }) = fault() else { panic!("not caught") };
+    let Some(RigFault::Following { error, band, axis: None }) = fault() else { panic!("not caught") };
     assert!((error - 2e-4).abs() < 1e-12 && band == 1e-5);
 }
 

@@ -36,9 +36,24 @@ pub(super) enum Invalid {
     Untrusted(String),
 }
 
+impl Invalid {
+    /// The same, with the axis that it befell.
+    fn named(self, axis: Option<usize>) -> Self {
+        let Some(axis) = axis else { return self };
+        let named = |reason| format!("axis {axis}: {reason}");
+        match self {
+            Self::AskAgain(reason) => Self::AskAgain(named(reason)),
+            Self::Hold(reason) => Self::Hold(named(reason)),
+            Self::Untrusted(reason) => Self::Untrusted(named(reason)),
+        }
+    }
+}
+
 /// What earlier readings tell of this one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Judge {
+    /// Number of the axis it judges, from 1, where the rig has several.
+    axis: Option<usize>,
     same: Option<Same>,
     /// The device's own clock, s.
     device_time: Option<f64>,
@@ -58,12 +73,15 @@ struct Same {
 }
 
 impl Judge {
+    pub(super) fn of_axis(axis: Option<usize>) -> Self {
+        Self { axis, ..Self::default() }
+    }
+
     pub(super) fn judge(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
         self.same_device(said)?;
-        flags(said.flags)?;
-        number(said)?;
-        saturation(said, rules)?;
-        self.frozen(said, rules)
+        whole_rig(said.flags)?;
+        let of_axis = flags(said.flags).and_then(|()| number(said)).and_then(|()| saturation(said, rules));
+        of_axis.and_then(|()| self.frozen(said, rules)).map_err(|invalid| invalid.named(self.axis))
     }
 
     /// A clock that goes back is that of a device that started anew.
@@ -102,7 +120,8 @@ impl Judge {
     }
 }
 
-fn flags(flags: Flags) -> Result<(), Invalid> {
+/// What befalls all axes at once.
+fn whole_rig(flags: Flags) -> Result<(), Invalid> {
     if on(Guarding::Flags) {
         for (set, what) in [
             (flags.emergency_stop, "the emergency stop is pressed"),
@@ -112,9 +131,13 @@ fn flags(flags: Flags) -> Result<(), Invalid> {
                 return Err(Invalid::Hold(what.to_owned()));
             }
         }
-        if flags.unreferenced {
-            return Err(Invalid::Untrusted("its position is not referenced".to_owned()));
-        }
+    }
+    Ok(())
+}
+
+fn flags(flags: Flags) -> Result<(), Invalid> {
+    if on(Guarding::Flags) && flags.unreferenced {
+        return Err(Invalid::Untrusted("its position is not referenced".to_owned()));
     }
     if on(Guarding::Invalid) && flags.stale {
         return Err(Invalid::AskAgain("the reading is an old one".to_owned()));

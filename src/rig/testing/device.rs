@@ -100,15 +100,15 @@ impl Device for FakeDevice {
         Ok(self.inside().identity.clone())
     }
 
-    fn encode(&mut self, target: f64, speed: f64) -> Result<Move, DeviceFault> {
-        let target = target + self.inside().misspoken;
-        Ok(Move { frames: vec![format!("{target} {speed}").into_bytes()], target, speed, id: None })
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = targets[0] + self.inside().misspoken;
+        Ok(Move { frames: vec![format!("{target} {speed}").into_bytes()], targets: vec![target], speed, id: None })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
         let mut inside = self.inside();
-        inside.started.push(going.target);
-        inside.target = going.target * inside.reaches;
+        inside.started.push(going.targets[0]);
+        inside.target = going.targets[0] * inside.reaches;
         inside.speed = going.speed;
         Ok(())
     }
@@ -152,13 +152,13 @@ impl Device for FakeDevice {
         b"!".to_vec()
     }
 
-    fn narrow_limits(&mut self, limits: &Limits) -> Result<(), DeviceFault> {
-        self.inside().narrowed = Some(*limits);
+    fn narrow_limits(&mut self, limits: &[Limits]) -> Result<(), DeviceFault> {
+        self.inside().narrowed = Some(limits[0]);
         Ok(())
     }
 
     fn last_move(&self) -> Option<LastMove> {
-        self.inside().last_move
+        self.inside().last_move.clone()
     }
 
     fn tally(&self) -> Tally {

@@ -3,7 +3,57 @@
 
 use super::VirtualRig;
 use crate::mechanics::path::{Path, Rate};
+use crate::rig::actuator::Actuator;
 use crate::rig::{EachReading, Rig as _, RigFault};
+
+/// The reference of one actuator along a path. What the actuator misses of its increments goes over evenly from what it missed
+/// before to what it misses of this one, so that its reference has no step.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::rig) struct Course {
+    path: Path,
+    sign: f64,
+    /// At the beginning, m.
+    missed: f64,
+    /// m/s
+    drifts: f64,
+}
+
+impl Course {
+    pub(in crate::rig) fn of(path: Path, sign: f64, actuator: &Actuator) -> Self {
+        let missed = sign * path.from - actuator.reference();
+        let misses = sign * path.to - actuator.aim(sign * path.to);
+        Self { path, sign, missed, drifts: (misses - missed) / path.seconds }
+    }
+
+    /// The actuator goes on from one time on the path to another, s.
+    pub(in crate::rig) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) {
+        let place = self.sign * self.path.place(to) - (self.missed + self.drifts * to);
+        actuator.run(place, self.rate(from), self.rate(to), to - from);
+    }
+
+    fn rate(&self, time: f64) -> Rate {
+        let Rate { velocity, acceleration, jerk } = self.path.rate(time);
+        let sign = self.sign;
+        Rate { velocity: sign * velocity - self.drifts, acceleration: sign * acceleration, jerk: sign * jerk }
+    }
+}
+
+/// The instants at which paths are read, from their beginning on: 0 and the ends of `samples` equal parts, s.
+///
+/// # Errors
+/// The paths are not of one length, or lead nowhere.
+pub(in crate::rig) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFault> {
+    let seconds = paths.first().map_or(0.0, |path| path.seconds);
+    let numbers = |path: &Path| [path.from, path.to, path.start_velocity, path.end_velocity, path.seconds];
+    let finite = paths.iter().flat_map(numbers).all(f64::is_finite);
+    let together = paths.iter().all(|path| path.seconds.to_bits() == seconds.to_bits());
+    if samples == 0 || seconds <= 0.0 || !finite || !together {
+        return Err(RigFault::Device(format!("a path of {seconds} s with {samples} readings leads nowhere")));
+    }
+    #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+    let instants = (0..=samples).map(|sample| seconds * sample as f64 / samples as f64);
+    Ok(instants.collect())
+}
 
 impl VirtualRig {
     /// Reads at `samples` equal times, the last at the end of the path, where the reference is still moving.
@@ -11,28 +61,12 @@ impl VirtualRig {
     /// # Errors
     /// The path leads nowhere, or `each` refuses; the rig then holds.
     pub(super) fn glide_along(&mut self, path: &Path, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
-        let numbers = [path.from, path.to, path.start_velocity, path.end_velocity, path.seconds];
-        if samples == 0 || path.seconds <= 0.0 || !numbers.iter().all(|number| number.is_finite()) {
-            return Err(RigFault::Device(format!("a path of {} s with {samples} readings leads nowhere", path.seconds)));
-        }
+        let instants = instants(std::slice::from_ref(path), samples)?;
+        let course = Course::of(*path, self.sign, &self.actuator);
         let began = self.time;
-        // What the actuator misses of its increments goes over evenly from what it missed before to what it misses of
-        // this one, so that its reference has no step.
-        let missed = self.sign * path.from - self.actuator.reference();
-        let misses = self.sign * path.to - self.actuator.aim(self.sign * path.to);
-        let drifts = (misses - missed) / path.seconds;
-        let reference = |time: f64| self.sign * path.place(time) - (missed + drifts * time);
-        let rate = |time: f64| {
-            let Rate { velocity, acceleration, jerk } = path.rate(time);
-            Rate { velocity: self.sign * velocity - drifts, acceleration: self.sign * acceleration, jerk: self.sign * jerk }
-        };
-        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
-        let times: Vec<f64> = (0..=samples).map(|sample| path.seconds * sample as f64 / samples as f64).collect();
-        let course: Vec<(f64, f64, Rate, Rate)> =
-            times.windows(2).map(|pair| (pair[1] - pair[0], reference(pair[1]), rate(pair[0]), rate(pair[1]))).collect();
-        for (part, (seconds, to, before, after)) in course.into_iter().enumerate() {
-            self.actuator.run(to, before, after, seconds);
-            self.time = began + times[part + 1];
+        for pair in instants.windows(2) {
+            course.advance(&mut self.actuator, pair[0], pair[1]);
+            self.time = began + pair[1];
             self.follow();
             let reading = self.reading();
             if let Err(refused) = each(reading) {

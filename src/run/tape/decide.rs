@@ -6,7 +6,7 @@ use super::played::{Mismatch, Played, Unplayable, body};
 use crate::plan::RigPlan;
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
-use crate::rig::{Identity, Reading};
+use crate::rig::{Identity, Reading, named_axis, of_axis, who};
 use crate::run::{Inspection, UNLOADING};
 
 /// How near the rig must stand to where the record left it.
@@ -42,15 +42,17 @@ pub enum Refusal {
     #[error("the rig started anew since ({recorded} became {found}): reference it, then say so with --re-referenced")]
     Rebooted { recorded: String, found: String },
     #[error(
-        "the rig stands at {found} m; the record left it at {recorded} m, {band} m is allowed: bring it back by hand, then resume"
+        "{} stands at {found} m; the record left it at {recorded} m, {band} m is allowed: bring it back by hand, then resume",
+        who(*.axis)
     )]
-    Elsewhere { recorded: f64, found: f64, band: f64 },
-    #[error("the rig stands at {found} m, between nothing the record knows: from {from} m to {to} m it was to go")]
-    Lost { from: f64, to: f64, found: f64 },
+    Elsewhere { recorded: f64, found: f64, band: f64, axis: Option<usize> },
+    #[error("{} stands at {found} m, between nothing the record knows: from {from} m to {to} m it was to go", who(*.axis))]
+    Lost { from: f64, to: f64, found: f64, axis: Option<usize> },
     #[error(
-        "the force is {found} N, the record left it at {recorded} N, {band} N is allowed: look at the specimen, then say so with --accept-relaxation"
+        "the force{} is {found} N, the record left it at {recorded} N, {band} N is allowed: look at the specimen, then say so with --accept-relaxation",
+        of_axis(*.axis)
     )]
-    Relaxed { recorded: f64, found: f64, band: f64 },
+    Relaxed { recorded: f64, found: f64, band: f64, axis: Option<usize> },
     #[error("the plan is not the one of the record: {0}")]
     Otherwise(#[from] Mismatch),
     #[error("done again from its record, the run ends where it ended: {reason}")]
@@ -88,7 +90,11 @@ pub fn same_measure(recorded: &RigPlan, now: &RigPlan) -> Result<(), Refusal> {
     };
     let scale = |rig: &RigPlan| (rig.calibration.newtons_per_count.map(f64::to_bits), rig.calibration.zero_count.to_bits());
     let differs = |what| Err(Refusal::OtherMeasure { what });
-    if recorded.sign.to_bits() != now.sign.to_bits() {
+    if recorded.axes() != now.axes() {
+        return differs("axes");
+    }
+    let signs = |rig: &RigPlan| (0..rig.axes().unwrap_or(1)).map(|axis| rig.sign_of(axis).to_bits()).collect::<Vec<_>>();
+    if signs(recorded) != signs(now) {
         return differs("sign");
     }
     if scale(recorded) != scale(now) {
@@ -116,43 +122,43 @@ pub fn decide(
     }
     let lines = without_the_end(played)?;
     let Some(last) = lines.last() else { return Err(Refusal::NothingRecorded) };
-    let place = Place { position: found.displacement[0], band: bands.displacement };
+    let place = Place { positions: &found.displacement, band: bands.displacement };
     let recorded = last_reading(&lines)?;
     let last_intent = lines.iter().rposition(|line| line.kind == EntryKind::Intent);
     let decision = |from, doubt| Decision { from, doubt, recorded: recorded.clone() };
 
     let Some(at) = last_intent else {
         // Nothing was ever sent: only readings at rest.
-        let start = recorded.as_ref().map_or(0.0, |(x, _)| x[0]);
-        place.expect(start)?;
+        let start = recorded.as_ref().map_or_else(|| vec![0.0; found.displacement.len()], |(x, _)| x.clone());
+        place.expect(&start)?;
         relaxed(recorded.as_ref(), found, bands, accept_relaxation)?;
         return Ok(decision(last.seq + 1, Doubt::None));
     };
     let intent: IntentBody = body(&lines[at])?;
-    let before = place_before(&lines[..at])?;
-    let target = intent.to[0];
+    let before = place_before(&lines[..at], found.displacement.len())?;
+    let target = intent.to;
     if intent.samples.is_some() && lines[at..].iter().all(|line| line.kind != EntryKind::Stroke) {
-        return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before }));
+        return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before[0] }));
     }
     if at + 1 < lines.len() {
-        place.expect(target)?;
+        place.expect(&target)?;
         relaxed(recorded.as_ref(), found, bands, accept_relaxation)?;
         return Ok(decision(last.seq + 1, Doubt::None));
     }
     if let Some(Doubt::Stroke { .. }) = played.doubt {
         return Ok(decision(last.seq + 1, played.doubt.unwrap_or(Doubt::None)));
     }
-    let doubt = match (rig.last_move, intent.id) {
-        (Some(moved), Some(id)) if moved.id >= id && place.is(moved.target) && place.is(target) => Doubt::Executed,
+    let doubt = match (&rig.last_move, intent.id) {
+        (Some(moved), Some(id)) if moved.id >= id && place.is(&moved.targets) && place.is(&target) => Doubt::Executed,
         (Some(moved), Some(id)) if moved.id < id => {
-            place.expect(before)?;
+            place.expect(&before)?;
             Doubt::NotExecuted
         }
-        (Some(_), Some(_)) => place.on_the_way(before, target)?,
+        (Some(_), Some(_)) => place.on_the_way(&before, &target)?,
         // Without a memory of moves the place alone tells; where both are as near, the same place is asked for again.
-        _ if place.is(before) => Doubt::NotExecuted,
-        _ if place.is(target) => Doubt::Executed,
-        _ => place.on_the_way(before, target)?,
+        _ if place.is(&before) => Doubt::NotExecuted,
+        _ if place.is(&target) => Doubt::Executed,
+        _ => place.on_the_way(&before, &target)?,
     };
     Ok(decision(last.seq + 1, doubt))
 }
@@ -192,47 +198,57 @@ fn last_reading(lines: &[Line]) -> Result<Option<Measured>, Unplayable> {
     last.map(|line| body::<SampleBody>(line).map(|sample| (sample.x, sample.r))).transpose()
 }
 
-/// Where the rig stood before an intent: at the target before, or where it was first read.
-fn place_before(lines: &[Line]) -> Result<f64, Unplayable> {
+/// Where the rig stood before an intent: at the targets before, or where it was first read.
+fn place_before(lines: &[Line], axes: usize) -> Result<Vec<f64>, Unplayable> {
     if let Some(line) = lines.iter().rev().find(|line| line.kind == EntryKind::Intent) {
-        return body::<IntentBody>(line).map(|intent| intent.to[0]);
+        return body::<IntentBody>(line).map(|intent| intent.to);
     }
     let first = lines.iter().find(|line| line.kind == EntryKind::Sample);
-    first.map_or(Ok(0.0), |line| body::<SampleBody>(line).map(|sample| sample.x[0]))
+    first.map_or_else(|| Ok(vec![0.0; axes]), |line| body::<SampleBody>(line).map(|sample| sample.x))
 }
 
 /// A relaxation beyond its band is for a person to accept.
 fn relaxed(recorded: Option<&(Vec<f64>, Vec<f64>)>, found: &Reading, bands: Bands, accept: bool) -> Result<(), Refusal> {
-    let Some((_, recorded)) = recorded else { return Ok(()) };
-    let inside = (found.force[0] - recorded[0]).abs() <= bands.force;
-    if inside || accept {
-        return Ok(());
-    }
-    Err(Refusal::Relaxed { recorded: recorded[0], found: found.force[0], band: bands.force })
+    let Some((_, recorded)) = recorded.filter(|_| !accept) else { return Ok(()) };
+    let inside = |(recorded, found): (&f64, &f64)| (found - recorded).abs() <= bands.force;
+    let Some(place) = recorded.iter().zip(&found.force).position(|pair| !inside(pair)) else { return Ok(()) };
+    let axis = named_axis(place, found.force.len());
+    Err(Refusal::Relaxed { recorded: recorded[place], found: found.force[place], band: bands.force, axis })
 }
 
 #[derive(Clone, Copy)]
-struct Place {
-    /// m
-    position: f64,
+struct Place<'a> {
+    /// One an axis, m.
+    positions: &'a [f64],
     band: f64,
 }
 
-impl Place {
-    fn is(self, place: f64) -> bool {
-        (self.position - place).abs() <= self.band
+impl Place<'_> {
+    fn is(self, place: &[f64]) -> bool {
+        self.astray(place).is_none()
     }
 
-    fn expect(self, recorded: f64) -> Result<(), Refusal> {
-        if self.is(recorded) { Ok(()) } else { Err(Refusal::Elsewhere { recorded, found: self.position, band: self.band }) }
+    /// The first axis that is not at its `place`; one that has none is nowhere.
+    fn astray(self, place: &[f64]) -> Option<usize> {
+        let at = |(axis, position): (usize, &f64)| place.get(axis).is_some_and(|place| (position - place).abs() <= self.band);
+        self.positions.iter().enumerate().position(|axis| !at(axis))
     }
 
-    fn on_the_way(self, from: f64, to: f64) -> Result<Doubt, Refusal> {
-        let (low, high) = (from.min(to) - self.band, from.max(to) + self.band);
-        if low <= self.position && self.position <= high {
-            Ok(Doubt::HeldOnTheWay)
-        } else {
-            Err(Refusal::Lost { from, to, found: self.position })
+    fn expect(self, recorded: &[f64]) -> Result<(), Refusal> {
+        let Some(place) = self.astray(recorded) else { return Ok(()) };
+        let (found, recorded) = (self.positions[place], recorded.get(place).copied().unwrap_or(f64::NAN));
+        Err(Refusal::Elsewhere { recorded, found, band: self.band, axis: named_axis(place, self.positions.len()) })
+    }
+
+    fn on_the_way(self, from: &[f64], to: &[f64]) -> Result<Doubt, Refusal> {
+        let ways = self.positions.iter().zip(from.iter().zip(to));
+        for (place, (found, (from, to))) in ways.enumerate() {
+            let (low, high) = (from.min(*to) - self.band, from.max(*to) + self.band);
+            if !(low <= *found && *found <= high) {
+                let axis = named_axis(place, self.positions.len());
+                return Err(Refusal::Lost { from: *from, to: *to, found: *found, axis });
+            }
         }
+        Ok(Doubt::HeldOnTheWay)
     }
 }

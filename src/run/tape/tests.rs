@@ -30,7 +30,7 @@ struct Stand {
 
 impl Standing {
     fn new(plan: &Plan) -> Self {
-        let last = LastMove { id: 0, target: 0.0 };
+        let last = LastMove { id: 0, targets: vec![0.0] };
         Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })), 0)
     }
 }
@@ -55,7 +55,7 @@ impl Rig for Standing {
         let mut stand = self.0.borrow_mut();
         let target = stand.offered.take().unwrap();
         stand.carried_out.push(target);
-        stand.last = LastMove { id: stand.last.id + 1, target };
+        stand.last = LastMove { id: stand.last.id + 1, targets: vec![target] };
         stand.rig.execute()
     }
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
@@ -80,7 +80,7 @@ impl Rig for Standing {
         DeclaredNoise::default()
     }
     fn last_move(&self) -> Option<LastMove> {
-        Some(self.0.borrow().last)
+        Some(self.0.borrow().last.clone())
     }
     fn tally(&self) -> Tally {
         Tally { reread: self.1 / 20, ..Tally::default() }

@@ -9,8 +9,8 @@ use psd::mechanics::monitor::Tracking;
 use psd::output::{Provenance, Run};
 use psd::plan::{
     Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure, FigureKind, Impact,
-    InspectTrigger, Integrator, Interval, Limits, Link, Mode, Parameter, Plan, PlanFile, Procedure, ProcedureKind, Report,
-    Requirement, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Test, Until, VirtualLink,
+    InspectTrigger, Integrator, Interval, Limits, Link, Mode, Parameter, Plan, PlanFile, Procedure, ProcedureKind, RampFit,
+    Report, Requirement, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
 use psd::record::{
@@ -59,7 +59,12 @@ pub fn finished() -> Finished {
             number("intercept_force", Some(-0.012), Some(0.035), Dimension::FORCE),
             number("r_squared", Some(0.999_98), None, Dimension::NUMBER),
         ],
-        history: History::Ramp(RampHistory { steps: ramp_steps(), fit: Some(line(327.72, 0.41, -0.012, 0.035)), bilinear: None }),
+        history: History::Ramp(RampHistory {
+            steps: ramp_steps(),
+            fit: Some(line(327.72, 0.41, -0.012, 0.035)),
+            bilinear: None,
+            multilinear: None,
+        }),
     };
     let sweep = ProcedureRecord {
         name: "c".into(),
@@ -273,7 +278,7 @@ fn plan() -> Plan {
                 samples: 10,
                 repeats: 1,
                 return_path: true,
-                bilinear: false,
+                fit: RampFit::Linear,
                 speed: None,
             }),
         ),

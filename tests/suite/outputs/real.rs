@@ -36,6 +36,7 @@ fn real() -> Finished {
         },
         watchdog: 2.0,
         own_speed: 1e-3,
+        axes: Vec::new(),
     });
     finished.plan.rig.calibration =
         Calibration { reference: Some("UKAS 4711".into()), due: Some("2027-03-01".into()), ..Calibration::default() };

@@ -1,0 +1,75 @@
+//! `axes = [axis(…), …]` of a real rig: what each actuator with its load cell says of itself. In: the block of a rig. Out:
+//! an [`AxisPlan`] each. Whether the specimen has as many storeys is held here too; what drives them is `device`'s.
+
+use super::checker::{Checker, Place};
+use super::choice::Chosen;
+use super::faults::{axes as fault, rigs, values};
+use super::rig::{CheckedRig, place_of};
+use super::{calendar, real_rig};
+use crate::plan::{AxisPlan, Dialect, Specimen};
+use crate::source::Span;
+
+/// The axes that a rig lists; none where it says nothing of them.
+pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<AxisPlan>> {
+    let Some((_, written)) = checker.given(block, "axes") else { return Some(Vec::new()) };
+    let (at, place) = (written.value.span, place_of(checker, block, "axes")?);
+    let chosen = checker.choices(block, "axes")?;
+    if chosen.is_empty() {
+        return checker.fail(values::empty_list(at));
+    }
+    let axes: Vec<Option<AxisPlan>> = chosen.iter().map(|chosen| axis(checker, chosen, place)).collect();
+    axes.into_iter().collect()
+}
+
+fn axis<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<AxisPlan> {
+    let sign = match chosen.span("sign") {
+        Some(_) => {
+            checker.chosen_argument(chosen, "sign").map(|word| Some(if word.variant.name == "negative" { -1.0 } else { 1.0 }))
+        }
+        None => Some(None),
+    };
+    let gate = match chosen.span("gate") {
+        Some(_) => checker.chosen_argument(chosen, "gate").and_then(|gate| real_rig::probe(checker, &gate, place)).map(Some),
+        None => Some(None),
+    };
+    let (displacement, force) =
+        (checker.bounds_argument(chosen, "displacement", place), checker.bounds_argument(chosen, "force", place));
+    let (resolution, noise) =
+        (checker.optional_argument(chosen, "resolution", place), checker.optional_argument(chosen, "noise", place));
+    let force_range = checker.bounds_argument(chosen, "force_range", place);
+    let (reference, due) = (checker.text_argument(chosen, "calibration"), checker.text_argument(chosen, "calibration_due"));
+    if let Some(Some((day, at))) = &due
+        && !calendar::is_day(day)
+    {
+        return checker.fail(rigs::not_a_day(day, *at));
+    }
+    let text = |given: Option<(String, Span)>| given.map(|(text, _)| text);
+    Some(AxisPlan {
+        sign: sign?,
+        gate: gate?,
+        displacement: displacement?,
+        force: force?,
+        resolution: resolution?,
+        noise: noise?,
+        force_range: force_range?,
+        calibration: text(reference?),
+        calibration_due: text(due?),
+    })
+}
+
+/// No more axes than the device behind the line drives; two devices of one axis each are none of several.
+pub fn hold_device(checker: &mut Checker, block: usize, axes: usize, dialect: &Dialect, alone: bool) -> Option<()> {
+    let most = if alone { dialect.most_axes() } else { 1 };
+    let (_, written) = checker.given(block, "axes")?;
+    if axes <= most { Some(()) } else { checker.fail(fault::too_many(axes, most, dialect, alone, written.value.span)) }
+}
+
+/// A rig of as many axes as its specimen has storeys: no storey without an actuator, and no actuator without a storey.
+pub fn hold_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen: &Specimen) {
+    let Some(CheckedRig { plan, block: Some(block), .. }) = rig else { return };
+    let (Some(axes), Some((_, written))) = (plan.axes(), checker.given(*block, "axes")) else { return };
+    let storeys = specimen.degrees_of_freedom();
+    if axes != storeys {
+        checker.faults.push(fault::another_number(&plan.name, axes, &specimen.name, storeys, written.value.span));
+    }
+}

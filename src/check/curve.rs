@@ -1,0 +1,18 @@
+//! `fit = multilinear(…)`: how many breaks a curve has. In: the variant as it was written. Out: a [`BreakCount`].
+
+use super::checker::{Checker, Place};
+use super::choice::Chosen;
+use super::faults::specimens as fault;
+use super::fields::whole;
+use crate::plan::BreakCount;
+
+/// `breaks`, or else as many as the criterion chooses up to `most`.
+pub fn breaks<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<BreakCount> {
+    let breaks = checker.optional_argument(chosen, "breaks", place)?;
+    let most = checker.constant_argument(chosen, "most", place).and_then(whole)?;
+    match (breaks, chosen.span("most"), chosen.span("breaks")) {
+        (Some(_), Some(most), Some(breaks)) => checker.fail(fault::breaks_counted_twice(breaks, most)),
+        (Some(breaks), ..) => Some(BreakCount::Exactly(whole(breaks)? as usize)),
+        (None, ..) => Some(BreakCount::ByCriterion { most: most as usize }),
+    }
+}

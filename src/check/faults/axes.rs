@@ -1,0 +1,48 @@
+//! Faults of the axes of a real rig: E615, E616, E626. In: what was found and where. Out: diagnostics.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::Dialect;
+use crate::source::Span;
+
+/// `one axis`, `3 axes`
+fn axes_of(count: usize) -> String {
+    if count == 1 { "one axis".to_owned() } else { format!("{count} axes") }
+}
+
+pub fn another_number(rig: &str, axes: usize, specimen: &str, storeys: usize, at: Span) -> Diagnostic {
+    let needs = match storeys {
+        1 => format!("`{specimen}` has one degree of freedom"),
+        _ => format!("the frame `{specimen}` has {storeys} storeys"),
+    };
+    let help = match storeys {
+        1 => "remove `axes`: a rig without it has one axis".to_owned(),
+        _ => format!("list {storeys} of them, the lowest storey first: axes = [{}]", vec!["axis"; storeys].join(", ")),
+    };
+    Diagnostic::new(Code::AxesDiffer, format!("the rig `{rig}` has {}, and {needs}", axes_of(axes)))
+        .at(at, axes_of(axes))
+        .help(help)
+}
+
+pub fn too_many(axes: usize, most: usize, dialect: &Dialect, alone: bool, at: Span) -> Diagnostic {
+    let name = dialect.name();
+    let text = if alone {
+        format!("a device that speaks `{name}` drives at most {}, not {axes}", axes_of(most))
+    } else {
+        format!("an `actuator` and a `load_cell` of their own are one axis, not {axes}")
+    };
+    Diagnostic::new(Code::TooManyAxes, text)
+        .at(at, axes_of(axes))
+        .help("several axes need one controller behind one `link`, which moves them together: `native` does")
+}
+
+pub fn frame_on_one_axis(specimen: &str, storeys: usize, rig: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::FrameOnRealRig,
+        format!("the frame `{specimen}` needs {storeys} actuators with their load cells, and the rig `{rig}` has one"),
+    )
+    .at(span, "would move every storey")
+    .help(format!(
+        "list them in the rig, the lowest storey first: axes = [{}]; or run it on a virtual rig: leave `--rig` out",
+        vec!["axis"; storeys].join(", ")
+    ))
+}

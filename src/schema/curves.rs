@@ -1,0 +1,31 @@
+//! Multilinear curves fitted to what was measured: the words that ask for one, and what it leaves.
+
+use super::types::{Field, ResultKind, Variant};
+use crate::mechanics::multilinear_fit::MOST_BREAKS;
+use crate::quantity::Dimension;
+
+#[expect(clippy::cast_precision_loss, reason = "a handful")]
+const MOST: f64 = MOST_BREAKS as f64;
+
+pub(super) const MULTILINEAR: Variant = Variant::with(
+    "multilinear",
+    &[
+        Field::count("breaks", 1.0, MOST, "how many there are").or_said("by the criterion BIC"),
+        Field::count("most", 1.0, MOST, "breaks that the criterion may choose, at most").or(4.0, ""),
+    ],
+    "straight stretches that meet at breaks, three points each at least",
+);
+
+/// After whatever else a procedure with a curve results in.
+pub(super) const RESULTS: [ResultKind; 6] = [
+    ResultKind::list("breaks", Dimension::LENGTH, "where the stretches of a multilinear curve meet"),
+    ResultKind::list("break_uncertainties", Dimension::LENGTH, "standard uncertainty of each of `breaks`"),
+    ResultKind::list("break_forces", Dimension::FORCE, "force of the curve at each break"),
+    ResultKind::list("break_force_uncertainties", Dimension::FORCE, "standard uncertainty of each of `break_forces`"),
+    ResultKind::list("curve_stiffnesses", Dimension::STIFFNESS, "stiffness of each stretch of a multilinear curve"),
+    ResultKind::list(
+        "curve_stiffness_uncertainties",
+        Dimension::STIFFNESS,
+        "standard uncertainty of each of `curve_stiffnesses`",
+    ),
+];

@@ -1,0 +1,206 @@
+//! Frames whose storeys never stop, from the text of a plan: what dampers and friction of the storeys do, against closed forms and
+//! beside step and pause; readings corrected axis by axis; and a record that is enough.
+
+use std::fs;
+use std::path::Path;
+
+use psd::check::{LoadFault, Loader, Options, check};
+use psd::plan::Plan;
+use psd::record::{History, Outcome, Record, ShakeStep};
+use psd::rig::virtual_rig;
+use psd::run::{Unwatched, run};
+
+/// Largest acceleration of the ground, m/s², its angular frequency, rad/s, and the stiffness that makes it the first of two
+/// equal storeys of 1 t, N/m.
+const GROUND: f64 = 0.5;
+const FREQUENCY: f64 = 4.0 * std::f64::consts::PI;
+const STIFFNESS: f64 = 1000.0 * FREQUENCY * FREQUENCY * 2.618_033_988_749_895;
+/// Damping ratio of the first mode, and the dampers of the storeys, N·s/m, that make it so: C = c/k · K.
+const RATIO: f64 = 0.1;
+const DAMPER: f64 = 2.0 * RATIO / FREQUENCY * STIFFNESS;
+const SCALE: f64 = 50.0;
+
+struct Files;
+
+impl Loader for Files {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        let rows = |acceleration: &dyn Fn(f64) -> f64| -> String {
+            let row = |step: u32| format!("{},{}\n", f64::from(step) * 1e-3, acceleration(f64::from(step) * 1e-3));
+            (0..=8000).map(row).collect()
+        };
+        let rows = match path {
+            "sine.csv" => rows(&|time| GROUND * (FREQUENCY * time).sin()),
+            "push.csv" => rows(&|time| if time <= 0.25 { GROUND } else { 0.0 }),
+            _ => return Err(LoadFault::NotFound),
+        };
+        Ok(format!("time_s,acceleration_m_per_s2\n{rows}"))
+    }
+}
+
+/// Two storeys with `damped` in each, on `ground`, moved as `shake` says by a rig that errs as `errs` says.
+fn plan(ground: &str, damped: &str, shake: &str, errs: &str) -> Plan {
+    let storey = format!("storey(mass: 1 t, stiffness: {STIFFNESS} N/m{damped})");
+    let text = format!(
+        "specimen frame {{ storeys = [{storey}, {storey}] }}\nground motion {{ record = \"{ground}.csv\" }}\n\
+         rig bench {{ link = virtual({errs}) }}\nshake test {{\n  ground = motion\n{shake}\n}}\n"
+    );
+    let checked = check("plan.psd", &text, &Files, &Options::default());
+    checked.plan.unwrap_or_else(|| panic!("{text}\n{:?}", checked.diagnostics))
+}
+
+fn done(plan: &Plan) -> Record {
+    let record = run(plan, virtual_rig(plan).as_mut(), &mut Unwatched);
+    assert_eq!(record.outcome, Outcome::Completed);
+    record
+}
+
+fn steps(record: &Record) -> &[ShakeStep] {
+    match &record.procedures[0].history {
+        History::Shake(history) => &history.steps,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn continuous(step: &str) -> String {
+    format!("  mode = continuous(time_scale: {SCALE})\n  time_step = {step}")
+}
+
+fn viscous() -> String {
+    format!(", damping: {} N*s/m", SCALE * DAMPER)
+}
+
+/// Largest displacement of each floor, m.
+fn peaks(steps: &[ShakeStep]) -> [f64; 2] {
+    [0, 1].map(|floor| steps.iter().map(|step| step.computed[floor].abs()).fold(0.0, f64::max))
+}
+
+/// Steady amplitude of both floors, m, by modes: φ = (1, g) and (g, −1), ω₂ = g²ω, and dampers in proportion to the
+/// storeys give them ζ and g²ζ.
+fn closed_form() -> [f64; 2] {
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mode = |shape: [f64; 2], own: f64| {
+        let participation = (shape[0] + shape[1]) / (shape[0] * shape[0] + shape[1] * shape[1]);
+        let ratio = RATIO * own / FREQUENCY;
+        let (real, imaginary) = (own * own - FREQUENCY * FREQUENCY, 2.0 * ratio * own * FREQUENCY);
+        let size = participation * GROUND / (real * real + imaginary * imaginary);
+        shape.map(|entry| (entry * size * real, -entry * size * imaginary))
+    };
+    let (first, second) = (mode([1.0, golden], FREQUENCY), mode([golden, -1.0], golden * golden * FREQUENCY));
+    [0, 1].map(|floor| (first[floor].0 + second[floor].0).hypot(first[floor].1 + second[floor].1))
+}
+
+/// Dampers of the storeys that are felt at 1/50 of the speed: a steady motion at resonance whose size is the damping's alone. The
+/// error falls with the square of the step. At rest nothing of them is felt, and the motion grows without bound.
+#[test]
+fn dampers_of_the_storeys_give_the_steady_motion_of_the_closed_form() {
+    let error = |step: &str| {
+        let found = peaks(steps(&done(&plan("sine", &viscous(), &continuous(step), ""))));
+        found.iter().zip(closed_form()).map(|(found, exact)| (found / exact - 1.0).abs()).fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (error("10 ms"), error("5 ms"));
+    assert!(fine < 3e-3, "{fine}");
+    assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} and {fine}");
+    let paused = peaks(steps(&done(&plan("sine", &viscous(), "  integrator = explicit\n  time_step = 10 ms", ""))));
+    assert!(paused[1] > 5.0 * closed_form()[1], "{paused:?}");
+}
+
+/// What is read is K·X and, beside it, C·Ẋ / `time_scale` at the velocity the floors are passed with: to the square of the step.
+#[test]
+fn the_damping_of_the_material_is_in_the_force() {
+    let largest = |step: &str| {
+        let record = done(&plan("sine", &viscous(), &continuous(step), ""));
+        let steps = steps(&record);
+        let (mut beside, mut missed) = (0.0_f64, 0.0_f64);
+        for three in steps.windows(3) {
+            let way = |floor: usize| three[2].command[floor] - three[0].command[floor];
+            let velocity = [0, 1].map(|floor: usize| way(floor) / (three[2].time - three[0].time));
+            let now = &three[1];
+            let shear = |storey: usize, of: &dyn Fn(usize) -> f64| of(storey) - if storey > 0 { of(storey - 1) } else { 0.0 };
+            let storey = [0, 1].map(|storey: usize| {
+                STIFFNESS * shear(storey, &|floor| now.command[floor]) + DAMPER * shear(storey, &|floor| velocity[floor])
+            });
+            let expected = [storey[0] - storey[1], storey[1]];
+            for (floor, expected) in expected.iter().enumerate() {
+                missed = missed.max((now.restoring_force[floor] - expected).abs());
+            }
+            beside = beside.max((DAMPER * (velocity[1] - velocity[0])).abs());
+        }
+        assert!(beside > 100.0, "enough to be seen: {beside} N");
+        missed
+    };
+    let (coarse, fine) = (largest("10 ms"), largest("5 ms"));
+    assert!(fine < 10.0 && coarse / fine > 3.0, "{coarse} N, {fine} N");
+}
+
+/// Friction takes its force times the way of the drifts, in either mode: the cells keep its sign through a pause.
+#[test]
+fn friction_of_the_storeys_takes_its_force_times_the_way_of_the_drifts() {
+    let friction = 20.0;
+    for mode in [continuous("2 ms"), "  integrator = explicit\n  time_step = 2 ms".to_owned()] {
+        let record = done(&plan("push", &format!(", coulomb: {friction} N"), &format!("{mode}\n  duration = 2 s"), ""));
+        let steps = steps(&record);
+        let pairs = || steps.windows(2).map(|pair| (pair[0].drift(), pair[1].drift()));
+        let way: f64 = pairs().map(|(from, to)| from.iter().zip(to).map(|(from, to)| (to - from).abs()).sum::<f64>()).sum();
+        let last = steps.last().unwrap();
+        let elastic: f64 = last.drift().iter().map(|drift| 0.5 * STIFFNESS * drift * drift).sum();
+        let (taken, found) = (friction * way, last.energies.restoring - elastic);
+        assert!(taken > 0.3 * last.energies.input, "enough to be seen: {taken} J of {} J", last.energies.input);
+        assert!((found - taken).abs() < 0.02 * taken, "{mode}: {found} J of {taken} J");
+    }
+}
+
+/// Without damping an ideal rig reads the same forces at the same targets in either mode.
+#[test]
+fn without_damping_both_modes_are_the_same_run() {
+    let (one, other) = (
+        done(&plan("sine", "", &continuous("10 ms"), "")),
+        done(&plan("sine", "", "  integrator = explicit\n  time_step = 10 ms", "")),
+    );
+    let (one, other) = (steps(&one), steps(&other));
+    assert_eq!(one.len(), other.len());
+    for (one, other) in one.iter().zip(other) {
+        for floor in 0..2 {
+            assert!((one.command[floor] - other.command[floor]).abs() < 1e-12);
+            assert!((one.restoring_force[floor] - other.restoring_force[floor]).abs() < 1e-7);
+        }
+    }
+    assert!(one.windows(2).all(|pair| (pair[1].wall_time - pair[0].wall_time - SCALE * 0.01).abs() < 1e-9));
+}
+
+/// Pistons that lag by 0.2 s, 4 ms of virtual time, feed energy in; corrected to its target by K(d_m − d), each floor's
+/// force is what it would have been there, coupling and all.
+#[test]
+fn readings_of_lagging_axes_are_corrected_to_their_targets() {
+    let peak = |errs: &str, more: &str| {
+        let shake = format!("{}\n{more}", continuous("5 ms"));
+        let mut plan = plan("push", "", &shake, errs);
+        plan.limits.tracking_energy_error.high = 1e6;
+        peaks(steps(&done(&plan)))
+    };
+    let lag = "lag: 200 ms";
+    let (ideal, corrected, raw) = (peak("", ""), peak(lag, ""), peak(lag, "  i_modification = false"));
+    for floor in 0..2 {
+        assert!((corrected[floor] / ideal[floor] - 1.0).abs() < 1e-9, "{corrected:?} and {ideal:?}");
+        // The amplitude grows by exp(½ω²·lag/scale·t) in the first mode, 12 times in eight seconds.
+        assert!(raw[floor] / ideal[floor] > 8.0, "{raw:?} and {ideal:?}");
+    }
+}
+
+/// Recorded, verified and made anew from the record, the same bytes.
+#[test]
+fn the_record_of_a_continuous_shake_is_enough() {
+    let psd = |arguments: &[&str]| {
+        let ended = std::process::Command::new(env!("CARGO_BIN_EXE_psd")).args(arguments).output().expect("psd starts");
+        assert!(ended.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&ended.stderr));
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/two_storeys_continuous.psd");
+    psd(&["run", plan.to_str().expect("UTF-8"), "--yes", "--out", &path("run")]);
+    psd(&["verify", &path("run")]);
+    psd(&["report", &path("run"), "--out", &path("again")]);
+    for name in ["summary.json", "tables/moving.csv", "certificate.html", "certificate.pdf"] {
+        let read = |of: &str| fs::read(folder.path().join(of).join(name)).expect("a file of the run");
+        assert!(read("run") == read("again"), "{name} differs");
+    }
+}
