@@ -33,12 +33,12 @@ fn calibration(run: &Run<'_>, link: &RealLink) -> Block {
         Column::short("Holds until"),
         Column::short("State"),
     ];
-    let of = |axis| measured(run, link, axis, if axes > 1 { format!(", axis {}", axis + 1) } else { String::new() });
+    let of = |axis| measured(run, link, axis, &if axes > 1 { format!(", axis {}", axis + 1) } else { String::new() });
     Block::Table(Table { columns, rows: (0..axes).flat_map(of).collect() })
 }
 
 /// Force and displacement of an axis.
-fn measured(run: &Run<'_>, link: &RealLink, axis: usize, which: String) -> Vec<Vec<Text>> {
+fn measured(run: &Run<'_>, link: &RealLink, axis: usize, which: &str) -> Vec<Vec<Text>> {
     let calibration = run.plan.rig.calibration_of(axis);
     let both = (calibration.reference.as_deref(), calibration.due.as_deref());
     let displacement =
