@@ -85,6 +85,8 @@ pub struct Options {
     pub settings: Vec<(String, String)>,
     /// `--date`, ISO 8601.
     pub date: Option<String>,
+    /// A run is to begin, the command line names nobody, and nobody can be asked.
+    pub unattended: bool,
 }
 
 /// The outcome of a check. `plan` is there if no error stands.
@@ -93,6 +95,8 @@ pub struct Checked {
     pub plan: Option<Plan>,
     pub diagnostics: Vec<Diagnostic>,
     pub sources: Sources,
+    /// Where the rig of the run says how it is reached; empty for the ideal one.
+    pub rig_links: Vec<Span>,
 }
 
 /// Checks a plan and all it uses.
@@ -108,10 +112,11 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     let scope = Scope::collect(&imports.asts, &settings, &mut faults);
     let mut checker = Checker::new(&sources, &scope, loader, faults, unread, imports.incomplete);
     let plan = plan(&mut checker, name, files, options);
+    let rig_links = rig::links_of_run(&checker, options.rig.as_deref());
     let mut diagnostics = checker.faults;
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
     let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
-    Checked { plan, diagnostics, sources }
+    Checked { plan, diagnostics, sources, rig_links }
 }
 
 /// The lines at which the text could not be read.
@@ -133,6 +138,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         checker.entries_of(block);
     }
     let (title, particulars) = plan_block::plan_block(checker, options.date.as_deref());
+    if options.unattended {
+        real_rig::attended(checker, &particulars);
+    }
     let parameters = checker.parameters();
     let of_kind = |checker: &Checker, kind| checker.scope.of_kind(kind).map(|(index, _)| index).collect::<Vec<_>>();
     let specimens: Vec<_> =

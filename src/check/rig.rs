@@ -8,7 +8,7 @@ use super::faults::whole as fault;
 use super::real_rig;
 use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
 use crate::schema::{Kind, RigKind};
-use crate::source::FileId;
+use crate::source::{FileId, Span};
 use crate::syntax::ast::{Expr, ExprKind};
 
 /// At once, for as long as it takes up to ten seconds.
@@ -27,6 +27,14 @@ pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> 
     let named = |name: Option<&crate::syntax::ast::Ident>| name.is_some_and(|name| Some(name.node.as_str()) == asked);
     let block = checker.scope.of_kind(Kind::Rig).find(|(_, block)| named(block.name)).map(|(index, _)| index);
     block.filter(|block| kind(checker, *block) == Some(RigKind::Real))
+}
+
+/// The fields that say how the rig of the run is reached, where it is one that moves a specimen.
+pub fn links_of_run(checker: &Checker, asked: Option<&str>) -> Vec<Span> {
+    let Some(block) = real_rig_of_run(checker, asked) else { return Vec::new() };
+    let entries = &checker.scope.blocks[block].block.fields;
+    let reach = |key: &str| key == "link" || key == "axes" || key.starts_with("actuator") || key.starts_with("load_cell");
+    entries.iter().filter(|entry| reach(&entry.key.node)).map(|entry| entry.key.span.to(entry.value.span)).collect()
 }
 
 /// Checks every rig; gives the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.

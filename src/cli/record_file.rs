@@ -130,7 +130,8 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
     let (Some(first), Some(text)) = (header.files.first(), played.texts.first()) else {
         return Err("the record holds no plan".to_owned());
     };
-    let options = Options { rig: header.rig.clone(), settings: header.settings.clone(), date: header.date.clone() };
+    let (rig, settings, date) = (header.rig.clone(), header.settings.clone(), header.date.clone());
+    let options = Options { rig, settings, date, unattended: false };
     let checked = check(&first.name, text, &files, &options);
     let plan = checked.plan.ok_or_else(|| {
         let fault = checked.diagnostics.iter().find(|found| found.is_error());

@@ -33,6 +33,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     if read.played.ended {
         return Err(tape::Refusal::Ended.into());
     }
+    if read.played.header.served.as_deref() == Some(tape::BY_HAND) {
+        return Err(Failure::command_line("this was done by hand: there is nothing to go on with")
+            .help("`psd rig jog` goes from where the rig stands"));
+    }
     if read.played.header.served.is_some() {
         return Err(Failure::command_line("a client drove this run: psd cannot go on in its place")
             .help("start it anew with `psd rig serve`"));

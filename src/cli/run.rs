@@ -22,7 +22,9 @@ use crate::run::tape::{self, Recorded};
 
 /// Runs one plan.
 pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
-    let checked = plan_file::open(&arguments.plan, &arguments.plan_settings)?;
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    let unattended = real_rig::unattended(&attendance, settings);
+    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
@@ -30,15 +32,17 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         }
         return Ok(Exit::Wrong);
     };
+    let attendance = real_rig::named(attendance, plan)?;
+    let in_the_plan = |failure: Failure| failure.in_the_plan(|fault| plan_file::place_of_link(&checked, &arguments.plan, fault));
     if arguments.rehearse {
-        return rehearse(plan, arguments, settings);
+        return rehearse(plan, arguments, &attendance, settings).map_err(in_the_plan);
     }
     let blessed = arguments.bless.then(|| BlessedFolder::of(&arguments.plan)).transpose()?;
     if blessed.is_some() && !trial::is_as_written(plan, &arguments.plan_settings) {
         return Err(Failure::command_line("`--bless` is of the plan as it is written, on its virtual rig")
             .help("leave out `--set`, `--rig` and `--date`, or write them into the plan"));
     }
-    let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, settings)?;
+    let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
     let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         let trial = trial::of(&arguments.plan, Extent::All)?;
@@ -64,11 +68,15 @@ pub(super) struct Ran {
 }
 
 /// Runs the plan on the rig that it names, and keeps the record.
-pub(super) fn on_its_rig(plan: &Plan, arguments: &RunArguments, settings: Settings) -> Result<Ran, Failure> {
-    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+pub(super) fn on_its_rig(
+    plan: &Plan,
+    arguments: &RunArguments,
+    attendance: &Attendance,
+    settings: Settings,
+) -> Result<Ran, Failure> {
     match plan.rig.link {
-        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, &attendance, settings),
-        Link::Real(_) => on_a_real_rig(plan, arguments, &attendance, settings),
+        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, attendance, settings),
+        Link::Real(_) => on_a_real_rig(plan, arguments, attendance, settings),
     }
 }
 

@@ -95,6 +95,7 @@ codes! {
     E616 TooManyAxes Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
+    E619 NobodyNamed Error;
     E620 GroundRecord Error;
     E621 BadMatrix Error;
     E622 StoreyStiffness Error;

@@ -1,7 +1,8 @@
 //! The pages of `psd explain`: each code has one, and its wrong and right plans do as the page says.
 //!
 //! A page's plans are its fenced blocks. The first word after `psd` says which: `wrong`, `right`, or `file="lib/a.psd"`, a
-//! file that both plans may use (`*` stands for any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line.
+//! file that both plans may use (`*` stands for any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line; with `unattended="yes"` a run is to begin
+//! and nobody is there to ask.
 
 use psd::check::{Checked, LoadFault, Loader, Options, check};
 use psd::diagnostic::{Code, Severity};
@@ -64,6 +65,7 @@ fn checked(code: Code, kind: &str) -> Checked {
         rig: plan.option("rig").map(str::to_owned),
         settings: settings.into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
         date: None,
+        unattended: plan.option("unattended").is_some(),
     };
     check("plan.psd", &plan.text, &PageFiles(&fences), &options)
 }

@@ -1,4 +1,4 @@
-//! Faults and warnings of real rigs: E606 to E614, W707, W708, W711. In: what was found and where. Out: diagnostics.
+//! Faults and warnings of real rigs: E606 to E614, E619, W707, W708, W711. In: what was found and where. Out: diagnostics.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -35,6 +35,12 @@ pub fn incomplete(name: Option<&Ident>, head: Span, missing: &[&Field], unbounde
     Diagnostic::new(Code::RealRigIncomplete, format!("rig `{name}` moves a real specimen and lacks {}", lacks.join(", and ")))
         .at(head, "a real rig")
         .help(help.join("\n"))
+}
+
+pub fn nobody_named(rig: Span) -> Diagnostic {
+    Diagnostic::new(Code::NobodyNamed, "a real rig moves for somebody with a name, and nobody is named")
+        .at(rig, "moves a real specimen")
+        .help("who runs the test is named by `--operator \"A. Tester\"`, or by `operator` in the `plan` block")
 }
 
 fn example_of_limit(field: &str) -> &'static str {

@@ -7,6 +7,9 @@ use crate::mechanics::path::Path;
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
 
+/// What stands in place of a protocol where a person drives.
+pub const BY_HAND: &str = "by hand";
+
 /// HEADER: all a run starts from. Enough to check the plan again, on any machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
@@ -26,7 +29,7 @@ pub struct Header {
     /// Whether only the part that a rehearsal measures was to run.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rehearsal: bool,
-    /// Protocol of the clients that drive the rig; None: the plan's procedures do.
+    /// Protocol of the clients that drive the rig, or that a person does by hand; None: the plan's procedures do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub served: Option<String>,
     /// As `--date` gave it.
