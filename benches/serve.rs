@@ -30,6 +30,7 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
             name: "spring".to_owned(),
             mass: 20.0,
             mass_from: None,
+            mass_uncertainty: 0.0,
             frame: None,
             behaviour,
             damping: 0.0,

@@ -20,6 +20,7 @@ pub mod syntax;
 pub mod formula;
 pub mod plan;
 pub mod schema;
+pub mod uncertainty;
 
 pub mod check;
 

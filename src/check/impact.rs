@@ -22,6 +22,10 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         Some(_) => checker.quantity(block, "mass"),
         None => specimen_block.and_then(|tested| specimen::export(checker, tested, "mass", head)).map(Formula::Constant),
     };
+    let mass_uncertainty = match checker.given(block, "mass") {
+        Some(_) => Some(0.0),
+        None => specimen_block.and_then(|tested| checker.constant(tested, "mass_uncertainty")),
+    };
     let stiffness = checker.stiffness_or_specimens(block, specimen_block);
     let damping = checker.quantity(block, "damping");
     let contact = contact(checker, block);
@@ -44,6 +48,7 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         specimen: checker.scope.place_in_kind(specimen_block?),
         striker: checker.scope.place_in_kind(striker?),
         mass: mass?,
+        mass_uncertainty: mass_uncertainty?,
         stiffness: stiffness?,
         damping: damping?,
         contact: contact?,

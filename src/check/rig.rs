@@ -202,6 +202,9 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
     {
         return checker.fail(rigs::day_of_no_calibration(&entry.key));
     }
+    let (force, displacement) =
+        (checker.constant(block, "force_uncertainty"), checker.constant(block, "displacement_uncertainty"));
+    let zero = checker.constant(block, "zero_uncertainty");
     Some(Calibration {
         reference: reference?,
         due: due?,
@@ -210,5 +213,8 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         displacement_class: displacement_class?,
         newtons_per_count: newtons_per_count?,
         zero_count: zero_count?,
+        force_uncertainty: force?,
+        displacement_uncertainty: displacement?,
+        zero_uncertainty: zero?,
     })
 }

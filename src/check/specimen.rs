@@ -5,6 +5,7 @@ use super::checker::Checker;
 use super::faults::{frames, names as fault, specimens};
 use super::frame;
 use super::limits::CheckedLimits;
+use super::striker::uncertainty;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
@@ -21,6 +22,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
             name: name?.node.clone(),
             mass,
             mass_from: None,
+            mass_uncertainty: 0.0,
             frame,
             behaviour: None,
             damping: 0.0,
@@ -48,10 +50,12 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
+    let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
     Some(Specimen {
         name: name?.node.clone(),
         mass: mass?,
         mass_from: mass_from(checker, block),
+        mass_uncertainty: mass_uncertainty?,
         frame: None,
         behaviour: behaviour?,
         damping: damping?,

@@ -1,9 +1,10 @@
 //! What runs but is unwise. In: what was checked. Out: warnings, with the numbers.
 
 use super::checker::Checker;
-use super::faults::{cyclic, whole as fault};
+use super::faults::{cyclic, values, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker};
+use crate::plan::{Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, Striker};
+use crate::schema::Kind;
 use crate::source::{FileId, Span};
 
 /// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
@@ -32,6 +33,7 @@ pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Opt
 pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement], plan: Span) {
     peak_forces(checker, procedures, requirements);
     blows_on_blows(checker, procedures);
+    unused_uncertainties(checker, procedures);
     match procedures.last() {
         None => checker.faults.push(fault::nothing_runs(plan)),
         Some((block, _)) if requirements.is_empty() => {
@@ -64,6 +66,28 @@ fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
             // A look moves nothing.
             Some(ProcedureKind::Inspect { .. }) => {}
             _ => before = None,
+        }
+    }
+}
+
+/// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own.
+fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    let used: Vec<usize> = procedures
+        .iter()
+        .filter_map(|(_, procedure)| match &procedure.as_ref()?.kind {
+            ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow, .. }) => {
+                (blow.mass_uncertainty > 0.0).then_some(blow.specimen)
+            }
+            _ => None,
+        })
+        .collect();
+    let specimens: Vec<usize> = checker.scope.of_kind(Kind::Specimen).map(|(block, _)| block).collect();
+    for block in specimens.into_iter().enumerate().filter(|(place, _)| !used.contains(place)).map(|(_, block)| block) {
+        let stated = checker.given(block, "mass_uncertainty").map(|(_, entry)| entry.value.span);
+        let some = stated.is_some() && checker.constant(block, "mass_uncertainty").is_some_and(|stated| stated > 0.0);
+        if let (true, Some(span)) = (some, stated) {
+            let name = checker.scope.blocks[block].name.map_or("", |name| name.node.as_str());
+            checker.faults.push(values::uncertainty_unused(name, span));
         }
     }
 }

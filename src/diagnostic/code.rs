@@ -110,6 +110,7 @@ codes! {
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E635 TooUncertain Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;
@@ -131,6 +132,7 @@ codes! {
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
+    W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
     W720 BlowOnBlow Warning;

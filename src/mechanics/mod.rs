@@ -18,6 +18,8 @@ pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
+pub mod recorded_path;
+pub mod rerun;
 pub mod scheme;
 pub mod self_test;
 pub mod specimen;

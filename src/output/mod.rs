@@ -3,6 +3,7 @@
 
 mod amendment;
 pub mod behaviour;
+mod budget;
 mod certificate;
 pub mod comparison;
 pub mod console;

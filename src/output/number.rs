@@ -26,21 +26,17 @@ pub(super) fn text_beside(value: f64, beside: f64, dimension: Dimension) -> Stri
     kept_together(&display::readable_beside(value, beside, dimension))
 }
 
-/// A part of a whole, in its unit and to the fifth digit of it, so that parts add up at sight: `10.000 J`, `0.030 J`.
-pub(super) fn part_of(value: f64, whole: f64, dimension: Dimension) -> String {
-    const DIGITS: f64 = 5.0;
+/// A part of a whole, in its unit and to this digit of it, so that parts add up at sight: `10.000 J`, `0.030 J`.
+pub(super) fn part_of(part: f64, whole: f64, digits: u8, dimension: Dimension) -> String {
     let (unit, factor) = unit(whole, dimension);
-    let before = (whole / factor).abs().log10().floor() + 1.0;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 9")]
-    let decimals = if before.is_finite() { (DIGITS - before).clamp(0.0, 9.0) as usize } else { 3 };
-    let text = format!("{:.decimals$}", value / factor);
+    let decimals = f64::from(digits) - 1.0 - (whole / factor).abs().log10().floor();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 12")]
+    let decimals = if decimals.is_finite() { decimals.clamp(0.0, 12.0) as usize } else { 3 };
+    let text = format!("{:.decimals$}", part / factor);
     // A rounded zero has no sign.
-    let text = if text.trim_start_matches('-').bytes().all(|byte| matches!(byte, b'0' | b'.')) {
-        text.trim_start_matches('-')
-    } else {
-        &text
-    };
-    join(&minus(text), &unit)
+    let size = text.trim_start_matches('-');
+    let zero = size.bytes().all(|byte| matches!(byte, b'0' | b'.'));
+    join(&minus(if zero { size } else { &text }), &unit)
 }
 
 /// No line ends between a number and its unit, which is its last word.
@@ -254,13 +250,13 @@ mod tests {
 
     #[test]
     fn parts_of_a_whole_add_up_at_sight() {
-        let part = |value| part_of(value, 10.0, Dimension::ENERGY);
+        let part = |value| part_of(value, 10.0, 5, Dimension::ENERGY);
         assert_eq!(
             (part(10.0), part(0.0304), part(-1.4e-8)),
             ("10.000\u{a0}J".into(), "0.030\u{a0}J".into(), "0.000\u{a0}J".into())
         );
-        assert_eq!(part_of(-0.0017, 4299.0, Dimension::ENERGY), "0.0000\u{a0}kJ");
-        assert_eq!(part_of(0.0, 0.0, Dimension::ENERGY), "0.000\u{a0}J");
+        assert_eq!(part_of(-0.0017, 4299.0, 5, Dimension::ENERGY), "0.0000\u{a0}kJ");
+        assert_eq!(part_of(0.0, 0.0, 5, Dimension::ENERGY), "0.000\u{a0}J");
         assert_eq!(parts(-0.000_174, None, Dimension::NUMBER).value, "−1.740 × 10⁻⁴");
     }
 

@@ -92,6 +92,8 @@ pub struct Specimen {
     pub mass: f64,
     /// How the plan comes to it, in its own words; None where it states the number.
     pub mass_from: Option<String>,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
     /// The storeys, where it has any; each has an actuator and a load cell.
     pub frame: Option<Frame>,
     /// What a virtual rig bends.
@@ -116,8 +118,12 @@ pub struct Striker {
     pub name: String,
     /// kg
     pub mass: f64,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
     /// m/s, towards the structure.
     pub velocity: f64,
+    /// Standard, m/s; 0 where none is stated.
+    pub velocity_uncertainty: f64,
     /// Distance to the structure at the start, m, at least 0.
     pub gap: f64,
     /// Acceleration along its way, m/s²: gn of a weight that falls.
@@ -295,6 +301,8 @@ pub struct Impact {
     pub striker: usize,
     /// M, kg
     pub mass: Formula,
+    /// Standard uncertainty of a mass that is the specimen's, kg; 0 where none is stated, or the mass is another.
+    pub mass_uncertainty: f64,
     /// K0, N/m
     pub stiffness: Formula,
     /// C of eqs. 4–5, N·s/m

@@ -132,6 +132,12 @@ pub struct Calibration {
     pub newtons_per_count: Option<f64>,
     /// Count at no force.
     pub zero_count: f64,
+    /// Standard uncertainty of the factor between its newtons and newtons; 0 where none is stated.
+    pub force_uncertainty: f64,
+    /// Of the factor between its metres and metres.
+    pub displacement_uncertainty: f64,
+    /// Of its reading of no force, N.
+    pub zero_uncertainty: f64,
 }
 
 /// A rig that moves a real specimen.

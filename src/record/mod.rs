@@ -18,6 +18,7 @@ use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
+use crate::uncertainty::{Contribution, Source};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use escalate::{Blow, EscalateHistory};
 
@@ -92,6 +93,8 @@ pub struct NamedResult {
     pub name: &'static str,
     pub value: ResultValue,
     pub dimension: Dimension,
+    /// What the uncertainty of a number is made of; empty where it is all its own, or there is none.
+    pub contributions: Vec<Contribution>,
 }
 
 /// What was recorded step by step.
@@ -278,10 +281,28 @@ impl ProcedureRecord {
     }
 }
 
+impl NamedResult {
+    /// What the uncertainty of the result, as `reference` names it, is made of.
+    #[must_use]
+    pub fn contributions_of(&self, reference: ResultReference) -> Vec<Contribution> {
+        match self.value {
+            ResultValue::Number { uncertainty: Some(own), .. } if self.contributions.is_empty() => {
+                vec![Contribution::new(Source::Fit { procedure: reference.procedure, result: self.name }, own)]
+            }
+            _ => self.contributions.clone(),
+        }
+    }
+}
+
 impl Results for Record {
     /// Procedures are recorded in the plan's order, so that their place there is their place here.
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         let found = self.procedures.get(reference.procedure.0)?.result(reference.name)?;
         Some(found.value.clone())
+    }
+
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        let found = self.procedures.get(reference.procedure.0).and_then(|procedure| procedure.result(reference.name));
+        found.map_or_else(Vec::new, |found| found.contributions_of(reference))
     }
 }

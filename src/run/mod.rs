@@ -1,5 +1,6 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
+mod attribution;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -20,6 +21,9 @@ mod impact_tests;
 mod inputs;
 mod inspect;
 mod move_to;
+mod propagation;
+#[cfg(test)]
+mod propagation_tests;
 pub mod rehearsal;
 mod request;
 mod results;
@@ -49,6 +53,7 @@ pub use request::{Parting, Request};
 
 use serde::{Deserialize, Serialize};
 
+use crate::formula::ProcedureId;
 use crate::mechanics::monitor::Tracking;
 use crate::plan::{Plan, Procedure, ProcedureKind, SafeState};
 use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
@@ -211,8 +216,9 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     }
     for procedure in &plan.procedures {
         session.enter(procedure, plan);
-        let mut inputs = Inputs::new(&record);
-        let Performed { history, results, stop } = perform(procedure, plan, &mut inputs, &mut session);
+        let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
+        let Performed { history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
+        attribution::attribute(&procedure.kind, &history, &plan.rig.calibration, &inputs, &mut results);
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),

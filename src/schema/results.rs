@@ -47,25 +47,29 @@ pub(super) const DAMPING_SWEEP: &[ResultKind] = &[
 ];
 
 pub(super) const IMPACT: &[ResultKind] = &[
-    ResultKind::new("max_displacement", Dimension::LENGTH, "largest displacement of the structure over the run"),
-    ResultKind::new("time_of_max_displacement", Dimension::TIME, "virtual time of the largest displacement"),
-    ResultKind::new("stop_time", Dimension::TIME, "virtual time at which the striker first stood still"),
-    ResultKind::new("residual_displacement", Dimension::LENGTH, "displacement at the end of the run"),
-    ResultKind::new("max_velocity", Dimension::VELOCITY, "largest size of the structure's velocity"),
-    ResultKind::new("max_contact_force", Dimension::FORCE, "largest mean contact force of a step; grows as 1/Δt under `rigid`"),
-    ResultKind::new("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
+    ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement of the structure over the run"),
+    ResultKind::measured("time_of_max_displacement", Dimension::TIME, "virtual time of the largest displacement"),
+    ResultKind::measured("stop_time", Dimension::TIME, "virtual time at which the striker first stood still"),
+    ResultKind::measured("residual_displacement", Dimension::LENGTH, "displacement at the end of the run"),
+    ResultKind::measured("max_velocity", Dimension::VELOCITY, "largest size of the structure's velocity"),
+    ResultKind::measured(
+        "max_contact_force",
+        Dimension::FORCE,
+        "largest mean contact force of a step; grows as 1/Δt under `rigid`",
+    ),
+    ResultKind::measured("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
     ResultKind::count("contacts", "number of blows"),
-    ResultKind::new("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
-    ResultKind::new("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
-    ResultKind::new("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
-    ResultKind::new("absorbed_energy", Dimension::ENERGY, "restoring force integrated up to the largest displacement"),
-    ResultKind::new(
+    ResultKind::measured("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
+    ResultKind::measured("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
+    ResultKind::measured("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
+    ResultKind::measured("absorbed_energy", Dimension::ENERGY, "restoring force integrated up to the largest displacement"),
+    ResultKind::measured(
         "restoring_energy",
         Dimension::ENERGY,
         "restoring force integrated over the run, with what a damper adds to it in continuous mode",
     ),
-    ResultKind::new("damping_energy", Dimension::ENERGY, "energy that the computed `damping` took over the run"),
-    ResultKind::new("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
+    ResultKind::measured("damping_energy", Dimension::ENERGY, "energy that the computed `damping` took over the run"),
+    ResultKind::measured("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
     ResultKind::new(
         "tracking_energy_error",
@@ -80,7 +84,7 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("nrms_error", Dimension::NUMBER, "tracking error over command, root mean squares"),
     ResultKind::new("peak_error", Dimension::LENGTH, "largest measured less commanded displacement, by size"),
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
-    ResultKind::new("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
+    ResultKind::measured("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
     ResultKind::count("steps", "number of steps"),
 ];
 

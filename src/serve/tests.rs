@@ -22,6 +22,7 @@ fn spring() -> VirtualRig {
         name: "spring".to_owned(),
         mass: 20.0,
         mass_from: None,
+        mass_uncertainty: 0.0,
         frame: None,
         behaviour,
         damping: 0.0,

@@ -76,7 +76,7 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
 
 /// What a virtual specimen does is no property of a real one.
 fn specimen_table(specimen: &Specimen, is_virtual: bool) -> Block {
-    let mass = Text::from(number::stated(specimen.mass, Dimension::MASS));
+    let mass = Text::from(doubtful(specimen.mass, specimen.mass_uncertainty, Dimension::MASS));
     let mass = match &specimen.mass_from {
         Some(formula) => mass.soft(" from ").code(formula),
         None => mass,
@@ -96,8 +96,8 @@ fn specimen_table(specimen: &Specimen, is_virtual: bool) -> Block {
 
 fn striker_table(striker: &Striker) -> Block {
     let mut rows = vec![
-        ("mass", number::stated(striker.mass, Dimension::MASS)),
-        ("velocity at the start", number::stated(striker.velocity, Dimension::VELOCITY)),
+        ("mass", doubtful(striker.mass, striker.mass_uncertainty, Dimension::MASS)),
+        ("velocity at the start", doubtful(striker.velocity, striker.velocity_uncertainty, Dimension::VELOCITY)),
         ("energy", number::stated(0.5 * striker.mass * striker.velocity * striker.velocity, Dimension::ENERGY)),
         ("gap at the start", number::stated(striker.gap, Dimension::LENGTH)),
     ];
@@ -105,6 +105,14 @@ fn striker_table(striker: &Striker) -> Block {
         rows.push(("acceleration along its way", number::stated(striker.gravity, Dimension::ACCELERATION)));
     }
     described(rows)
+}
+
+/// A stated value with its standard uncertainty, where one is stated.
+fn doubtful(value: f64, uncertainty: f64, dimension: Dimension) -> String {
+    if uncertainty == 0.0 {
+        return number::stated(value, dimension);
+    }
+    format!("{} (± u)", number::with_uncertainty(value, Some(uncertainty), dimension))
 }
 
 pub(super) fn settling(settle: Settle) -> String {

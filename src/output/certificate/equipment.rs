@@ -5,8 +5,9 @@ use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
 use super::{pairs, particulars};
-use crate::plan::{DeviceLink, Gate, PortPlan, ReadingRules, RealLink, VirtualLink};
+use crate::plan::{Calibration, DeviceLink, Gate, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
+use crate::quantity::display::significant;
 use crate::record::EventKind;
 
 /// The rig of the run.
@@ -101,6 +102,7 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
         rows.push(("Force of a count", format!("{}, zero at {zero}", number::stated(factor, Dimension::FORCE)).into()));
     }
     rows.push(("Declared of its readings", declared(&link.readings).into()));
+    rows.extend(uncertainty(calibration));
     rows.push(("Taking a reading", taking(&link.readings).into()));
     rows.push(("Settling", settling(run.plan.rig.settle).into()));
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
@@ -123,7 +125,21 @@ fn simulated(run: &Run<'_>) -> Block {
     if let Some(text) = particulars::stated(run, "equipment") {
         rows.push(("Other equipment", text.into()));
     }
+    rows.extend(uncertainty(&run.plan.rig.calibration));
     pairs(rows)
+}
+
+/// What is stated of the calibration's uncertainty, where anything is.
+fn uncertainty(calibration: &Calibration) -> Option<(&'static str, Text)> {
+    let percent = |share: f64| format!("{}\u{a0}%", significant(100.0 * share, 2));
+    let terms = [
+        ("force", calibration.force_uncertainty, percent(calibration.force_uncertainty)),
+        ("displacement", calibration.displacement_uncertainty, percent(calibration.displacement_uncertainty)),
+        ("zero of the force", calibration.zero_uncertainty, number::stated(calibration.zero_uncertainty, Dimension::FORCE)),
+    ];
+    let stated = terms.into_iter().filter(|(_, size, _)| *size > 0.0).map(|(name, _, size)| format!("{name} {size}"));
+    let stated: Vec<String> = stated.collect();
+    (!stated.is_empty()).then(|| ("Standard uncertainty of its calibration", stated.join("; ").into()))
 }
 
 /// What a virtual rig adds to its specimen.

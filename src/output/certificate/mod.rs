@@ -3,6 +3,7 @@
 
 mod appendix;
 mod blows;
+mod budget;
 mod conditions;
 mod contact_log;
 mod curve;

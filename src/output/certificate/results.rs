@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{blows, contact_log, curve, cycles, frames, method, words};
+use super::{blows, budget, contact_log, curve, cycles, frames, method, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::Dimension;
@@ -38,6 +38,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::Impact(history) => {
                 force_note(run, index, procedure, history, body);
                 method::note(run, index, history, body);
+                budget::table(run, index, procedure, body);
                 energy_balance(history, body);
                 contact_log::table(history, body);
             }
@@ -226,10 +227,10 @@ fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
     ];
     let row = |(name, energy): (&str, f64)| -> Vec<Text> {
         let share = if input > 0.0 { percent(energy / input) } else { "—".to_owned() };
-        vec![name.into(), number::part_of(energy, input, Dimension::ENERGY).into(), share.into()]
+        vec![name.into(), number::part_of(energy, input, 5, Dimension::ENERGY).into(), share.into()]
     };
     let given = if e.weight == 0.0 { "input, ½MsV₀²" } else { "input, ½MsV₀² and the work of the weight" };
-    let input_row = vec![given.into(), number::part_of(input, input, Dimension::ENERGY).into(), "100\u{a0}%".into()];
+    let input_row = vec![given.into(), number::part_of(input, input, 5, Dimension::ENERGY).into(), "100\u{a0}%".into()];
     let columns = vec![
         Column::words("Energy balance at the end of the run", 1),
         Column::numbers("Energy"),
@@ -246,5 +247,5 @@ fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
 }
 
 pub(super) fn percent(share: f64) -> String {
-    number::part_of(100.0 * share, 100.0, Dimension::NUMBER) + "\u{a0}%"
+    number::part_of(100.0 * share, 100.0, 5, Dimension::NUMBER) + "\u{a0}%"
 }
