@@ -30,6 +30,7 @@ pub fn of(plan: &Plan) -> Provenance {
         plan_sha256: sha256(text.as_bytes()),
         date,
         real: None,
+        equipment: None,
         amends: None,
     }
 }

@@ -32,6 +32,9 @@ macro_rules! codes {
     };
 }
 
+/// Codes that no plan gives: what they say is of the machine that is to run it.
+pub const OF_THE_MACHINE: &[Code] = &[Code::NoRoom];
+
 codes! {
     // 1: the text
     E101 Syntax Error;
@@ -105,6 +108,7 @@ codes! {
     E626 FrameOnRealRig Error;
     E627 DampingRatios Error;
     E628 NoOneStiffness Error;
+    E629 NoRoom Error;
     E630 CornersDoNotFit Error;
     E631 BadTableFile Error;
     E632 BehaviourIncomplete Error;

@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 
 use super::Run;
 use crate::mechanics::self_test;
-use crate::plan::Calibration;
 use crate::record::Outcome;
 use crate::run::rehearsal;
 
@@ -69,15 +68,16 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !told(run.provenance.operator()) {
         missing.push("the operator's name".to_owned());
     }
-    let calibrations: Vec<Calibration> =
-        (0..run.plan.rig.axes().unwrap_or(1)).map(|axis| run.plan.rig.calibration_of(axis)).collect();
-    if !calibrations.iter().all(|calibration| told(calibration.reference.as_deref())) {
+    let channels = &run.equipment().channels;
+    if !channels.iter().all(|channel| told(channel.certificate.as_deref())) {
         missing.push("the calibration's reference".to_owned());
     }
-    let own = calibrations.iter().filter_map(|calibration| calibration.displacement.as_ref());
-    let own = own.map(|(_, due)| ("calibration of the displacement", due.as_deref()));
-    for (what, due) in calibrations.iter().map(|calibration| ("calibration", calibration.due.as_deref())).chain(own) {
-        match (due, last_day(run)) {
+    // Where force and displacement hold until the same day, one calibration is spoken of.
+    let days: BTreeSet<Option<&str>> = channels.iter().map(|channel| channel.due.as_deref()).collect();
+    for channel in channels {
+        let what =
+            if days.len() > 1 { format!("calibration of the {}", channel.measures.name()) } else { "calibration".to_owned() };
+        match (channel.due.as_deref(), last_day(run)) {
             (None, _) => missing.push(format!("the day until which the {what} holds")),
             (Some(_), None) => missing.push("the day of the test".to_owned()),
             (Some(due), Some(day)) if due < day => {

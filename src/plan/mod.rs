@@ -13,6 +13,7 @@ mod rig;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};
+use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
 pub use crate::mechanics::multilinear_fit::BreakCount;
@@ -189,6 +190,30 @@ impl Limits {
         tracking_energy_error: Interval::ALL,
         nrms_error: Interval::ALL,
     };
+
+    /// As the guard holds them: what tracking does to the energy has a limit always.
+    #[must_use]
+    pub fn held(&self) -> Self {
+        if self.tracking_energy_error.is_bounded() {
+            return *self;
+        }
+        Self { tracking_energy_error: Interval { low: 0.0, high: monitor::HOLD }, ..*self }
+    }
+
+    /// Every limit by the name of its field.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
+        [
+            ("displacement", self.displacement, Dimension::LENGTH),
+            ("force", self.force, Dimension::FORCE),
+            ("speed", self.speed, Dimension::VELOCITY),
+            ("increment", self.increment, Dimension::LENGTH),
+            ("tracking_error", self.tracking_error, Dimension::LENGTH),
+            ("energy_error", self.energy_error, Dimension::NUMBER),
+            ("tracking_energy_error", self.tracking_energy_error, Dimension::NUMBER),
+            ("nrms_error", self.nrms_error, Dimension::NUMBER),
+        ]
+    }
 }
 
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 //! certificates are functions of it.
 
 mod cycle;
+pub mod equipment;
 mod escalate;
 pub mod journal;
 

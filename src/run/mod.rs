@@ -21,6 +21,9 @@ mod impact_tests;
 mod inputs;
 mod inspect;
 mod move_to;
+pub mod need;
+#[cfg(test)]
+mod need_tests;
 mod propagation;
 #[cfg(test)]
 mod propagation_tests;

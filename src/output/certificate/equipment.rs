@@ -5,17 +5,18 @@ use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
 use super::{pairs, particulars};
-use crate::plan::{Calibration, DeviceLink, Gate, PortPlan, ReadingRules, RealLink, VirtualLink};
+use crate::plan::{Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
 use crate::record::EventKind;
+use crate::record::equipment::{Channel, Device, GivenIn};
 
 /// The rig of the run.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Equipment and calibration"));
     match run.plan.rig.link.as_real() {
         Some(link) => {
-            body.push(calibration(run, link));
+            body.push(calibration(run));
             body.push(real(run, link));
         }
         None => body.push(simulated(run)),
@@ -23,48 +24,36 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
 }
 
 /// What is measured, over which range and how well, what that is traced to, and whether it still held on the day of the
-/// test.
-fn calibration(run: &Run<'_>, link: &RealLink) -> Block {
-    let axes = run.plan.rig.axes().unwrap_or(1);
-    let columns = vec![
-        Column::short("Measured"),
-        Column::short("Range"),
-        Column::words("Class", 2),
-        Column::words("Calibration certificate", 3),
-        Column::short("Holds until"),
-        Column::short("State"),
-    ];
-    let of = |axis| measured(run, link, axis, &if axes > 1 { format!(", axis {}", axis + 1) } else { String::new() });
-    Block::Table(Table { columns, rows: (0..axes).flat_map(of).collect() })
-}
-
-/// Force and displacement of an axis.
-fn measured(run: &Run<'_>, link: &RealLink, axis: usize, which: &str) -> Vec<Vec<Text>> {
-    let calibration = run.plan.rig.calibration_of(axis);
-    let both = (calibration.reference.as_deref(), calibration.due.as_deref());
-    let displacement =
-        calibration.displacement.as_ref().map_or(both, |(reference, due)| (Some(reference.as_str()), due.as_deref()));
-    let cell = link.readings_of(axis).force_range;
-    let travel = run.plan.rig.limits_of(axis, &run.plan.limits).displacement;
-    let held = |bounded: bool, words: &str, range: String| {
-        if bounded { Text::from(format!("{words}{range}")) } else { Text::given(None) }
-    };
-    let row = |name: &str, range: Text, class: Option<&str>, (reference, due): (Option<&str>, Option<&str>)| {
+/// test: a row a channel.
+fn calibration(run: &Run<'_>) -> Block {
+    let equipment = run.equipment();
+    let several = equipment.channels.iter().any(|channel| channel.axis > 1);
+    let row = |channel: &Channel| {
+        let axis = if several { format!(" {}", channel.axis) } else { String::new() };
+        let (certificate, due) = (channel.certificate.as_deref(), channel.due.as_deref());
         vec![
-            format!("{name}{which}").into(),
-            range,
-            Text::given(class),
-            Text::given(reference),
+            format!("{}{axis}", channel.measures.name()).into(),
+            channel.range.map_or_else(
+                || Text::given(None),
+                |[low, high]| range(Interval { low, high }, channel.measures.dimension()).into(),
+            ),
+            Text::given(channel.class.as_deref()),
+            factor(channel).into(),
+            Text::given(certificate),
             Text::given(due),
             state(run, due),
         ]
     };
-    let force = held(cell.is_bounded(), "", range(cell, Dimension::FORCE));
-    let displaced = held(travel.is_bounded(), "held to ", range(travel, Dimension::LENGTH));
-    vec![
-        row("Force", force, calibration.force_class.as_deref(), both),
-        row("Displacement", displaced, calibration.displacement_class.as_deref(), displacement),
-    ]
+    let columns = vec![
+        Column::short("Channel"),
+        Column::short("Range"),
+        Column::words("Class", 2),
+        Column::short("Factor"),
+        Column::words("Calibration certificate", 3),
+        Column::short("Holds until"),
+        Column::short("State"),
+    ];
+    Block::Table(Table { columns, rows: equipment.channels.iter().map(row).collect() })
 }
 
 /// Whether a calibration held on the last day of the test.
@@ -77,9 +66,17 @@ fn state(run: &Run<'_>, due: Option<&str>) -> Text {
     }
 }
 
+/// How the number of a channel becomes a quantity.
+fn factor(channel: &Channel) -> String {
+    match channel.given_in {
+        GivenIn::Units => number::stated(channel.factor, Dimension::NUMBER),
+        GivenIn::Counts => format!("{} a count", number::stated(channel.factor, channel.measures.dimension())),
+    }
+}
+
 fn real(run: &Run<'_>, link: &RealLink) -> Block {
-    let identity = &run.record.rig;
-    let calibration = &run.plan.rig.calibration;
+    let equipment = run.equipment();
+    let identity = &equipment.device.identity;
     let kind = if identity.simulated { "a simulated controller on a real line: nothing real moved" } else { "real" };
     let stated = |text: &str| Text::given(Some(text));
     let mut rows = vec![
@@ -97,12 +94,11 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
     }
     rows.push(("Actuator", device(&link.actuator)));
     rows.push(("Load cell", link.load_cell.as_ref().map_or_else(|| "read by the actuator's controller".into(), device)));
-    if let Some(factor) = calibration.newtons_per_count {
-        let zero = number::stated(calibration.zero_count, Dimension::NUMBER);
-        rows.push(("Force of a count", format!("{}, zero at {zero}", number::stated(factor, Dimension::FORCE)).into()));
+    for channel in equipment.channels.iter().filter(|channel| channel.zero != 0.0) {
+        rows.push(("Count at no force", number::stated(channel.zero, Dimension::NUMBER).into()));
     }
-    rows.push(("Declared of its readings", declared(&link.readings).into()));
-    rows.extend(uncertainty(calibration));
+    rows.push(("Declared of its readings", declared(&equipment.device, &link.readings).into()));
+    rows.extend(uncertainty(&run.plan.rig.calibration));
     rows.push(("Taking a reading", taking(&link.readings).into()));
     rows.push(("Settling", settling(run.plan.rig.settle).into()));
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
@@ -115,10 +111,12 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
 
 fn simulated(run: &Run<'_>) -> Block {
     let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
+    let equipment = run.equipment();
+    let identity = &equipment.device.identity;
     let mut rows = vec![
         ("Rig", run.plan.rig.name.as_str().into()),
         ("Kind", "simulated: nothing real moved, nothing was measured".into()),
-        ("Model, firmware", format!("{} {}", run.record.rig.model, run.record.rig.firmware).into()),
+        ("Model, firmware", format!("{} {}", identity.model, identity.firmware).into()),
         ("Simulated errors", errors(&link).into()),
         ("Settling", settling(run.plan.rig.settle).into()),
     ];
@@ -171,8 +169,8 @@ fn device(link: &DeviceLink) -> Text {
     }
 }
 
-fn declared(readings: &ReadingRules) -> String {
-    let ReadingRules { resolution, noise, force_range, .. } = *readings;
+fn declared(device: &Device, readings: &ReadingRules) -> String {
+    let (resolution, noise, force_range) = (device.resolution, device.noise, readings.force_range);
     let mut told = vec![
         format!("displacement to {}", number::stated(resolution, Dimension::LENGTH)),
         format!("noise of one force reading {}", number::stated(noise, Dimension::FORCE)),

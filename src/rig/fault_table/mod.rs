@@ -4,6 +4,7 @@
 //!
 //! | Row | Fault | Shown by |
 //! |---|---|---|
+//! | 6 | a disk too small for the run | `room::no_rig_writes_more_than_was_reckoned` |
 //! | 10 | no reply | `line::a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held` |
 //! | 11 | parts of replies, two in one read | `line::a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply`, `line::a_reply_cut_anywhere_is_never_a_shorter_number` |
 //! | 12 | garbage, a megabyte without an end | `line::garbage_of_any_kind_is_counted_and_none_of_it_is_used` |
@@ -28,6 +29,7 @@ mod gate;
 mod line;
 mod long;
 mod motion;
+mod room;
 mod stage;
 mod targets;
 mod unnumbered;

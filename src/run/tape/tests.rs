@@ -175,6 +175,7 @@ pub(crate) fn header() -> Header {
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
+        equipment: None,
         rehearsal: false,
         served: None,
         date: None,
@@ -460,4 +461,12 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
     same_measure(&plan.rig, &turned).unwrap();
     turned.sign = -turned.sign;
     assert_eq!(same_measure(&plan.rig, &turned), Err(Refusal::OtherMeasure { what: "sign" }));
+
+    let fine = DeclaredNoise { force: 1.0, resolution: 1e-6 };
+    same_resolution(fine, DeclaredNoise { force: 2.0, ..fine }).unwrap();
+    assert!(same_resolution(fine, DeclaredNoise { resolution: 1e-5, ..fine }).is_err());
+    let was = Standing::new(&plan).identity();
+    let is = Identity { firmware: "2.0".to_owned(), ..was.clone() };
+    assert!(matches!(same_rig(&was, &is, false), Err(Refusal::OtherFirmware { .. })));
+    same_rig(&was, &is, true).unwrap();
 }
