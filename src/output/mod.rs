@@ -14,6 +14,7 @@ mod manifest;
 mod number;
 mod shake_table;
 pub mod standing;
+mod storey_table;
 pub mod summary;
 mod tables;
 

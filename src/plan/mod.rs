@@ -21,7 +21,7 @@ pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unlo
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind};
-pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
+pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal};
@@ -227,6 +227,7 @@ pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
     DampingSweep(DampingSweep),
     Impact(Impact),
+    StoreyImpact(StoreyImpact),
     Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
@@ -245,7 +246,7 @@ impl ProcedureKind {
         match self {
             Self::StiffnessRamp(_) => "stiffness ramp",
             Self::DampingSweep(_) => "damping sweep",
-            Self::Impact(_) => "impact",
+            Self::Impact(_) | Self::StoreyImpact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
             Self::Unload(_) => "unload",
@@ -262,6 +263,7 @@ impl ProcedureKind {
             Self::StiffnessRamp(ramp) => Some(ramp.specimen),
             Self::DampingSweep(sweep) => Some(sweep.specimen),
             Self::Impact(impact) => Some(impact.specimen),
+            Self::StoreyImpact(impact) => Some(impact.specimen),
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),

@@ -50,6 +50,10 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
                 let (first, last) = (history.steps.first()?, history.steps.last()?);
                 (last.time - first.time, last.wall_time - first.wall_time)
             }
+            History::StoreyImpact(history) => {
+                let (first, last) = (history.blow.steps.first()?, history.blow.steps.last()?);
+                (last.time - first.time, last.wall_time - first.wall_time)
+            }
             History::Shake(history) => {
                 let (first, last) = (history.steps.first()?, history.steps.last()?);
                 (last.time - first.time, last.wall_time - first.wall_time)

@@ -15,6 +15,7 @@ mod marks;
 mod method;
 mod particulars;
 mod results;
+mod storey;
 
 use super::document::{Block, Document, Figure, Text};
 use super::figures::Drawn;
