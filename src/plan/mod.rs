@@ -17,6 +17,7 @@ use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
 pub use crate::mechanics::multilinear_fit::BreakCount;
+pub use crate::mechanics::relaxation::RelaxationModel;
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
@@ -289,8 +290,20 @@ pub struct StiffnessRamp {
     /// Also back to the start through the same displacements.
     pub return_path: bool,
     pub fit: RampFit,
+    /// Readings during the pauses of the first repeat.
+    pub relaxation: Option<WatchedHold>,
     /// Actuator speed, m/s.
     pub speed: Option<Formula>,
+}
+
+/// How the force is watched while it relaxes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WatchedHold {
+    pub model: RelaxationModel,
+    /// In a pause, after the first.
+    pub readings: u32,
+    /// N, to which the force is to be known. None: the noise of the rig's cell, if it declares one.
+    pub accuracy: Option<f64>,
 }
 
 /// What is fitted to force on displacement.

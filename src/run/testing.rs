@@ -107,6 +107,7 @@ pub(crate) fn ramp(step: f64) -> StiffnessRamp {
         repeats: 1,
         return_path: false,
         fit: RampFit::Linear,
+        relaxation: None,
         speed: None,
     }
 }

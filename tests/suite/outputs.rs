@@ -281,8 +281,14 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     history.steps.truncate(1);
     finished.record.procedures[2].complete = false;
     finished.record.procedures[2].results.clear();
-    finished.record.procedures[0].history =
-        History::Ramp(RampHistory { steps: Vec::new(), fit: None, bilinear: None, multilinear: None });
+    finished.record.procedures[0].history = History::Ramp(RampHistory {
+        steps: Vec::new(),
+        fit: None,
+        bilinear: None,
+        multilinear: None,
+        holds: Vec::new(),
+        relaxation: None,
+    });
     finished.record.outcome = Outcome::Aborted { reason: "force 12.1 kN is outside its limit".into() };
     finished.assessment.verdict = Verdict::Aborted;
     finished.assessment.requirements[0].verdict = Verdict::Inconclusive;

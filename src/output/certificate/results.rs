@@ -5,9 +5,9 @@ use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
 use super::{blows, budget, contact_log, curve, cycles, frames, method, storey, words};
 use crate::formula::ResultValue;
-use crate::plan::{Contact, Impact, ProcedureKind};
+use crate::plan::{Contact, Impact, ProcedureKind, RelaxationModel};
 use crate::quantity::Dimension;
-use crate::record::{History, ImpactHistory, LineFit, NamedResult, ProcedureRecord};
+use crate::record::{History, Hold, ImpactHistory, LineFit, NamedResult, ProcedureRecord, RelaxationFit};
 
 /// Every procedure that was run, in order.
 pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
@@ -25,6 +25,9 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
                 if let Some(fit) = &history.multilinear {
                     let reach = history.steps.iter().map(|step| step.displacement);
                     curve::table(fit, reach.fold(0.0, |most, x| if fit.way * x > fit.way * most { x } else { most }), body);
+                }
+                if let Some(fit) = &history.relaxation {
+                    body.push(relaxed(fit, &history.holds));
                 }
                 if let Some(fit) = history.fit {
                     body.push(fitted("R = K·X + R₀", ("K", Dimension::STIFFNESS), ("R₀", Dimension::FORCE), fit));
@@ -132,6 +135,27 @@ fn fitted(line: &str, slope: (&str, Dimension), intercept: (&str, Dimension), fi
         number(slope, fit.slope, fit.slope_error),
         number(intercept, fit.intercept, fit.intercept_error),
         fit.r_squared
+    ))
+}
+
+/// The relaxation of the holds: its model, how far the readings lie from it, and what the pauses left.
+fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
+    let with = |(value, error): (f64, f64), dimension| number::with_uncertainty(value, Some(error), dimension);
+    let model = match fit.model {
+        RelaxationModel::Exponential => "R = R∞ + A e^(−t/τ) in every pause".to_owned(),
+        RelaxationModel::StandardLinearSolid => {
+            let solid = fit.branch_stiffness.map(|stiffness| format!(", K₁ = {}", with(stiffness, Dimension::STIFFNESS)));
+            format!("R = R₀ + K∞X + q, q' = K₁X' − q/τ through all moves and pauses{}", solid.unwrap_or_default())
+        }
+    };
+    let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
+    Block::note(format!(
+        "Relaxation by least squares over {readings} readings in {} pauses: {model}, τ = {} (± standard error); the readings scatter \
+         by {} about it. The pauses left {} to relax, at most.",
+        holds.len(),
+        with(fit.time_constant, Dimension::TIME),
+        number::text(fit.scatter, Dimension::FORCE),
+        with(fit.remaining, Dimension::FORCE),
     ))
 }
 

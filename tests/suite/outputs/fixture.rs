@@ -68,6 +68,8 @@ pub fn finished() -> Finished {
             fit: Some(line(327.72, 0.41, -0.012, 0.035)),
             bilinear: None,
             multilinear: None,
+            holds: Vec::new(),
+            relaxation: None,
         }),
     };
     let sweep = ProcedureRecord {
@@ -283,6 +285,7 @@ fn plan() -> Plan {
                 repeats: 1,
                 return_path: true,
                 fit: RampFit::Linear,
+                relaxation: None,
                 speed: None,
             }),
         ),
