@@ -25,6 +25,7 @@ pub mod relaxation;
 mod relaxation_tests;
 pub mod rerun;
 pub mod scheme;
+pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod summary;

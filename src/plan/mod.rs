@@ -92,6 +92,8 @@ pub struct Specimen {
     pub name: String,
     /// Equivalent mass at the struck section, kg; of a frame, all its floors.
     pub mass: f64,
+    /// How the plan comes to it, in its own words; None where it states the number.
+    pub mass_from: Option<String>,
     /// Standard, kg; 0 where none is stated.
     pub mass_uncertainty: f64,
     /// The storeys, where it has any; each has an actuator and a load cell.

@@ -130,10 +130,7 @@ pub fn finished() -> Finished {
             run_id: "0123456789abcdef".into(),
             psd_version: "0.1.0".into(),
             plan_sha256: "ab".repeat(32),
-            date: None,
-            real: None,
-            equipment: None,
-            amends: None,
+            ..Provenance::default()
         },
     }
 }
@@ -345,6 +342,7 @@ fn plan() -> Plan {
         specimens: vec![Specimen {
             name: "beam".into(),
             mass: MASS,
+            mass_from: None,
             mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: STIFFNESS }),
