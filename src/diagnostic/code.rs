@@ -142,6 +142,7 @@ codes! {
     W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
+    W718 StifferThanOperator Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
 }
