@@ -7,31 +7,33 @@ use std::rc::Rc;
 
 use super::measured::measured;
 use super::*;
+use crate::mechanics::path::Path;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
 use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
-use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, VirtualRig};
+use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, virtual_rig};
 use crate::run::testing::{elastic_plan, impact, ramp, result_of};
 use crate::run::{Inspection, StepReport};
 
 /// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
 #[derive(Clone)]
-struct Standing(Rc<RefCell<Stand>>, u64);
+pub(super) struct Standing(pub(super) Rc<RefCell<Stand>>, u64);
 
-struct Stand {
-    rig: VirtualRig,
-    offered: Option<f64>,
+pub(super) struct Stand {
+    rig: Box<dyn Rig>,
+    offered: Option<Vec<f64>>,
     last: LastMove,
-    /// Every target that was carried out, m.
-    carried_out: Vec<f64>,
+    /// Every target that was carried out, of each axis, m.
+    pub(super) carried_out: Vec<Vec<f64>>,
 }
 
 impl Standing {
-    fn new(plan: &Plan) -> Self {
-        let last = LastMove { id: 0, targets: vec![0.0] };
-        Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })), 0)
+    pub(super) fn new(plan: &Plan) -> Self {
+        let rig = virtual_rig(plan);
+        let last = LastMove { id: 0, targets: vec![0.0; rig.degrees_of_freedom()] };
+        Self(Rc::new(RefCell::new(Stand { rig, offered: None, last, carried_out: Vec::new() })), 0)
     }
 }
 
@@ -40,22 +42,22 @@ impl Rig for Standing {
         self.0.borrow().rig.identity()
     }
     fn degrees_of_freedom(&self) -> usize {
-        1
+        self.0.borrow().rig.degrees_of_freedom()
     }
     fn time(&self) -> f64 {
         self.0.borrow().rig.time()
     }
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
         let mut stand = self.0.borrow_mut();
-        stand.offered = Some(targets[0]);
+        stand.offered = Some(targets.to_vec());
         let id = stand.last.id + 1;
         Ok(Offer { move_id: Some(id), ..stand.rig.propose(targets, speed)? })
     }
     fn execute(&mut self) -> Result<(), RigFault> {
         let mut stand = self.0.borrow_mut();
         let target = stand.offered.take().unwrap();
-        stand.carried_out.push(target);
-        stand.last = LastMove { id: stand.last.id + 1, targets: vec![target] };
+        stand.carried_out.push(target.clone());
+        stand.last = LastMove { id: stand.last.id + 1, targets: target };
         stand.rig.execute()
     }
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
@@ -72,6 +74,9 @@ impl Rig for Standing {
             due += 1;
             if due.is_multiple_of(5) { Ok(()) } else { each(reading) }
         })
+    }
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.0.borrow_mut().rig.glide(paths, samples, each)
     }
     fn hold(&mut self) {
         self.0.borrow_mut().rig.hold();
@@ -127,7 +132,7 @@ impl Storage for Killed {
 }
 
 /// Answers every inspection with a name.
-struct Witness;
+pub(super) struct Witness;
 
 impl Observer for Witness {
     fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
@@ -193,7 +198,7 @@ fn journal(storage: impl Storage + 'static) -> Journal {
 }
 
 /// Records the plan on a fresh rig; the rig, the record and the journal's bytes.
-fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
+pub(super) fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
     let (mut rig, disk) = (Standing::new(plan), PowerLoss::new());
     let mut journal = journal(disk.clone());
     begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
@@ -201,7 +206,7 @@ fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
     (rig, recorded, disk.written())
 }
 
-fn played(bytes: &[u8]) -> (Recovered, Played) {
+pub(super) fn played(bytes: &[u8]) -> (Recovered, Played) {
     let recovered = recover(bytes).unwrap();
     let played = Played::of(&recovered).unwrap();
     (recovered, played)
@@ -249,31 +254,37 @@ fn what_the_run_would_not_have_done_is_found_out() {
 
 #[test]
 fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
-    let plan = plan();
-    let (whole_rig, whole, _) = recorded(&plan);
+    let kills = killed_everywhere(&plan(), 1);
+    assert!(kills > 200, "{kills}");
+}
+
+/// Kills the run at every `step`-th call on its disk, before and after the bytes are there, and goes on each time.
+pub(super) fn killed_everywhere(plan: &Plan, step: usize) -> usize {
+    let (whole_rig, whole, _) = recorded(plan);
+    assert_eq!(whole.record.outcome, Outcome::Completed, "{:?}", whole.record.events);
     let once = whole_rig.0.borrow().carried_out.clone();
     let mut kills = 0;
-    for call in 4.. {
+    for call in (4..).step_by(step) {
         for after in [false, true] {
-            let (rig, disk) = (Standing::new(&plan), PowerLoss::new());
+            let (rig, disk) = (Standing::new(plan), PowerLoss::new());
             let storage = Killed { disk: disk.clone(), left: call, after, dead: false };
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 let mut journal = journal(storage);
                 begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
-                record(&plan, &mut rig.clone(), &mut Witness, journal, no_wall())
+                record(plan, &mut rig.clone(), &mut Witness, journal, no_wall())
             }));
             if ended.is_ok() {
-                assert!(kills > 200, "{kills}");
-                return;
+                return kills;
             }
             kills += 1;
-            go_on_and_compare(&plan, rig, &disk, &measured(&whole.record), &once, call);
+            go_on_and_compare(plan, rig, &disk, &measured(&whole.record), &once, call);
         }
     }
+    kills
 }
 
 /// What was written is what a killed program leaves: the system still has it.
-fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected: &str, once: &[f64], call: usize) {
+fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected: &str, once: &[Vec<f64>], call: usize) {
     let (recovered, before) = played(&disk.written());
     if before.ended {
         return;
@@ -290,7 +301,7 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
         from: decision.from,
         by: "A. Witness".to_owned(),
         reason: "power".to_owned(),
-        doubt: decision.doubt,
+        doubt: decision.doubt.clone(),
         found: (found.displacement, found.force),
         recorded: decision.recorded,
         t: before.time,
