@@ -3,7 +3,9 @@
 
 mod amended;
 mod certificate;
+mod clock;
 mod disk;
+mod ended;
 mod golden;
 mod hand;
 mod killed;
