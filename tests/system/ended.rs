@@ -1,5 +1,6 @@
-//! The program ends in the middle of what it does: a panic, an abort, a fault of its memory. A panic tells the rig to hold; of an
-//! abort nobody can tell it, and the rig holds by its own watchdog. The run goes on either way, and no target is carried out twice.
+//! The program ends in the middle of what it does: an abort, or a panic where the system gives it no thread. Of an abort nobody can
+//! tell the rig, which holds by its own watchdog; the run goes on, and no target is carried out twice. A run starts its threads before
+//! its first move and after its last; that a panic between the two sends the word to hold is shown in `src/rig/safety.rs`.
 
 use std::process::Command;
 use std::time::Duration;
@@ -17,7 +18,7 @@ fn watched() -> Stage {
 #[test]
 fn by_an_abort_in_any_phase() {
     // In the ramp, after it, in the blow.
-    for (word, moves) in [(Signal::ABORT, 3), (Signal::SEGV, 18), (Signal::ABORT, 30)] {
+    for (word, moves) in [(Signal::ABORT, 3), (Signal::ILL, 18), (Signal::ABORT, 30)] {
         let stage = watched();
         let run = start(&mut stage.run_with(&["--yes"]));
         stage.after_moves(moves);
@@ -63,10 +64,9 @@ fn by_a_panic_where_a_thread_cannot_be_started() {
             before += 1;
             continue;
         }
+        // The run had ended, and its record was whole.
         after += 1;
-        let requests = stage.requests();
-        let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
-        assert!(last("!") > last(">MOVE"), "{number}: not held: {:?}", &requests[requests.len() - 4..]);
+        assert_eq!(stage.moves().len(), 42, "{number}");
         // What the panic cost is made again from the record.
         let again = wait(Command::new(PSD).arg("report").arg(stage.path("run")).arg("--out").arg(stage.path("again")));
         assert_eq!(again.code, Some(0), "{number}: {}", again.told);
