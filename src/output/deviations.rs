@@ -57,7 +57,7 @@ fn jump(jump: &ClockJump) -> String {
     let size = jump.seconds.abs();
     let (unit, name) = units.into_iter().find(|(unit, _)| size >= *unit).unwrap_or((1.0, "s"));
     let sign = if jump.seconds < 0.0 { '−' } else { '+' };
-    let by = trimmed(&format!("{:.1}", size / unit)).to_owned();
+    let by = trimmed(&format!("{:.1}", size / unit));
     let at = number::text(jump.time, Dimension::TIME);
     format!("The wall clock jumped by {sign}{by}\u{a0}{name} at {at} of rig time: durations are of a clock that does not.")
 }

@@ -122,8 +122,7 @@ fn plans() -> Vec<(&'static str, Plan)> {
 
 fn killed(name: &str) {
     let plan = plans().into_iter().find(|(own, _)| *own == name).unwrap().1;
-    let kills = killed_everywhere(&plan, 1);
-    assert!(kills > 30, "{name}: {kills}");
+    killed_everywhere(&plan, 30);
 }
 
 #[test]

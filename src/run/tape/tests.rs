@@ -2,7 +2,7 @@
 //! same end with no target carried out twice.
 
 use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
 use super::measured::measured;
@@ -10,11 +10,11 @@ use super::*;
 use crate::mechanics::path::Path;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
-use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
+use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, virtual_rig};
-use crate::run::testing::{elastic_plan, impact, ramp, result_of};
+use crate::run::testing::{elastic_plan, impact, ramp, result_of, struck_frame};
 use crate::run::{Inspection, StepReport};
 
 /// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
@@ -92,45 +92,6 @@ impl Rig for Standing {
     }
 }
 
-/// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
-struct Killed {
-    disk: PowerLoss,
-    left: usize,
-    after: bool,
-    dead: bool,
-}
-
-impl Killed {
-    fn call(&mut self, call: impl FnOnce(&mut PowerLoss) -> std::io::Result<()>) -> std::io::Result<()> {
-        // What is dropped on the way out writes nothing more.
-        if self.dead {
-            return Ok(());
-        }
-        let last = self.left == 0;
-        self.dead = last;
-        if !last || self.after {
-            call(&mut self.disk)?;
-        }
-        if last {
-            resume_unwind(Box::new("killed"));
-        }
-        self.left -= 1;
-        Ok(())
-    }
-}
-
-impl Storage for Killed {
-    fn append(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.call(|disk| disk.append(bytes))
-    }
-    fn sync(&mut self) -> std::io::Result<()> {
-        self.call(Storage::sync)
-    }
-    fn cut(&mut self, length: u64) -> std::io::Result<()> {
-        self.disk.cut(length)
-    }
-}
-
 /// Answers every inspection with a name.
 pub(super) struct Witness;
 
@@ -176,6 +137,7 @@ pub(crate) fn header() -> Header {
         run_id: "0123456789abcdef".to_owned(),
         psd: "0".to_owned(),
         build: "0".to_owned(),
+        toolchain: String::new(),
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
@@ -254,33 +216,38 @@ fn what_the_run_would_not_have_done_is_found_out() {
 
 #[test]
 fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
-    let kills = killed_everywhere(&plan(), 1);
-    assert!(kills > 200, "{kills}");
+    killed_everywhere(&plan(), 200);
 }
 
-/// Kills the run at every `step`-th call on its disk, before and after the bytes are there, and goes on each time.
-pub(super) fn killed_everywhere(plan: &Plan, step: usize) -> usize {
+/// A blow on a storey: targets and readings of two axes.
+#[test]
+fn killed_at_every_write_a_blow_on_a_storey_goes_on_to_the_same_end() {
+    killed_everywhere(&struck_frame(), 60);
+}
+
+/// Kills the run at every call on its disk, before and after the bytes are there, and goes on each time: more often than `least`.
+pub(super) fn killed_everywhere(plan: &Plan, least: usize) {
     let (whole_rig, whole, _) = recorded(plan);
     assert_eq!(whole.record.outcome, Outcome::Completed, "{:?}", whole.record.events);
     let once = whole_rig.0.borrow().carried_out.clone();
     let mut kills = 0;
-    for call in (4..).step_by(step) {
+    for call in 4.. {
         for after in [false, true] {
             let (rig, disk) = (Standing::new(plan), PowerLoss::new());
-            let storage = Killed { disk: disk.clone(), left: call, after, dead: false };
+            let storage = Killed::at(&disk, call, after);
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 let mut journal = journal(storage);
                 begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
                 record(plan, &mut rig.clone(), &mut Witness, journal, no_wall())
             }));
             if ended.is_ok() {
-                return kills;
+                assert!(kills > least, "{kills}");
+                return;
             }
             kills += 1;
             go_on_and_compare(plan, rig, &disk, &measured(&whole.record), &once, call);
         }
     }
-    kills
 }
 
 /// What was written is what a killed program leaves: the system still has it.

@@ -2,9 +2,11 @@
 //! bytes of a journal. Out: the bytes that are there afterwards. Not part of the program.
 
 mod forger;
+mod killed;
 mod power_loss;
 mod sick_disk;
 
 pub(crate) use forger::forged;
+pub(crate) use killed::Killed;
 pub(crate) use power_loss::PowerLoss;
 pub(crate) use sick_disk::{SickDisk, Sickness};
