@@ -4,6 +4,7 @@
 mod amended;
 mod certificate;
 mod disk;
+mod frame;
 mod golden;
 mod hand;
 mod killed;
