@@ -76,15 +76,17 @@ fn stage() -> Stage {
     Stage::of(plan, "")
 }
 
-/// Every number among the results of the shake.
-fn results(folder: &Path) -> Vec<f64> {
+/// Every number among the results of the shake, with the name of its result.
+fn results(folder: &Path) -> Vec<(String, f64)> {
     let summary: serde_json::Value = serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap();
-    let results = summary["procedures"]["quake"]["results"].as_object().expect("results").clone();
+    let results = summary["procedures"]["quake"]["results"].as_object().expect("results");
     let numbers = |value: &serde_json::Value| match value {
         serde_json::Value::Array(values) => values.iter().filter_map(serde_json::Value::as_f64).collect(),
         one => one.as_f64().into_iter().collect::<Vec<_>>(),
     };
-    results.values().flat_map(|result| numbers(&result["value"])).collect()
+    let named =
+        results.iter().flat_map(|(name, result)| numbers(&result["value"]).into_iter().map(|value| (name.clone(), value)));
+    named.collect()
 }
 
 fn succeeded(ended: &Ended) {
@@ -110,9 +112,10 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
     succeeded(&wait(&mut virtual_run));
     let (real, ideal) = (results(&whole.path("run")), results(&whole.path("ideal")));
     assert!(real.len() == ideal.len() && real.len() > 8);
-    // The wire resolves 1 nm and 1 mN: as in `fault_table::axes`.
-    for (real, ideal) in real.iter().zip(&ideal) {
-        assert!((real - ideal).abs() <= 2e-7 + 1e-6 * ideal.abs(), "{real} is not {ideal}");
+    // The wire resolves 1 nm and 1 mN; the energy error, nothing on an ideal rig, is a share of the input.
+    for ((name, real), (_, ideal)) in real.iter().zip(&ideal) {
+        let near = if name == "energy_error" { 1e-6 } else { 2e-8 + 1e-6 * ideal.abs() };
+        assert!((real - ideal).abs() <= near, "{name}: {real} is not {ideal}");
     }
 
     let cut_off = stage();
