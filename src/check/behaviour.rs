@@ -5,7 +5,7 @@ use super::choice::Chosen;
 use super::faults::specimens as fault;
 use super::table_file;
 use crate::mechanics::beam;
-use crate::plan::{Beam, Behaviour, Bolted, Breaks, Ends, Loads, Pinching, Portal, Table, Unloading};
+use crate::plan::{Beam, Behaviour, Bolted, Breaks, Ends, Loads, Pinching, Portal, Sections, Table, Unloading};
 use crate::schema::Variant;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind};
@@ -27,7 +27,7 @@ pub struct Written<'a> {
 
 /// The behaviour, whole and not too large.
 pub fn behaviour<'a>(checker: &mut Checker<'a>, written: &Written<'a>) -> Option<Behaviour> {
-    let found = part(checker, written, written.expr, true)?;
+    let found = part(checker, written, written.expr, Stands::Outermost)?;
     if count(&found) > MOST_PARTS {
         return checker.fail(fault::too_many_parts(MOST_PARTS, "springs", written.expr.span));
     }
@@ -47,7 +47,15 @@ fn in_series(behaviour: &Behaviour) -> usize {
     if matches!(behaviour, Behaviour::Series(_)) { parts.sum() } else { parts.max().unwrap_or(1) }
 }
 
-fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, outermost: bool) -> Option<Behaviour> {
+/// Where a behaviour stands: what the load cell feels of a speed or in time cannot stand inside another.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stands {
+    Outermost,
+    BesideBranch,
+    Inside,
+}
+
+fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, stands: Stands) -> Option<Behaviour> {
     let place = written.place;
     let chosen = checker.chosen(written.field, written.variants, expr)?;
     let mut number = |name: &str| checker.constant_argument(&chosen, name, place);
@@ -88,11 +96,20 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, ou
         }
         "rate" => {
             let (reference_velocity, exponent) = (number("reference_velocity"), number("exponent"));
-            if !outermost {
-                return checker.fail(fault::rate_inside(expr.span));
+            if stands != Stands::Outermost {
+                return checker.fail(fault::felt_inside("rate", expr.span));
             }
             let of = Box::new(inner(checker, written, &chosen)?);
             Some(Behaviour::Rate { of, reference_velocity: reference_velocity?, exponent: exponent? })
+        }
+        "maxwell" => {
+            let (stiffness, time_constant) = (number("stiffness"), number("time_constant"));
+            if stands == Stands::Inside {
+                return checker.fail(fault::felt_inside("maxwell", expr.span));
+            }
+            let (_, beside) = chosen.find("of")?;
+            let of = Box::new(part(checker, written, beside?, Stands::BesideBranch)?);
+            Some(Behaviour::Maxwell { of, stiffness: stiffness?, time_constant: time_constant? })
         }
         "multilinear" => multilinear(checker, &chosen, place),
         "table" => table(checker, &chosen),
@@ -107,7 +124,7 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, ou
 
 fn inner<'a>(checker: &mut Checker<'a>, written: &Written<'a>, chosen: &Chosen<'a>) -> Option<Behaviour> {
     let (_, expr) = chosen.find("of")?;
-    part(checker, written, expr?, false)
+    part(checker, written, expr?, Stands::Inside)
 }
 
 /// The behaviours that a variant joins, and where each stands.
@@ -125,7 +142,7 @@ fn parts<'a>(
     if exprs.len() > MOST_PARTS {
         return checker.fail(fault::too_many_parts(MOST_PARTS, "springs", span));
     }
-    let found: Vec<_> = exprs.into_iter().map(|expr| Some((part(checker, written, expr, false)?, expr.span))).collect();
+    let found: Vec<_> = exprs.into_iter().map(|expr| Some((part(checker, written, expr, Stands::Inside)?, expr.span))).collect();
     found.into_iter().collect()
 }
 
@@ -246,6 +263,8 @@ fn portal<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, span
     let (length, height, plastic_moment) = (number("span"), number("height"), number("plastic_moment"));
     let modulus = checker.optional_argument(chosen, "youngs_modulus", place);
     let second_moment = checker.optional_argument(chosen, "second_moment", place);
+    let column_moment = checker.optional_argument(chosen, "column_plastic_moment", place);
+    let column_second = checker.optional_argument(chosen, "column_second_moment", place);
     let stiffness = checker.optional_argument(chosen, "stiffness", place);
     let loads = checker.chosen_argument(chosen, "loads")?;
     let loads = match loads.variant.name {
@@ -258,9 +277,19 @@ fn portal<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, span
         }
     };
     let (length, height, plastic_moment) = (length?, height?, plastic_moment?);
-    let portal = match (modulus?, second_moment?, stiffness?) {
-        (Some(modulus), Some(second_moment), None) => {
-            Portal::of_section(length, height, plastic_moment, modulus * second_moment, loads)
+    let plastic_moment = Sections { beam: plastic_moment, column: column_moment?.unwrap_or(plastic_moment) };
+    let (second_moment, column_second) = (second_moment?, column_second?);
+    if let (Some(_), None) = (column_second, second_moment) {
+        return checker.fail(fault::missing_partner(
+            "column_second_moment",
+            "second_moment",
+            chosen.span("column_second_moment")?,
+        ));
+    }
+    let portal = match (modulus?, second_moment, stiffness?) {
+        (Some(modulus), Some(beam), None) => {
+            let bending = Sections { beam: modulus * beam, column: modulus * column_second.unwrap_or(beam) };
+            Portal::of_sections(length, height, plastic_moment, bending, loads)
         }
         (None, None, Some(stiffness)) => {
             Portal { span: length, height, plastic_moment, bending_stiffness: None, stiffness, loads }

@@ -115,6 +115,8 @@ codes! {
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
     E635 TooUncertain Error;
+    E640 WhichStorey Error;
+    E641 NoUseOnAFrame Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;
@@ -123,6 +125,7 @@ codes! {
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;
     E649 BreaksTwice Error;
+    E650 RelaxationWithoutHold Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

@@ -9,7 +9,7 @@ use crate::formula::{Formula, ResultReference, ResultValue, Results};
 use crate::mechanics::critical_time_step;
 use crate::plan::{DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp};
 
-use super::shake;
+use super::{shake, storey_impact};
 
 /// What a run may write.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,6 +177,10 @@ impl Reckoner<'_> {
             ProcedureKind::Escalate(escalate) => {
                 let between = moves(UNLOADING * self.way).plus(Counts { steps: UNLOADING, ..Counts::default() });
                 Some(self.blow(&escalate.blow)?.plus(between).times(rounded(escalate.velocities.len() as u64)))
+            }
+            ProcedureKind::StoreyImpact(impact) => {
+                let steps = rounded(storey_impact::steps(impact, self.plan)?) + 1.0;
+                Some(stepped(impact.mode, steps))
             }
             ProcedureKind::Shake(shaking) => {
                 let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;

@@ -171,6 +171,17 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
         "the load cell reads R (1 + (v/v₀)^exponent) while the actuator moves; stands outermost",
     ),
     Variant::with(
+        "maxwell",
+        &[
+            Field::inner("of", "what stands beside it; may be another `maxwell`").required("of: elastic(stiffness: 300 kN/m)"),
+            STIFFNESS,
+            Field::quantity("time_constant", Dimension::TIME, "τ in which its force falls to 1/e at rest")
+                .required("time_constant: 2 s")
+                .above_zero(),
+        ],
+        "a spring and a dashpot one behind the other, beside the rest: force that relaxes; stands outermost",
+    ),
+    Variant::with(
         "beam",
         &[
             Field::quantity("length", Dimension::LENGTH, "span").required("length: 1.4 m").above_zero(),
@@ -188,13 +199,23 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
         &[
             Field::quantity("span", Dimension::LENGTH, "L between the columns").required("span: 4 m").above_zero(),
             Field::quantity("height", Dimension::LENGTH, "h of the columns").required("height: 3 m").above_zero(),
-            Field::quantity("plastic_moment", Dimension::ENERGY, "Mp of the section, the same throughout")
-                .required("plastic_moment: 20 kN*m")
-                .above_zero(),
+            Field::quantity(
+                "plastic_moment",
+                Dimension::ENERGY,
+                "Mp of the section, of the beam where the columns have their own",
+            )
+            .required("plastic_moment: 20 kN*m")
+            .above_zero(),
             Field::choice("loads", LOADS, "what the frame carries").required("loads: sway"),
             YOUNGS_MODULUS,
             SECOND_MOMENT,
             Field::quantity("stiffness", Dimension::STIFFNESS, "in place of `youngs_modulus` and `second_moment`").above_zero(),
+            Field::quantity("column_plastic_moment", Dimension::ENERGY, "Mp of the columns")
+                .above_zero()
+                .or_said("as the beam's"),
+            Field::quantity("column_second_moment", Dimension::SECOND_MOMENT, "second moment of area of the columns")
+                .above_zero()
+                .or_said("as the beam's"),
         ],
         "a portal frame with fixed feet by plastic hinges: elastic up to the least collapse load",
     ),

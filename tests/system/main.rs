@@ -4,6 +4,7 @@
 mod amended;
 mod certificate;
 mod disk;
+mod faults;
 mod frame;
 mod golden;
 mod hand;
@@ -12,6 +13,7 @@ mod lost;
 mod named;
 mod needs;
 mod person;
+mod served;
 mod signed;
 mod stage;
 mod terminal;
