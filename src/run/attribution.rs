@@ -26,10 +26,12 @@ pub(super) fn attribute(
     let line = match history {
         History::Ramp(ramp) => ramp.fit,
         History::Sweep(sweep) => sweep.fit,
+        // What is fitted to the backbone; its loops know already.
+        History::Cycle(_) => None,
         _ => return,
     };
     let procedure = inputs.procedure();
-    for result in results.iter_mut() {
+    for result in results.iter_mut().filter(|result| result.contributions.is_empty()) {
         if let ResultValue::Number { value: Some(value), uncertainty: Some(own) } = result.value {
             result.contributions = own_parts(procedure, result.name, own, line.map(|line| line.correlation));
             result.contributions.extend(of_calibration(result, value, calibration));
