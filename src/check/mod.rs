@@ -42,6 +42,7 @@ mod scope;
 mod shake;
 mod specimen;
 mod stiffness_ramp;
+mod storey_impact;
 mod striker;
 mod table_file;
 #[cfg(test)]
@@ -163,6 +164,12 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             warnings::impact(checker, *block, impact, striker);
             mode::damping_twice(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
             integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
+        }
+        if let Some(Procedure { kind: ProcedureKind::StoreyImpact(impact), .. }) = procedure
+            && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
+            && let Some(Some(striker)) = strikers.get(impact.striker)
+        {
+            storey_impact::judge(checker, *block, impact, frame, striker);
         }
         if let Some(Procedure { kind: ProcedureKind::Shake(shaking), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(shaking.specimen)

@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::faults::{cyclic, values, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, Striker};
+use crate::plan::{Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker};
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
 
@@ -20,12 +20,17 @@ pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Opt
     if let (Contact::Limit { force }, Some(mass), Some(striker)) = (&impact.contact, impact.mass.constant(), striker)
         && let Some(force) = force.constant()
     {
-        // Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
-        let first = 2.0 * mass * striker.mass * striker.velocity / ((2.0 * mass + striker.mass) * force);
-        let resolved = mass * striker.mass / (mass + striker.mass) * striker.velocity / (5.0 * force);
-        if step > resolved {
-            checker.faults.push(fault::limit_force_not_resolved(at, step, first, resolved));
-        }
+        limit_force(checker, at, step, (mass, force), striker);
+    }
+}
+
+/// What a limit force (N) needs of the time step, on a structure of `mass` (kg): Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and
+/// Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
+pub fn limit_force(checker: &mut Checker, at: Span, step: f64, (mass, force): (f64, f64), striker: &Striker) {
+    let first = 2.0 * mass * striker.mass * striker.velocity / ((2.0 * mass + striker.mass) * force);
+    let resolved = mass * striker.mass / (mass + striker.mass) * striker.velocity / (5.0 * force);
+    if step > resolved {
+        checker.faults.push(fault::limit_force_not_resolved(at, step, first, resolved));
     }
 }
 
@@ -54,7 +59,7 @@ fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     let mut before: Option<usize> = None;
     for (block, procedure) in procedures {
         match procedure.as_ref().map(|procedure| &procedure.kind) {
-            Some(ProcedureKind::Impact(_)) => {
+            Some(ProcedureKind::Impact(_) | ProcedureKind::StoreyImpact(_)) => {
                 if let Some(first) = before {
                     let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
                     let name = first.name.map_or("", |name| name.node.as_str());
@@ -100,7 +105,8 @@ fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)],
         }
         for reference in references.iter().filter(|reference| reference.name == "max_contact_force") {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
-                && let ProcedureKind::Impact(Impact { contact: Contact::Rigid, .. }) = procedure.kind
+                && let ProcedureKind::Impact(Impact { contact: Contact::Rigid, .. })
+                | ProcedureKind::StoreyImpact(StoreyImpact { contact: Contact::Rigid, .. }) = procedure.kind
             {
                 let (condition, head) =
                     (checker.scope.requirements[index].condition.span, checker.scope.blocks[*block].block.head);

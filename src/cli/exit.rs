@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use super::room::NoRoom;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::rig::RigFault;
@@ -77,6 +78,8 @@ pub enum Failure {
     Journal(#[from] crate::record::journal::JournalFault),
     #[error("{0}")]
     Rig(#[from] crate::rig::RigFault),
+    #[error(transparent)]
+    NoRoom(#[from] super::room::NoRoom),
     #[error("{fault}")]
     NotOpened { fault: crate::rig::RigFault, place: String },
     #[error("no rehearsal: {0}")]
@@ -134,6 +137,7 @@ impl Failure {
             | Self::Stdout(_)
             | Self::Record(_)
             | Self::Journal(_)
+            | Self::NoRoom(_)
             | Self::Refused(_)
             | Self::Signals(_) => Exit::Fault,
         }
@@ -141,17 +145,20 @@ impl Failure {
 
     /// As told to the person.
     pub fn report(&self, settings: Settings) -> String {
-        let help = match self {
-            Self::CommandLine { help, .. } | Self::File { help, .. } => help.as_deref(),
-            Self::NotOpened { fault: RigFault::Device(told), .. } if told.contains(SILENT) => Some(LOOK_FOR),
-            _ => None,
+        let (head, help) = match self {
+            Self::CommandLine { help, .. } | Self::File { help, .. } => ("error:".to_owned(), help.clone()),
+            Self::NoRoom(fault) => (format!("error[{}]", NoRoom::CODE), Some(fault.help())),
+            Self::NotOpened { fault: RigFault::Device(told), .. } if told.contains(SILENT) => {
+                ("error:".to_owned(), Some(LOOK_FOR.to_owned()))
+            }
+            _ => ("error:".to_owned(), None),
         };
-        let mut text = format!("{} {}\n", settings.paint_error("error:"), escape(&self.to_string()));
+        let mut text = format!("{} {}\n", settings.paint_error(&head), escape(&self.to_string()));
         if let Self::NotOpened { place, .. } = self {
             let _ = writeln!(text, "{} {}", settings.paint_note("  at:"), escape(place));
         }
         if let Some(help) = help {
-            let _ = writeln!(text, "{} {}", settings.paint_note(" help:"), escape(help));
+            let _ = writeln!(text, "{} {}", settings.paint_note(" help:"), escape(&help));
         }
         text
     }

@@ -117,8 +117,19 @@ impl<'a> DryRun<'a> {
                 let foretold = explain_tracking::rows(self.plan, blow, procedure, history);
                 section(&format!("{}, impact", procedure.name), [impact(history), foretold].concat());
             }
+            if let History::StoreyImpact(history) = &procedure.history
+                && !history.floors.is_empty()
+            {
+                let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
+                section(&format!("{}, modes", procedure.name), modes);
+                let heading = format!("{}, impact on storey {}", procedure.name, history.struck + 1);
+                section(&heading, [impact(&history.blow), explain_shake::floors(history)].concat());
+            }
             if let History::Shake(history) = &procedure.history {
-                section(&format!("{}, modes", procedure.name), explain_shake::modes(history));
+                section(
+                    &format!("{}, modes", procedure.name),
+                    explain_shake::modes(history.modes.as_ref(), &history.damping_ratios),
+                );
                 section(&format!("{}, shake", procedure.name), explain_shake::steps(history));
             }
         }

@@ -21,6 +21,7 @@ pub fn of(plan: &Plan) -> Provenance {
         plan_sha256: hex(&Sha256::digest(text.as_bytes())),
         date,
         real: None,
+        equipment: None,
         amends: None,
     }
 }

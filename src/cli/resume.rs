@@ -12,9 +12,10 @@ use super::output::{give, tell};
 use super::record_file::{self, BUILD, ReadRecord, journal_of};
 use super::settings::Settings;
 use super::watch::Attendance;
-use super::{plan_file, provenance, real_rig};
+use super::{plan_file, provenance, real_rig, room};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
+use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::rig::Rig;
 use crate::run::tape::{self, AmendBody, Bands, Header, Played, ResumeBody, RigBody};
@@ -49,6 +50,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     // Before a port is opened or a byte written: the record, by the plan that is to go on.
     tape::same_measure(&read.plan.rig, &plan.rig)?;
     tape::rehearse(&plan, &read.played)?;
+    room::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
 
     let torn = storage.truncate_to(read.recovered.whole)?;
     let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
@@ -93,6 +95,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
             env!("CARGO_PKG_VERSION")
         ));
     }
+    let was = equipment_of(read)?;
     let (mut plan, mut header, mut texts) = (read.plan.clone(), recorded.clone(), read.played.texts.clone());
     if let Some(path) = &arguments.plan {
         let options = real_rig::settings_of(recorded);
@@ -100,12 +103,19 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
         let Some(given) = checked.plan else {
             return Err(Failure::command_line(format!("{} has errors: see `psd check`", path.display())));
         };
-        let now = record_file::header(&given, &options, &provenance::of(&given), record_file::Circumstances::default());
+        let nobody = record_file::Circumstances::default();
+        let now = record_file::header(&given, was.device.clone(), &options, &provenance::of(&given), nobody);
         differences.extend(changed_files(recorded, &now));
         header = Header { files: now.files, ..header };
         texts = record_file::texts(&given);
         plan = given;
     }
+    let now = Equipment::of(&plan, was.device.clone());
+    if let Some(what) = was.measures_otherwise(&now) {
+        return Err(tape::Refusal::OtherMeasure { what }.into());
+    }
+    differences.extend(was.changes(&now));
+    header.equipment = Some(now);
     if differences.is_empty() {
         return Ok((plan, read.provenance.clone(), None));
     }
@@ -116,9 +126,19 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
     }
     header = Header { psd: env!("CARGO_PKG_VERSION").to_owned(), build: BUILD.to_owned(), ..header };
     let plan_sha256 = header.files.first().map_or_else(String::new, |file| file.sha256.clone());
-    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), ..read.provenance.clone() };
+    let equipment = header.equipment.clone();
+    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), equipment, ..read.provenance.clone() };
     let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
     Ok((plan, provenance, Some((AmendBody { by, reason, differences, header }, texts))))
+}
+
+/// What the record says it was measured with; of version 1, what its plan and its rig say.
+fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
+    if let Some(told) = &read.played.header.equipment {
+        return Ok(told.clone());
+    }
+    let rig = read.played.rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
+    Ok(Equipment::of(&read.plan, Device::of(&rig.identity, rig.noise)))
 }
 
 /// Files whose digests differ, or that only one of the two has.
@@ -142,6 +162,7 @@ fn settle(
 ) -> Result<ResumeBody, Failure> {
     let recorded = played.last_rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
     tape::same_rig(&recorded.identity, &rig.identity(), arguments.re_referenced)?;
+    tape::same_resolution(recorded.noise, rig.declared_noise())?;
     let found = rig.read()?;
     let axes = 0..plan.rig.axes().unwrap_or(1);
     let band = axes.clone().map(|axis| 4.0 * link.readings_of(axis).resolution).fold(plan.rig.settle.band, f64::max);

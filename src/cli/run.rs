@@ -84,9 +84,12 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
     let mut watcher = Watcher::new(settings, attendance, plan, true, Wish::default()).map_err(Failure::Signals)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let provenance = provenance::of(plan);
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
+    let mut rig = virtual_rig(plan);
+    let device = record_file::device(rig.as_ref());
+    let header = record_file::header(plan, device, &arguments.plan_settings, &provenance, Circumstances::default());
+    let provenance = Provenance { equipment: header.equipment.clone(), ..provenance };
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let recorded = tape::record(plan, virtual_rig(plan).as_mut(), &mut watcher, journal, Box::new(|| None));
+    let recorded = tape::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None));
     watcher.finish();
     Ok(Ran { folder, provenance, recorded })
 }
@@ -97,7 +100,9 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     let provenance = provenance::of_real_run(plan, &circumstances);
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
+    let device = record_file::device(&opened.connected.rig);
+    let header = record_file::header(plan, device, &arguments.plan_settings, &provenance, circumstances);
+    let provenance = Provenance { equipment: header.equipment.clone(), ..provenance };
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let wall = real_rig::wall_clock();
     let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);

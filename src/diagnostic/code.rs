@@ -32,6 +32,9 @@ macro_rules! codes {
     };
 }
 
+/// Codes that no plan gives: what they say is of the machine that is to run it.
+pub const OF_THE_MACHINE: &[Code] = &[Code::NoRoom];
+
 codes! {
     // 1: the text
     E101 Syntax Error;
@@ -105,12 +108,15 @@ codes! {
     E626 FrameOnRealRig Error;
     E627 DampingRatios Error;
     E628 NoOneStiffness Error;
+    E629 NoRoom Error;
     E630 CornersDoNotFit Error;
     E631 BadTableFile Error;
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
     E635 TooUncertain Error;
+    E640 WhichStorey Error;
+    E641 NoUseOnAFrame Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;

@@ -14,16 +14,20 @@ mod manifest;
 mod number;
 mod shake_table;
 pub mod standing;
+mod storey_table;
 pub mod summary;
 mod tables;
 
 pub use figures::{Curve, Curves, FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures, PlainAxis};
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use crate::inert;
-use crate::plan::{Format, Plan, PlanFile};
+use crate::plan::{Format, Link, Plan, PlanFile};
 use crate::record::Record;
+use crate::record::equipment::{Device, Equipment};
+use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
 
@@ -38,8 +42,22 @@ pub struct Run<'a> {
     pub provenance: &'a Provenance,
 }
 
+impl Run<'_> {
+    /// What was measured with and held to: as the record tells it, else as plan and rig give it.
+    fn equipment(&self) -> Cow<'_, Equipment> {
+        let planned = || {
+            let noise = match &self.plan.rig.link {
+                Link::Virtual(link) => DeclaredNoise { force: link.noise, resolution: link.resolution },
+                Link::Real(link) => DeclaredNoise { force: link.readings.noise, resolution: link.readings.resolution },
+            };
+            Cow::Owned(Equipment::of(self.plan, Device::of(&self.record.rig, noise)))
+        };
+        self.provenance.equipment.as_ref().map_or_else(planned, Cow::Borrowed)
+    }
+}
+
 /// Where the numbers come from. Nothing here is read from the machine on a virtual rig.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
     pub run_id: String,
@@ -50,6 +68,8 @@ pub struct Provenance {
     pub date: Option<String>,
     /// Of a run on a real rig.
     pub real: Option<RealRun>,
+    /// As the record's first line tells it; None where it does not, or where there is none.
+    pub equipment: Option<Equipment>,
     /// Of a report that takes the place of another.
     pub amends: Option<Amends>,
 }

@@ -65,11 +65,13 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !told(run.provenance.operator()) {
         missing.push("the operator's name".to_owned());
     }
-    let calibration = &run.plan.rig.calibration;
-    if !told(calibration.reference.as_deref()) {
+    let equipment = run.equipment();
+    if !equipment.channels.iter().all(|channel| told(channel.certificate.as_deref())) {
         missing.push("the calibration's reference".to_owned());
     }
-    match (calibration.due.as_deref(), last_day(run)) {
+    // Days stand in order as texts: of several the first, and none before any.
+    let due = equipment.channels.iter().map(|channel| channel.due.as_deref()).min().flatten();
+    match (due, last_day(run)) {
         (None, _) => missing.push("the day until which the calibration holds".to_owned()),
         (Some(_), None) => missing.push("the day of the test".to_owned()),
         (Some(due), Some(day)) if due < day => {

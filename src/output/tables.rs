@@ -6,7 +6,7 @@ mod cyclic;
 
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
 
-use super::{OutputError, OutputFile, Run, shake_table, wants};
+use super::{OutputError, OutputFile, Run, shake_table, storey_table, wants};
 use crate::inert;
 use crate::plan::Format;
 use crate::record::{History, ImpactStep, ProcedureRecord, RampStep, SweepStep};
@@ -87,6 +87,7 @@ fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> 
         History::Move(steps) => (steps.len(), ramp(steps)),
         History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
         History::Impact(history) => (history.steps.len(), impact(&history.steps)),
+        History::StoreyImpact(history) => storey_table::columns(history),
         History::Shake(history) => shake_table::columns(&history.steps),
         History::Escalate(history) => (history.blows.len(), blows::rows(history)),
         History::Cycle(history) => (history.steps.len(), cyclic::steps(&history.steps)),

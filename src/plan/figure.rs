@@ -103,6 +103,18 @@ impl FigureKind {
                 Self::Energy,
                 Self::Tracking,
             ],
+            ProcedureKind::StoreyImpact(_) => &[
+                Self::Modes,
+                Self::Displacement,
+                Self::Drift,
+                Self::Hysteresis,
+                Self::BaseShear,
+                Self::Velocity,
+                Self::StrikerVelocity,
+                Self::ContactForce,
+                Self::Energy,
+                Self::Tracking,
+            ],
             ProcedureKind::Shake(_) => {
                 &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
             }

@@ -13,6 +13,7 @@ mod rig;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};
+use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
 pub use crate::mechanics::multilinear_fit::BreakCount;
@@ -20,7 +21,7 @@ pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unlo
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind};
-pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
+pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal};
@@ -187,6 +188,30 @@ impl Limits {
         tracking_energy_error: Interval::ALL,
         nrms_error: Interval::ALL,
     };
+
+    /// As the guard holds them: what tracking does to the energy has a limit always.
+    #[must_use]
+    pub fn held(&self) -> Self {
+        if self.tracking_energy_error.is_bounded() {
+            return *self;
+        }
+        Self { tracking_energy_error: Interval { low: 0.0, high: monitor::HOLD }, ..*self }
+    }
+
+    /// Every limit by the name of its field.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
+        [
+            ("displacement", self.displacement, Dimension::LENGTH),
+            ("force", self.force, Dimension::FORCE),
+            ("speed", self.speed, Dimension::VELOCITY),
+            ("increment", self.increment, Dimension::LENGTH),
+            ("tracking_error", self.tracking_error, Dimension::LENGTH),
+            ("energy_error", self.energy_error, Dimension::NUMBER),
+            ("tracking_energy_error", self.tracking_energy_error, Dimension::NUMBER),
+            ("nrms_error", self.nrms_error, Dimension::NUMBER),
+        ]
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -200,6 +225,7 @@ pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
     DampingSweep(DampingSweep),
     Impact(Impact),
+    StoreyImpact(StoreyImpact),
     Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
@@ -218,7 +244,7 @@ impl ProcedureKind {
         match self {
             Self::StiffnessRamp(_) => "stiffness ramp",
             Self::DampingSweep(_) => "damping sweep",
-            Self::Impact(_) => "impact",
+            Self::Impact(_) | Self::StoreyImpact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
             Self::Unload(_) => "unload",
@@ -235,6 +261,7 @@ impl ProcedureKind {
             Self::StiffnessRamp(ramp) => Some(ramp.specimen),
             Self::DampingSweep(sweep) => Some(sweep.specimen),
             Self::Impact(impact) => Some(impact.specimen),
+            Self::StoreyImpact(impact) => Some(impact.specimen),
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),

@@ -2,7 +2,9 @@
 //! certificates are functions of it.
 
 mod cycle;
+pub mod equipment;
 mod escalate;
+mod floors;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +14,6 @@ pub use crate::mechanics::backbone::BilinearFit;
 pub use crate::mechanics::contact::StepState;
 use crate::mechanics::energy::Energies;
 pub use crate::mechanics::frame::{FrameEnergies, Modes};
-use crate::mechanics::frame::{drifts, shears};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
@@ -21,6 +22,7 @@ use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use escalate::{Blow, EscalateHistory};
+pub use floors::{FloorStep, Floors, StoreyImpactHistory};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -103,6 +105,7 @@ pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),
     Impact(ImpactHistory),
+    StoreyImpact(StoreyImpactHistory),
     Shake(ShakeHistory),
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
@@ -236,21 +239,17 @@ pub struct ShakeStep {
     pub tracking: Tracking,
 }
 
-impl ShakeStep {
-    /// Drift of each storey, m, of the computed displacements.
-    #[must_use]
-    pub fn drift(&self) -> Vec<f64> {
-        let mut drift = vec![0.0; self.computed.len()];
-        drifts(&self.computed, &mut drift);
-        drift
+impl Floors for ShakeStep {
+    fn time(&self) -> f64 {
+        self.time
     }
 
-    /// Shear of each storey, N: the forces of the floors it carries; the first is the base shear.
-    #[must_use]
-    pub fn shear(&self) -> Vec<f64> {
-        let mut shear = vec![0.0; self.restoring_force.len()];
-        shears(&self.restoring_force, &mut shear);
-        shear
+    fn computed(&self) -> &[f64] {
+        &self.computed
+    }
+
+    fn restoring_force(&self) -> &[f64] {
+        &self.restoring_force
     }
 }
 

@@ -147,7 +147,7 @@ fn stable(plan: &Impact, time_step: f64, highest: f64) -> Result<(), Stop> {
     Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
 }
 
-fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
+pub(super) fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
     Ok(match contact {
         Contact::Rigid => ContactLaw::Rigid,
         Contact::Limit { force } => ContactLaw::Limit { force: inputs.positive("force_limit", force, Dimension::FORCE)? },
@@ -177,7 +177,7 @@ const SECONDS_PER_METRE: Dimension = Dimension {
 };
 
 /// What a reader of the results must know of how the run ended.
-fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
+pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
     if until == Until::StrikerStop && summary.stop_time.is_none() {
         session.event(EventKind::Remark, "the striker did not stop within the duration".to_owned());
     }
@@ -192,7 +192,7 @@ fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
 }
 
 /// In the order of the reference, `worst` the largest share of the input that tracking made of the energy; every number is missing if not even the start was read.
-fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &ImpactHistory) -> Vec<NamedResult> {
+pub(super) fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &ImpactHistory) -> Vec<NamedResult> {
     let of = |name, dimension, value: fn(&ImpactSummary) -> f64| result(name, dimension, summary.map(value));
     let ended = |name, dimension, value: fn(&ImpactStep) -> f64| result(name, dimension, history.steps.last().map(value));
     let known = |value: f64| (value > 0.0).then_some(value);

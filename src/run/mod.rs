@@ -1,6 +1,7 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
 mod attribution;
+mod axes;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -22,6 +23,9 @@ mod impact_tests;
 mod inputs;
 mod inspect;
 mod move_to;
+pub mod need;
+#[cfg(test)]
+mod need_tests;
 mod propagation;
 #[cfg(test)]
 mod propagation_tests;
@@ -39,6 +43,8 @@ mod shake_results;
 mod shaking;
 mod stiffness_ramp;
 mod stop;
+mod storey_impact;
+mod storey_summary;
 mod strike;
 pub mod tape;
 #[cfg(test)]
@@ -249,6 +255,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
+        ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),
         ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),

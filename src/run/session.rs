@@ -3,6 +3,7 @@
 
 use super::shake;
 use super::stop::Stop;
+use super::storey_impact;
 use super::{Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
@@ -235,6 +236,7 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         ProcedureKind::Escalate(escalate) => {
             Some(steps_of_blow(&escalate.blow)?.saturating_mul(escalate.velocities.len() as u64))
         }
+        ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan),
         ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),

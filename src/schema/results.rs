@@ -86,6 +86,16 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
     ResultKind::measured("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
     ResultKind::count("steps", "number of steps"),
+    ResultKind::new("contact_duration", Dimension::TIME, "virtual time of the first blow, in whole steps").of_storey(),
+    ResultKind::new("rebound_velocity", Dimension::VELOCITY, "speed of the striker on its way back at the end of the run")
+        .of_storey(),
+    ResultKind::list("floor_displacement", Dimension::LENGTH, "largest size of each floor's displacement").of_storey(),
+    ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift").of_storey(),
+    ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run").of_storey(),
+    ResultKind::list("storey_energy", Dimension::ENERGY, "shear of each storey integrated over its drift, over the run")
+        .of_storey(),
+    ResultKind::new("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey").of_storey(),
+    ResultKind::list("periods", Dimension::TIME, "natural periods, longest first").of_storey(),
 ];
 
 pub(super) const SHAKE: &[ResultKind] = &[

@@ -54,6 +54,7 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
         plan_sha256: String::new(),
         date: None,
         real: None,
+        equipment: None,
         amends: None,
     };
     let files = vectors(&Run { plan: &plan, record: &record, assessment: &assessment, provenance: &provenance })

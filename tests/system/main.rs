@@ -4,6 +4,7 @@
 mod amended;
 mod certificate;
 mod disk;
+mod faults;
 mod golden;
 mod hand;
 mod killed;
@@ -11,6 +12,7 @@ mod lost;
 mod named;
 mod needs;
 mod person;
+mod served;
 mod signed;
 mod stage;
 mod terminal;

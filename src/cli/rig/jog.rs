@@ -75,13 +75,14 @@ fn on_a_virtual_rig(
     settings: Settings,
 ) -> Result<Exit, Failure> {
     let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..Circumstances::default() };
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance::of(plan), circumstances);
+    let mut rig = virtual_rig(plan);
+    let device = record_file::device(rig.as_ref());
+    let header = record_file::header(plan, device, &arguments.plan_settings, &provenance::of(plan), circumstances);
     let journal = record_file::begin_nowhere(plan, &header)?;
     let mut hand = Hand { wanted, plan, person, settings, ended: None };
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = Box::new(|| None);
-    let (recorded, _) =
-        tape::record_driven(plan, virtual_rig(plan).as_mut(), &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
+    let (recorded, _) = tape::record_driven(plan, rig.as_mut(), &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
     hand.end(&recorded.record.outcome)
 }
 
@@ -98,7 +99,7 @@ fn on_a_real_rig(
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..real_rig::circumstances(plan, attendance) };
     let provenance = provenance::of_real_run(plan, &circumstances);
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
+    let header = record_file::header(plan, record_file::device(rig), &arguments.plan_settings, &provenance, circumstances);
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let mut hand = Hand { wanted, plan, person, settings, ended: None };
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);

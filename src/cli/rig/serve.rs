@@ -109,7 +109,7 @@ fn on_record(
 ) -> Result<Exit, Failure> {
     let Stage { plan, provenance, circumstances, wall } = stage;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
+    let header = record_file::header(plan, record_file::device(rig), &arguments.plan_settings, &provenance, circumstances);
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let mut exit = Exit::Met;
     let mut told = Ok(());

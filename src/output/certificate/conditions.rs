@@ -3,10 +3,11 @@
 
 use super::super::document::{Block, Text};
 use super::super::{Run, behaviour, number};
-use super::{described, frames, pairs, particulars};
-use crate::plan::{Interval, Limits, Settle, Specimen, Striker};
+use super::{described, frames, pairs, particulars, words};
+use crate::plan::{Interval, Settle, Specimen, Striker};
 use crate::quantity::Dimension;
 use crate::record::History;
+use crate::record::equipment::HeldLimit;
 
 /// Everything about how the test was set up.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
@@ -34,7 +35,7 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
         body.push(striker_table(striker));
     }
     body.push(Block::part("Limits"));
-    body.push(limits(&run.plan.limits));
+    body.push(limits(run));
     if !run.plan.parameters.is_empty() {
         body.push(Block::part("Parameters"));
         body.push(parameters(run));
@@ -47,6 +48,10 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
         let (virtual_time, rig_time) = match &procedure.history {
             History::Impact(history) => {
                 let (first, last) = (history.steps.first()?, history.steps.last()?);
+                (last.time - first.time, last.wall_time - first.wall_time)
+            }
+            History::StoreyImpact(history) => {
+                let (first, last) = (history.blow.steps.first()?, history.blow.steps.last()?);
                 (last.time - first.time, last.wall_time - first.wall_time)
             }
             History::Shake(history) => {
@@ -122,22 +127,16 @@ pub(super) fn settling(settle: Settle) -> String {
     )
 }
 
-fn limits(limits: &Limits) -> Block {
-    let rows: Vec<(&str, String)> = [
-        ("displacement", limits.displacement, Dimension::LENGTH),
-        ("force", limits.force, Dimension::FORCE),
-        ("speed", limits.speed, Dimension::VELOCITY),
-        ("increment", limits.increment, Dimension::LENGTH),
-        ("tracking error", limits.tracking_error, Dimension::LENGTH),
-        ("energy error", limits.energy_error, Dimension::NUMBER),
-        ("tracking energy error", limits.tracking_energy_error, Dimension::NUMBER),
-        ("NRMS tracking error", limits.nrms_error, Dimension::NUMBER),
-    ]
-    .into_iter()
-    .filter(|(_, interval, _)| interval.is_bounded())
-    .map(|(name, interval, dimension)| (name, range(interval, dimension)))
-    .collect();
-    if rows.is_empty() { Block::paragraph("The plan sets no limit.") } else { described(rows) }
+/// As the guard held them, also what holds by default.
+fn limits(run: &Run<'_>) -> Block {
+    let equipment = run.equipment();
+    let row = |limit: &HeldLimit| {
+        let name = if limit.quantity == "nrms_error" { "NRMS tracking error".to_owned() } else { words(&limit.quantity) };
+        let axis = limit.axis.map_or_else(String::new, |axis| format!(", axis {axis}"));
+        (Text::from(name + &axis), Text::from(range(limit.interval(), limit.dimension())))
+    };
+    let rows: Vec<(Text, Text)> = equipment.limits.iter().map(row).collect();
+    if rows.is_empty() { Block::paragraph("Nothing was limited.") } else { Block::Pairs { rows } }
 }
 
 pub(super) fn range(interval: Interval, dimension: Dimension) -> String {

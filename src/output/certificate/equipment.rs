@@ -9,6 +9,7 @@ use crate::plan::{Calibration, DeviceLink, Gate, PortPlan, ReadingRules, RealLin
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
 use crate::record::EventKind;
+use crate::record::equipment::{Channel, Device, GivenIn};
 
 /// The rig of the run.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
@@ -20,38 +21,52 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     });
 }
 
-/// What the rig's numbers are traced to, and whether that still held on the day of the test.
+/// What the rig's numbers are traced to, and whether that still held on the day of the test: a row a channel of a real rig.
 fn calibration(run: &Run<'_>) -> Block {
-    let identity = &run.record.rig;
-    let calibration = &run.plan.rig.calibration;
+    let equipment = run.equipment();
+    let identity = &equipment.device.identity;
     let told: Vec<&str> =
         [&identity.model, &identity.serial].into_iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
-    let state = match (calibration.due.as_deref(), standing::last_day(run)) {
-        (None, _) => Text::missing("no due date"),
-        (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
-        (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),
-        (Some(_), None) => Text::missing("day of the test not known"),
+    let model = || if told.is_empty() { Text::given(None) } else { told.join(", ").into() };
+    let traced = |channel: &Channel| {
+        let state = match (channel.due.as_deref(), standing::last_day(run)) {
+            (None, _) => Text::missing("no due date"),
+            (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
+            (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),
+            (Some(_), None) => Text::missing("day of the test not known"),
+        };
+        [Text::given(channel.certificate.as_deref()), Text::given(channel.due.as_deref()), state]
     };
-    let row = vec![
-        Text::from(run.plan.rig.name.as_str()),
-        if told.is_empty() { Text::given(None) } else { told.join(", ").into() },
-        Text::given(calibration.reference.as_deref()),
-        Text::given(calibration.due.as_deref()),
-        state,
-    ];
-    let columns = vec![
-        Column::short("Rig"),
-        Column::words("Model, serial number", 2),
-        Column::words("Calibration certificate", 2),
-        Column::short("Holds until"),
-        Column::short("State"),
-    ];
-    Block::Table(Table { columns, rows: vec![row] })
+    let rig = Text::from(run.plan.rig.name.as_str());
+    let (first, rows) = if run.plan.rig.link.as_real().is_some() {
+        let several = equipment.channels.iter().any(|channel| channel.axis > 1);
+        let row = |channel: &Channel| {
+            let axis = if several { format!(" {}", channel.axis) } else { String::new() };
+            let name = format!("{}{axis}", channel.measures.name());
+            [Text::from(name), model(), factor(channel).into()].into_iter().chain(traced(channel)).collect()
+        };
+        ("Channel", equipment.channels.iter().map(row).collect())
+    } else {
+        let row = |channel: &Channel| [rig.clone(), model()].into_iter().chain(traced(channel)).collect();
+        ("Rig", equipment.channels.first().map(row).into_iter().collect::<Vec<Vec<Text>>>())
+    };
+    let mut columns = vec![Column::short(first), Column::words("Model, serial number", 2)];
+    columns.extend((first == "Channel").then(|| Column::short("Factor")));
+    columns.extend([Column::words("Calibration certificate", 2), Column::short("Holds until"), Column::short("State")]);
+    Block::Table(Table { columns, rows })
+}
+
+/// How the number of a channel becomes a quantity.
+fn factor(channel: &Channel) -> String {
+    match channel.given_in {
+        GivenIn::Units => number::stated(channel.factor, Dimension::NUMBER),
+        GivenIn::Counts => format!("{} a count", number::stated(channel.factor, channel.measures.dimension())),
+    }
 }
 
 fn real(run: &Run<'_>, link: &RealLink) -> Block {
-    let identity = &run.record.rig;
-    let calibration = &run.plan.rig.calibration;
+    let equipment = run.equipment();
+    let identity = &equipment.device.identity;
     let kind = if identity.simulated { "a simulated controller on a real line: nothing real moved" } else { "real" };
     let mut rows = vec![("Kind", kind.into()), ("Firmware", Text::given(Some(&identity.firmware)))];
     if let Some(boot) = &identity.boot {
@@ -59,12 +74,11 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
     }
     rows.push(("Actuator", device(&link.actuator)));
     rows.push(("Load cell", link.load_cell.as_ref().map_or_else(|| "read by the actuator's controller".into(), device)));
-    if let Some(factor) = calibration.newtons_per_count {
-        let zero = number::stated(calibration.zero_count, Dimension::NUMBER);
-        rows.push(("Force of a count", format!("{}, zero at {zero}", number::stated(factor, Dimension::FORCE)).into()));
+    for channel in equipment.channels.iter().filter(|channel| channel.zero != 0.0) {
+        rows.push(("Count at no force", number::stated(channel.zero, Dimension::NUMBER).into()));
     }
-    rows.push(("Declared of its readings", declared(&link.readings).into()));
-    rows.extend(uncertainty(calibration));
+    rows.push(("Declared of its readings", declared(&equipment.device, &link.readings).into()));
+    rows.extend(uncertainty(&run.plan.rig.calibration));
     rows.push(("Taking a reading", taking(&link.readings).into()));
     rows.push(("Settling", settling(run.plan.rig.settle).into()));
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
@@ -79,7 +93,7 @@ fn simulated(run: &Run<'_>) -> Block {
     let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
     let mut rows = vec![
         ("Kind", "simulated: nothing real moved".into()),
-        ("Firmware", Text::given(Some(&run.record.rig.firmware))),
+        ("Firmware", Text::given(Some(&run.equipment().device.identity.firmware))),
         ("Simulated errors", errors(&link).into()),
         ("Settling", settling(run.plan.rig.settle).into()),
     ];
@@ -129,8 +143,8 @@ fn device(link: &DeviceLink) -> Text {
     }
 }
 
-fn declared(readings: &ReadingRules) -> String {
-    let ReadingRules { resolution, noise, force_range, .. } = *readings;
+fn declared(device: &Device, readings: &ReadingRules) -> String {
+    let (resolution, noise, force_range) = (device.resolution, device.noise, readings.force_range);
     let mut told = vec![
         format!("displacement to {}", number::stated(resolution, Dimension::LENGTH)),
         format!("noise of one force reading {}", number::stated(noise, Dimension::FORCE)),

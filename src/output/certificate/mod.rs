@@ -15,6 +15,7 @@ mod marks;
 mod method;
 mod particulars;
 mod results;
+mod storey;
 
 use super::Run;
 use super::document::{Block, Document, Figure, Text};

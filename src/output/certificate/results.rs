@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{blows, budget, contact_log, curve, cycles, frames, method, words};
+use super::{blows, budget, contact_log, curve, cycles, frames, method, storey, words};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Impact, ProcedureKind};
 use crate::quantity::{Dimension, display};
@@ -44,6 +44,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
                 energy_balance(history, body);
                 contact_log::table(history, body);
             }
+            History::StoreyImpact(history) => storey::struck(run, index, procedure, history, body),
             History::Cycle(history) => cycles::table(history, body),
             History::Shake(history) => frames::shaken(run, index, procedure, history, body),
             History::Escalate(history) => blows::table(history, body),
@@ -71,7 +72,7 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 fn table(procedure: &ProcedureRecord) -> Block {
     let tabled = match &procedure.history {
         History::Ramp(history) => history.multilinear.is_some(),
-        History::Cycle(_) | History::Escalate(_) | History::Shake(_) => true,
+        History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) => true,
         _ => false,
     };
     let results = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
@@ -152,7 +153,7 @@ fn force_note(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history:
     body.push(Block::paragraph(sentences.join(" ")));
 }
 
-fn scalar(procedure: &ProcedureRecord, name: &str) -> Option<f64> {
+pub(super) fn scalar(procedure: &ProcedureRecord, name: &str) -> Option<f64> {
     match procedure.result(name).map(|result| &result.value) {
         Some(ResultValue::Number { value, .. }) => *value,
         _ => None,
@@ -179,7 +180,7 @@ fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) ->
 }
 
 /// The law of contact as the plan chose it, in words.
-fn contact_law(contact: &Contact) -> &'static str {
+pub(super) fn contact_law(contact: &Contact) -> &'static str {
     match contact {
         Contact::Rigid => "rigid",
         Contact::Limit { .. } => "rigid up to a limit force",
@@ -201,7 +202,7 @@ fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impa
 }
 
 /// Where the striker's energy was at the end of the run.
-fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
+pub(super) fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
     let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else { return };
     let e = last.energies;
     let input = first.energies.striker + e.weight;

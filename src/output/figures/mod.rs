@@ -13,6 +13,7 @@ mod impact;
 mod plain;
 mod raster;
 mod shake;
+mod storey;
 mod vector;
 
 use rayon::prelude::*;
@@ -134,6 +135,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
                 "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
             ),
         ),
+        (History::StoreyImpact(history), kind) => return storey::chart(run, name, history, figure, kind),
         (History::Shake(history), kind) => return shaken(run, name, history, figure, kind),
         _ => return None,
     })
@@ -145,7 +147,7 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: Figure, kin
         return None;
     }
     let limits = |result| impact::limits_on(run, figure.procedure, result);
-    let chosen = if shake::is_chosen(history) { "; not every one is drawn" } else { "" };
+    let chosen = if shake::is_chosen(&history.steps) { "; not every one is drawn" } else { "" };
     Some(match kind {
         FigureKind::Modes => (
             shake::modes(history.modes.as_ref()?),
@@ -155,20 +157,21 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: Figure, kin
             (shake::ground(history), format!("{name}: acceleration of the ground, as it was applied, against virtual time."))
         }
         FigureKind::Displacement => (
-            shake::displacement(history),
+            shake::displacement(&history.steps),
             format!("{name}: displacement of each floor relative to the ground against virtual time{chosen}."),
         ),
-        FigureKind::Drift => {
-            (shake::drift(history, &limits("max_drift")), format!("{name}: drift of each storey against virtual time{chosen}."))
-        }
+        FigureKind::Drift => (
+            shake::drift(&history.steps, &limits("max_drift")),
+            format!("{name}: drift of each storey against virtual time{chosen}."),
+        ),
         FigureKind::Hysteresis => (
-            shake::hysteresis(history),
+            shake::hysteresis(&history.steps),
             format!(
                 "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
             ),
         ),
         FigureKind::BaseShear => (
-            shake::base_shear(history, &limits("max_base_shear")),
+            shake::base_shear(&history.steps, &limits("max_base_shear")),
             format!("{name}: base shear, the sum of the measured restoring forces, against virtual time."),
         ),
         FigureKind::Energy => {

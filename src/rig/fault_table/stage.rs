@@ -136,6 +136,7 @@ pub(super) fn header() -> Header {
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
+        equipment: None,
         date: None,
         operator: None,
         host: None,

@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::mechanics::path::Path;
+use crate::record::equipment::Equipment;
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
 
@@ -23,6 +24,9 @@ pub struct Header {
     pub settings: Vec<(String, String)>,
     /// Name of the rig, as `--rig` would say it; None: the default of the plan.
     pub rig: Option<String>,
+    /// What is measured with, and held to; None in records of version 1, which do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub equipment: Option<Equipment>,
     /// Whether only the part that a rehearsal measures was to run.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rehearsal: bool,

@@ -20,7 +20,7 @@ mod state;
 pub(crate) mod tests;
 mod way;
 
-pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_rig};
+pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_resolution, same_rig};
 pub use entry::{AmendBody, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody, StrokeBody};
 pub use observer::TapedObserver;
 pub use played::{Mismatch, Played, Unplayable};

@@ -130,6 +130,7 @@ pub fn finished() -> Finished {
             plan_sha256: "ab".repeat(32),
             date: None,
             real: None,
+            equipment: None,
             amends: None,
         },
     }
