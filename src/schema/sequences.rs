@@ -76,7 +76,7 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ResultKind::new("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
         ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
         ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),
-        ResultKind::new(
+        ResultKind::measured(
             "absorbed_energy",
             Dimension::ENERGY,
             "sum over the blows of what each absorbed up to its largest displacement",
