@@ -29,6 +29,7 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
         let specimen = PlanSpecimen {
             name: "spring".to_owned(),
             mass: 20.0,
+            mass_from: None,
             mass_uncertainty: 0.0,
             frame: None,
             behaviour,

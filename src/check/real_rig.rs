@@ -270,6 +270,11 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     if reference || due {
         checker.faults.push(fault::not_certifiable(&rig.plan.name, head, reference, due));
     }
+    if let (Some((_, None)), Some((_, entry))) =
+        (&rig.plan.calibration.displacement, checker.given(block, "displacement_calibration"))
+    {
+        checker.faults.push(fault::displacement_without_day(&rig.plan.name, entry.value.span));
+    }
     if axes.clone().any(|axis| link.readings_of(axis).resolution == 0.0) {
         let at = checker.given(block, "resolution").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::resolution_unknown(&rig.plan.name, at));

@@ -181,23 +181,36 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         Some(_) => checker.text_field(block, field).map(Some),
         None => Some(None),
     };
-    let (reference, due) = (text("calibration"), text("calibration_due"));
-    if let (Some(Some(day)), Some((_, entry))) = (&due, checker.given(block, "calibration_due"))
-        && !calendar::is_day(day)
-    {
-        return checker.fail(rigs::not_a_day(day, entry.value.span));
+    let (reference, due, force_class) = (text("calibration"), text("calibration_due"), text("force_class"));
+    let (own, own_due) = (text("displacement_calibration"), text("displacement_calibration_due"));
+    let displacement_class = text("displacement_class");
+    for (field, due) in [("calibration_due", &due), ("displacement_calibration_due", &own_due)] {
+        if let (Some(Some(day)), Some((_, entry))) = (due, checker.given(block, field))
+            && !calendar::is_day(day)
+        {
+            return checker.fail(rigs::not_a_day(day, entry.value.span));
+        }
     }
     let newtons_per_count = match checker.given(block, "force_per_count") {
         Some(_) => checker.constant(block, "force_per_count").map(Some),
         None => Some(None),
     };
     let zero_count = checker.constant(block, "zero_count");
+    let (own, own_due) = (own?, own_due?);
+    if own.is_none()
+        && let Some((_, entry)) = checker.given(block, "displacement_calibration_due")
+    {
+        return checker.fail(rigs::day_of_no_calibration(&entry.key));
+    }
     let (force, displacement) =
         (checker.constant(block, "force_uncertainty"), checker.constant(block, "displacement_uncertainty"));
     let zero = checker.constant(block, "zero_uncertainty");
     Some(Calibration {
         reference: reference?,
         due: due?,
+        force_class: force_class?,
+        displacement: own.map(|reference| (reference, own_due)),
+        displacement_class: displacement_class?,
         newtons_per_count: newtons_per_count?,
         zero_count: zero_count?,
         force_uncertainty: force?,

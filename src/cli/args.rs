@@ -12,7 +12,9 @@ pub use evidence::{KeygenArguments, ReportArguments, SignArguments, VerifyArgume
 
 /// Pseudo-dynamic structural tests, from a plan to a certificate.
 #[derive(Debug, Parser)]
-#[command(name = "psd", version, about, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "psd", version, long_version = concat!(
+    env!("CARGO_PKG_VERSION"), "\nsources, SHA-256 ", env!("PSD_BUILD"), "\nbuilt for ", env!("PSD_TOOLCHAIN"),
+), about, max_term_width = 100, arg_required_else_help = true)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,

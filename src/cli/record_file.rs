@@ -8,7 +8,8 @@ use super::exit::Failure;
 use super::loader::plain;
 use super::room;
 use crate::check::{LoadFault, Loader, Options, check};
-use crate::output::{Provenance, RealRun};
+use crate::digest::sha256;
+use crate::output::{Build, Provenance, RealRun};
 use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, FileStorage, Journal, Line, OLDEST_FORMAT, Recovered, Storage, recover};
@@ -18,9 +19,6 @@ use crate::run::tape::{self, Header, HeaderFile, Played};
 
 /// Name of the journal in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
-
-/// Digest of the sources that this program was built from.
-pub const BUILD: &str = env!("PSD_BUILD");
 
 /// What only a real rig's record says of the place and the people.
 #[derive(Clone, Debug, Default)]
@@ -41,15 +39,13 @@ pub fn header(
     provenance: &Provenance,
     circumstances: Circumstances,
 ) -> Header {
-    let file = |file: &crate::plan::PlanFile| HeaderFile {
-        name: file.name.clone(),
-        sha256: super::provenance::sha256(file.text.as_bytes()),
-    };
+    let file = |file: &crate::plan::PlanFile| HeaderFile { name: file.name.clone(), sha256: sha256(file.text.as_bytes()) };
     let Circumstances { operator, host, began, served } = circumstances;
     Header {
         run_id: provenance.run_id.clone(),
         psd: provenance.psd_version.clone(),
-        build: BUILD.to_owned(),
+        build: provenance.build.sources.clone(),
+        toolchain: provenance.build.toolchain.clone(),
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
@@ -139,7 +135,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     let recovered = recover(bytes).map_err(|damage| damaged(format!("the record is damaged: {damage}")))?;
     let played = Played::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
     for (file, text) in played.header.files.iter().zip(&played.texts) {
-        if super::provenance::sha256(text.as_bytes()) != file.sha256 {
+        if sha256(text.as_bytes()) != file.sha256 {
             return Err(damaged(format!("the text of `{}` is not the one of its digest", file.name)));
         }
     }
@@ -189,6 +185,7 @@ fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provena
     let stated = Provenance {
         run_id: header.run_id.clone(),
         psd_version: header.psd.clone(),
+        build: Build { sources: header.build.clone(), toolchain: header.toolchain.clone() },
         plan_sha256: header.files.first().map_or_else(String::new, |file| file.sha256.clone()),
         equipment: header.equipment.clone(),
         ..super::provenance::of(plan)

@@ -9,7 +9,8 @@ use super::conclude::conclude;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::{give, tell};
-use super::record_file::{self, BUILD, ReadRecord, journal_of};
+use super::provenance::{BUILD, TOOLCHAIN};
+use super::record_file::{self, ReadRecord, journal_of};
 use super::settings::Settings;
 use super::watch::Attendance;
 use super::{plan_file, provenance, real_rig, room};
@@ -124,10 +125,11 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
         return Err(Failure::command_line(format!("not what the run began with:\n  {told}"))
             .help("`--amend` accepts it; who and why go into the record and onto the certificate"));
     }
-    header = Header { psd: env!("CARGO_PKG_VERSION").to_owned(), build: BUILD.to_owned(), ..header };
+    header =
+        Header { psd: env!("CARGO_PKG_VERSION").to_owned(), build: BUILD.to_owned(), toolchain: TOOLCHAIN.to_owned(), ..header };
     let plan_sha256 = header.files.first().map_or_else(String::new, |file| file.sha256.clone());
-    let equipment = header.equipment.clone();
-    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), equipment, ..read.provenance.clone() };
+    let (equipment, build) = (header.equipment.clone(), provenance::this_build());
+    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), build, equipment, ..read.provenance.clone() };
     let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
     Ok((plan, provenance, Some((AmendBody { by, reason, differences, header }, texts))))
 }

@@ -10,8 +10,9 @@ use super::record_file::{self, Circumstances};
 use super::rehearse::rehearse;
 use super::run_folder::RunFolder;
 use super::settings::Settings;
+use super::trial::{self, Extent};
 use super::watch::{Attendance, Watcher};
-use super::{plan_file, provenance, real_rig, trial};
+use super::{plan_file, provenance, real_rig};
 use crate::diagnostic::json;
 use crate::golden::{Outcome, Tested, console};
 use crate::output::{OutputFile, Provenance};
@@ -44,12 +45,12 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
     let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
-        if exit <= Exit::Missed {
-            let trial = trial::of(&arguments.plan)?;
+        let trial = trial::of(&arguments.plan, Extent::All)?;
+        if trial.ended.as_ref() == Some(&recorded.record.outcome) {
             let outcome = Outcome::Blessed(blessed.bless(&trial.files, &trial.tolerances, false)?);
             tell(&console::told(&Tested { name: blessed.path().display().to_string(), outcome }, settings.color));
         } else {
-            tell("  not blessed: the run did not come to its end\n");
+            tell("  not blessed: the run was stopped, and the plan as it is written goes on\n");
         }
     }
     match arguments.format {

@@ -125,6 +125,7 @@ codes! {
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;
     E649 BreaksTwice Error;
+    E650 RelaxationWithoutHold Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

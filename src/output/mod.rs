@@ -57,11 +57,13 @@ impl Run<'_> {
 }
 
 /// Where the numbers come from. Nothing here is read from the machine on a virtual rig.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
     /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
     pub run_id: String,
     pub psd_version: String,
+    /// Which program of that version.
+    pub build: Build,
     /// SHA-256 of the plan's text, hex.
     pub plan_sha256: String,
     /// From the plan or `--date`; of a real run else the day it began.
@@ -86,6 +88,15 @@ impl Provenance {
     pub fn operator(&self) -> Option<&str> {
         self.real.as_ref().and_then(|real| real.operator.as_deref())
     }
+}
+
+/// What a program was made from and with. Of the program that made the run: a report made anew says the same.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Build {
+    /// SHA-256 over the digests of its sources, hex.
+    pub sources: String,
+    /// Target, profile, compiler; empty where the record is older than that.
+    pub toolchain: String,
 }
 
 /// What the record of a real run says of people and place, and of itself. Times are UTC, ISO 8601.
@@ -127,10 +138,13 @@ pub enum OutputError {
 /// A table, figure or summary that cannot be encoded.
 pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let figures = figures::all(run)?;
+    let mut tables = tables::all(run)?;
+    // As they will lie in the folder, for the report names them.
+    tell_apart(&mut tables);
     let mut files = Vec::new();
     let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
     if html || pdf {
-        let report = certificate::document(run, &figures);
+        let report = certificate::document(run, &figures, &tables);
         if html {
             let page = inert::page(&document::html::html(&report));
             files.push(OutputFile { path: "certificate.html".to_owned(), bytes: page.into_bytes() });
@@ -140,8 +154,8 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
             files.push(OutputFile { path: "certificate.pdf".to_owned(), bytes });
         }
     }
-    files.push(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() });
-    files.extend(tables::all(run)?);
+    files.push(summary_file(run)?);
+    files.extend(tables);
     for figure in figures {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
         files.push(OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() });
@@ -150,6 +164,21 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     tell_apart(&mut files);
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// The files of numbers and words alone: the summary and the tables.
+///
+/// # Errors
+/// A table or a summary that cannot be encoded.
+pub fn numbers(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let mut files = vec![summary_file(run)?];
+    files.extend(tables::all(run)?);
+    tell_apart(&mut files);
+    Ok(files)
+}
+
+fn summary_file(run: &Run<'_>) -> Result<OutputFile, OutputError> {
+    Ok(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() })
 }
 
 /// What the figures of a run plot, for who holds it against another run.

@@ -17,6 +17,7 @@ use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
 pub use crate::mechanics::multilinear_fit::BreakCount;
+pub use crate::mechanics::relaxation::RelaxationModel;
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
@@ -91,6 +92,8 @@ pub struct Specimen {
     pub name: String,
     /// Equivalent mass at the struck section, kg; of a frame, all its floors.
     pub mass: f64,
+    /// How the plan comes to it, in its own words; None where it states the number.
+    pub mass_from: Option<String>,
     /// Standard, kg; 0 where none is stated.
     pub mass_uncertainty: f64,
     /// The storeys, where it has any; each has an actuator and a load cell.
@@ -287,8 +290,20 @@ pub struct StiffnessRamp {
     /// Also back to the start through the same displacements.
     pub return_path: bool,
     pub fit: RampFit,
+    /// Readings during the pauses of the first repeat.
+    pub relaxation: Option<WatchedHold>,
     /// Actuator speed, m/s.
     pub speed: Option<Formula>,
+}
+
+/// How the force is watched while it relaxes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WatchedHold {
+    pub model: RelaxationModel,
+    /// In a pause, after the first.
+    pub readings: u32,
+    /// N, to which the force is to be known. None: the noise of the rig's cell, if it declares one.
+    pub accuracy: Option<f64>,
 }
 
 /// What is fitted to force on displacement.

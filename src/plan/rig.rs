@@ -118,10 +118,16 @@ pub struct Settle {
 /// Where the numbers of a rig are traced to.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Calibration {
-    /// Text of the calibration reference, if given.
+    /// Text of the calibration reference, if given; of the force alone where `displacement` has one of its own.
     pub reference: Option<String>,
     /// Day until which it holds, `YYYY-MM-DD`, if given.
     pub due: Option<String>,
+    /// Class of the force measurement, as stated.
+    pub force_class: Option<String>,
+    /// Of the displacement: its own reference and the day until which that holds, where it has one.
+    pub displacement: Option<(String, Option<String>)>,
+    /// Class of the displacement measurement, as stated.
+    pub displacement_class: Option<String>,
     /// Of a cell that gives raw counts: N per count, its sign the cell's.
     pub newtons_per_count: Option<f64>,
     /// Count at no force.

@@ -84,6 +84,12 @@ pub struct Channel {
     pub certificate: Option<String>,
     /// Day until which that holds, `YYYY-MM-DD`.
     pub due: Option<String>,
+    /// Class of the measurement, as stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
+    /// Its ends, m or N, where they are stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f64; 2]>,
 }
 
 /// What a device gives.
@@ -219,10 +225,24 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         uncertainty,
         certificate: calibration.reference.clone(),
         due: calibration.due.clone(),
+        class: None,
+        range: None,
     };
+    let cell = link.map(|link| link.readings_of(axis).force_range);
+    let cell = cell.map(|Interval { low, high }| [low, high]).filter(|ends| ends.iter().all(|end| end.is_finite()));
+    let displacement =
+        channel(Measures::Displacement, length_given, length, 0.0, resolution, calibration.displacement_uncertainty);
+    let (certificate, due) = calibration
+        .displacement
+        .clone()
+        .map_or((calibration.reference.clone(), calibration.due.clone()), |(own, due)| (Some(own), due));
     [
-        channel(Measures::Displacement, length_given, length, 0.0, resolution, calibration.displacement_uncertainty),
-        channel(Measures::Force, force_given, force, zero, noise, calibration.force_uncertainty),
+        Channel { certificate, due, class: calibration.displacement_class.clone(), ..displacement },
+        Channel {
+            class: calibration.force_class.clone(),
+            range: cell,
+            ..channel(Measures::Force, force_given, force, zero, noise, calibration.force_uncertainty)
+        },
     ]
 }
 

@@ -17,6 +17,7 @@ pub use crate::mechanics::frame::{FrameEnergies, Modes};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
+pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source};
@@ -142,7 +143,10 @@ pub struct RampHistory {
     pub fit: Option<LineFit>,
     /// Of a ramp past yield, where the plan asks for it.
     pub bilinear: Option<BilinearFit>,
-    pub multilinear: Option<MultilinearFit>,
+    pub multilinear: Option<Box<MultilinearFit>>,
+    /// Pauses that were watched, and what they tell.
+    pub holds: Vec<Hold>,
+    pub relaxation: Option<Box<RelaxationFit>>,
 }
 
 /// One reading of a damping sweep.

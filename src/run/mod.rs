@@ -16,6 +16,7 @@ mod escalate;
 mod escalate_tests;
 mod gate;
 mod gliding;
+mod hold;
 mod impact;
 #[cfg(test)]
 mod impact_tests;

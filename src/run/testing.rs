@@ -42,6 +42,7 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
         specimens: vec![Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            mass_from: None,
             mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness }),
@@ -82,6 +83,7 @@ pub(crate) fn struck_frame() -> Plan {
         integrator: Integrator::Tangent,
         allow_unstable: false,
         i_modification: false,
+        mode: Mode::StepAndPause,
         time_step: Formula::Constant(0.01),
         duration: Formula::Constant(0.25),
         until: Until::Duration,
@@ -106,6 +108,7 @@ pub(crate) fn ramp(step: f64) -> StiffnessRamp {
         repeats: 1,
         return_path: false,
         fit: RampFit::Linear,
+        relaxation: None,
         speed: None,
     }
 }

@@ -33,6 +33,7 @@ const RAMP: &[Column] = &[
     column("force_scatter_n", Dimension::FORCE),
     column("relaxation_n", Dimension::FORCE),
     TANGENT_STIFFNESS,
+    TIME,
 ];
 
 const SWEEP: &[Column] = &[STEP, WALL_TIME, VELOCITY, DISPLACEMENT, RESTORING_FORCE, column("damping_force_n", Dimension::FORCE)];

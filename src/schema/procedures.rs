@@ -9,6 +9,13 @@ pub(super) const SPECIMEN: Field =
 
 const SPEED: Field = Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own");
 
+const WATCHED: &[Field] = &[
+    Field::count("readings", 3.0, 10_000.0, "in each pause, closer at first").or(20.0, ""),
+    Field::quantity("accuracy", Dimension::FORCE, "to which the force is to be known: how long a pause must be")
+        .above_zero()
+        .or_said("the declared noise of the load cell"),
+];
+
 pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
     kind: Kind::StiffnessRamp,
     keyword: &["stiffness", "ramp"],
@@ -32,6 +39,19 @@ pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
             "what is fitted to force on displacement",
         )
         .or_said("linear"),
+        Field::choice(
+            "relaxation",
+            &[
+                Variant::with("exponential", WATCHED, "R∞ + A e^(−t/τ) in every pause, one τ for all"),
+                Variant::with(
+                    "standard_linear_solid",
+                    WATCHED,
+                    "a spring beside a spring and a dashpot, through all moves and pauses; a move is taken as even",
+                ),
+            ],
+            "what is fitted to the force while it is held, in the pauses of the first repeat",
+        )
+        .or_said("nothing"),
         SPEED,
     ],
     exports: &[],

@@ -36,6 +36,11 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     curves::RESULTS[3],
     curves::RESULTS[4],
     curves::RESULTS[5],
+    ResultKind::measured("time_constant", Dimension::TIME, "τ of the relaxation, with `relaxation`"),
+    ResultKind::measured("relaxed_stiffness", Dimension::STIFFNESS, "slope of the forces when all has relaxed"),
+    ResultKind::measured("branch_stiffness", Dimension::STIFFNESS, "what relaxes of a standard linear solid"),
+    ResultKind::measured("remaining_relaxation", Dimension::FORCE, "largest force that a pause left to relax"),
+    ResultKind::measured("needed_pause", Dimension::TIME, "pause that leaves no more to relax than the accuracy asked for"),
 ];
 
 pub(super) const DAMPING_SWEEP: &[ResultKind] = &[

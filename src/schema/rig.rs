@@ -153,8 +153,12 @@ pub(super) const RIG: BlockKind = BlockKind {
         Field::quantity("zero_uncertainty", Dimension::FORCE, "standard uncertainty of the load cell's reading of no force")
             .or(0.0, "N")
             .at_least_zero(),
-        Field::text("calibration", "reference of the calibration"),
+        Field::text("calibration", "reference of the calibration; of the force alone, where `displacement_calibration` is given"),
         Field::text("calibration_due", "last day on which the calibration holds, `YYYY-MM-DD`"),
+        Field::text("force_class", "class of the force measurement, such as one of ISO 7500-1"),
+        Field::text("displacement_calibration", "reference of the calibration of the displacement, where it has one of its own"),
+        Field::text("displacement_calibration_due", "last day on which that calibration holds, `YYYY-MM-DD`"),
+        Field::text("displacement_class", "class of the displacement measurement, such as one of ISO 9513"),
     ],
     exports: &[],
     results: &[],

@@ -61,6 +61,15 @@ impl Ram {
         self.at = if follows == 1.0 { self.reached } else { self.at + follows * (self.reached - self.at) };
     }
 
+    /// s of the next `seconds` in which it goes on.
+    pub(super) fn arrives_in(&self, seconds: f64) -> f64 {
+        match self.target - self.position {
+            _ if self.faults.lag > 0.0 => seconds,
+            0.0 => 0.0,
+            left => (left.abs() / self.speed).min(seconds),
+        }
+    }
+
     pub(super) fn moving(&self) -> bool {
         self.position != self.target
     }

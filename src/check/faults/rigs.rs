@@ -119,6 +119,21 @@ pub fn nothing_counts(key: &Ident, dialect: &Dialect) -> Diagnostic {
         .help(format!("remove `{field}`"))
 }
 
+pub fn day_of_no_calibration(key: &Ident) -> Diagnostic {
+    Diagnostic::new(Code::FieldWithoutUse, format!("`{}` has no use: no calibration of the displacement is named", key.node))
+        .at(key.span, "of which calibration?")
+        .help("add `displacement_calibration = \"UKAS 4712\"`, or remove the day: `calibration_due` holds for both")
+}
+
+pub fn displacement_without_day(rig: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::CalibrationWithoutDay,
+        format!("rig `{rig}` does not say `displacement_calibration_due`: its certificate will not be certifiable"),
+    )
+    .at(at, "calibrated until when?")
+    .help("add to the rig\ndisplacement_calibration_due = \"2027-03-01\"")
+}
+
 pub fn field_of_real_rigs(key: &Ident) -> Diagnostic {
     let field = &key.node;
     let help = match field.as_str() {

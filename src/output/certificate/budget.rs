@@ -51,7 +51,7 @@ fn one(budget: &Budget<'_>) -> Block {
 
 fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
     let Budget { result, value, uncertainty, lines } = budget;
-    let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, result.dimension).into() };
+    let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
     let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
     let mut rows: Vec<Vec<Text>> = told
         .into_iter()

@@ -23,11 +23,11 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
         body.push(Block::part(stated(format!("Specimen {}", specimen.name))));
         match &specimen.frame {
             Some(frame) => frames::structure(frame, body),
-            None => body.push(specimen_table(specimen)),
+            None => body.push(specimen_table(specimen, run.plan.rig.link.as_real().is_none())),
         }
     }
     for ground in &run.plan.grounds {
-        body.push(Block::part(Text::from(format!("Motion of the ground {}", ground.name)).soft(" · from a file of the plan")));
+        body.push(Block::part(Text::from(format!("Ground {}", ground.name)).soft(" · from a file of the plan")));
         body.push(frames::ground(ground));
     }
     for striker in &run.plan.strikers {
@@ -79,18 +79,24 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
     }
 }
 
-fn specimen_table(specimen: &Specimen) -> Block {
-    let mut rows = vec![("equivalent mass", doubtful(specimen.mass, specimen.mass_uncertainty, Dimension::MASS))];
-    if let Some(behaviour) = &specimen.behaviour {
-        rows.extend(behaviour::rows(behaviour, &number::stated));
+/// What a virtual specimen does is no property of a real one.
+fn specimen_table(specimen: &Specimen, is_virtual: bool) -> Block {
+    let mass = Text::from(doubtful(specimen.mass, specimen.mass_uncertainty, Dimension::MASS));
+    let mass = match &specimen.mass_from {
+        Some(formula) => mass.soft(" from ").code(formula),
+        None => mass,
+    };
+    let mut rows: Vec<(&str, Text)> = vec![("equivalent mass", mass)];
+    if let Some(behaviour) = specimen.behaviour.as_ref().filter(|_| is_virtual) {
+        rows.extend(behaviour::rows(behaviour, &number::stated).into_iter().map(|(name, text)| (name, text.into())));
     }
-    if specimen.damping != 0.0 {
-        rows.push(("damping on the load cell", number::stated(specimen.damping, Dimension::DAMPING)));
+    if is_virtual && specimen.damping != 0.0 {
+        rows.push(("damping on the load cell", number::stated(specimen.damping, Dimension::DAMPING).into()));
     }
-    if specimen.coulomb != 0.0 {
-        rows.push(("friction on the load cell", number::stated(specimen.coulomb, Dimension::FORCE)));
+    if is_virtual && specimen.coulomb != 0.0 {
+        rows.push(("friction on the load cell", number::stated(specimen.coulomb, Dimension::FORCE).into()));
     }
-    described(rows)
+    pairs(rows)
 }
 
 fn striker_table(striker: &Striker) -> Block {

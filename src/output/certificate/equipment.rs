@@ -4,8 +4,8 @@
 use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
-use super::pairs;
-use crate::plan::{Calibration, DeviceLink, Gate, PortPlan, ReadingRules, RealLink, VirtualLink};
+use super::{pairs, particulars};
+use crate::plan::{Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
 use crate::record::EventKind;
@@ -14,46 +14,56 @@ use crate::record::equipment::{Channel, Device, GivenIn};
 /// The rig of the run.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Equipment and calibration"));
-    body.push(calibration(run));
-    body.push(match run.plan.rig.link.as_real() {
-        Some(link) => real(run, link),
-        None => simulated(run),
-    });
+    match run.plan.rig.link.as_real() {
+        Some(link) => {
+            body.push(calibration(run));
+            body.push(real(run, link));
+        }
+        None => body.push(simulated(run)),
+    }
 }
 
-/// What the rig's numbers are traced to, and whether that still held on the day of the test: a row a channel of a real rig.
+/// What is measured, over which range and how well, what that is traced to, and whether it still held on the day of the
+/// test: a row a channel.
 fn calibration(run: &Run<'_>) -> Block {
     let equipment = run.equipment();
-    let identity = &equipment.device.identity;
-    let told: Vec<&str> =
-        [&identity.model, &identity.serial].into_iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
-    let model = || if told.is_empty() { Text::given(None) } else { told.join(", ").into() };
-    let traced = |channel: &Channel| {
-        let state = match (channel.due.as_deref(), standing::last_day(run)) {
-            (None, _) => Text::missing("no due date"),
-            (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
-            (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),
-            (Some(_), None) => Text::missing("day of the test not known"),
-        };
-        [Text::given(channel.certificate.as_deref()), Text::given(channel.due.as_deref()), state]
+    let several = equipment.channels.iter().any(|channel| channel.axis > 1);
+    let row = |channel: &Channel| {
+        let axis = if several { format!(" {}", channel.axis) } else { String::new() };
+        let (certificate, due) = (channel.certificate.as_deref(), channel.due.as_deref());
+        vec![
+            format!("{}{axis}", channel.measures.name()).into(),
+            channel.range.map_or_else(
+                || Text::given(None),
+                |[low, high]| range(Interval { low, high }, channel.measures.dimension()).into(),
+            ),
+            Text::given(channel.class.as_deref()),
+            factor(channel).into(),
+            Text::given(certificate),
+            Text::given(due),
+            state(run, due),
+        ]
     };
-    let rig = Text::from(run.plan.rig.name.as_str());
-    let (first, rows) = if run.plan.rig.link.as_real().is_some() {
-        let several = equipment.channels.iter().any(|channel| channel.axis > 1);
-        let row = |channel: &Channel| {
-            let axis = if several { format!(" {}", channel.axis) } else { String::new() };
-            let name = format!("{}{axis}", channel.measures.name());
-            [Text::from(name), model(), factor(channel).into()].into_iter().chain(traced(channel)).collect()
-        };
-        ("Channel", equipment.channels.iter().map(row).collect())
-    } else {
-        let row = |channel: &Channel| [rig.clone(), model()].into_iter().chain(traced(channel)).collect();
-        ("Rig", equipment.channels.first().map(row).into_iter().collect::<Vec<Vec<Text>>>())
-    };
-    let mut columns = vec![Column::short(first), Column::words("Model, serial number", 2)];
-    columns.extend((first == "Channel").then(|| Column::short("Factor")));
-    columns.extend([Column::words("Calibration certificate", 2), Column::short("Holds until"), Column::short("State")]);
-    Block::Table(Table { columns, rows })
+    let columns = vec![
+        Column::short("Channel"),
+        Column::short("Range"),
+        Column::words("Class", 2),
+        Column::short("Factor"),
+        Column::words("Calibration certificate", 3),
+        Column::short("Holds until"),
+        Column::short("State"),
+    ];
+    Block::Table(Table { columns, rows: equipment.channels.iter().map(row).collect() })
+}
+
+/// Whether a calibration held on the last day of the test.
+fn state(run: &Run<'_>, due: Option<&str>) -> Text {
+    match (due, standing::last_day(run)) {
+        (None, _) => Text::missing("no due date"),
+        (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
+        (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),
+        (Some(_), None) => Text::missing("day of the test not known"),
+    }
 }
 
 /// How the number of a channel becomes a quantity.
@@ -68,7 +78,17 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
     let equipment = run.equipment();
     let identity = &equipment.device.identity;
     let kind = if identity.simulated { "a simulated controller on a real line: nothing real moved" } else { "real" };
-    let mut rows = vec![("Kind", kind.into()), ("Firmware", Text::given(Some(&identity.firmware)))];
+    let stated = |text: &str| Text::given(Some(text));
+    let mut rows = vec![
+        ("Rig", run.plan.rig.name.as_str().into()),
+        ("Kind", kind.into()),
+        ("Model", stated(&identity.model)),
+        ("Serial number", stated(&identity.serial)),
+        ("Firmware", stated(&identity.firmware)),
+    ];
+    if let Some(text) = particulars::stated(run, "equipment") {
+        rows.push(("Other equipment", text.into()));
+    }
     if let Some(boot) = &identity.boot {
         rows.push(("Power-up of the controller", Text::new().id(boot)));
     }
@@ -91,12 +111,18 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
 
 fn simulated(run: &Run<'_>) -> Block {
     let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
+    let equipment = run.equipment();
+    let identity = &equipment.device.identity;
     let mut rows = vec![
-        ("Kind", "simulated: nothing real moved".into()),
-        ("Firmware", Text::given(Some(&run.equipment().device.identity.firmware))),
+        ("Rig", run.plan.rig.name.as_str().into()),
+        ("Kind", "simulated: nothing real moved, nothing was measured".into()),
+        ("Model, firmware", format!("{} {}", identity.model, identity.firmware).into()),
         ("Simulated errors", errors(&link).into()),
         ("Settling", settling(run.plan.rig.settle).into()),
     ];
+    if let Some(text) = particulars::stated(run, "equipment") {
+        rows.push(("Other equipment", text.into()));
+    }
     rows.extend(uncertainty(&run.plan.rig.calibration));
     pairs(rows)
 }

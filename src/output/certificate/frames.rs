@@ -221,9 +221,10 @@ fn energy_balance(history: &ShakeHistory) -> Block {
     ];
     let row = |(name, energy): (&str, f64)| -> Vec<Text> {
         let share = if e.input > 0.0 { results::percent(energy / e.input) } else { "—".to_owned() };
-        vec![name.into(), number::text_beside(energy, e.input, Dimension::ENERGY).into(), share.into()]
+        vec![name.into(), number::part_of(energy, e.input, 5, Dimension::ENERGY).into(), share.into()]
     };
-    let input = vec!["input, −∫Mι ü_g dX".into(), number::text(e.input, Dimension::ENERGY).into(), "100\u{a0}%".into()];
+    let input =
+        vec!["input, −∫Mι üg dX".into(), number::part_of(e.input, e.input, 5, Dimension::ENERGY).into(), "100\u{a0}%".into()];
     let columns = vec![
         Column::words("Energy balance at the end of the run", 1),
         Column::numbers("Energy"),

@@ -12,6 +12,7 @@ mod identification;
 mod impact;
 mod plain;
 mod raster;
+mod relaxation;
 mod shake;
 mod storey;
 mod vector;
@@ -101,6 +102,10 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares fit."),
+        ),
+        (History::Ramp(history), FigureKind::Relaxation) => (
+            relaxation::left(history, history.relaxation.as_ref()?),
+            format!("{name}: force still to relax, the measured less the fitted one after long, against the time held."),
         ),
         (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.history.steps.is_empty()) => return None,
         (History::Escalate(history), FigureKind::ForceDisplacement) => (

@@ -133,6 +133,7 @@ pub(super) fn header() -> Header {
         run_id: "0123456789abcdef".to_owned(),
         psd: "0".to_owned(),
         build: "0".to_owned(),
+        toolchain: String::new(),
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,

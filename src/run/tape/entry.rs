@@ -16,8 +16,11 @@ pub const BY_HAND: &str = "by hand";
 pub struct Header {
     pub run_id: String,
     pub psd: String,
-    /// Digest of the program's sources.
+    /// SHA-256 of the program's sources, hex.
     pub build: String,
+    /// Target, profile and compiler that it was built for and with; empty where they were not recorded.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub toolchain: String,
     /// The plan first, then what it used. Their texts follow in PLAN records.
     pub files: Vec<HeaderFile>,
     /// `--set` values as given.

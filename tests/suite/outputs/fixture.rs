@@ -68,6 +68,8 @@ pub fn finished() -> Finished {
             fit: Some(line(327.72, 0.41, -0.012, 0.035)),
             bilinear: None,
             multilinear: None,
+            holds: Vec::new(),
+            relaxation: None,
         }),
     };
     let sweep = ProcedureRecord {
@@ -128,10 +130,7 @@ pub fn finished() -> Finished {
             run_id: "0123456789abcdef".into(),
             psd_version: "0.1.0".into(),
             plan_sha256: "ab".repeat(32),
-            date: None,
-            real: None,
-            equipment: None,
-            amends: None,
+            ..Provenance::default()
         },
     }
 }
@@ -286,6 +285,7 @@ fn plan() -> Plan {
                 repeats: 1,
                 return_path: true,
                 fit: RampFit::Linear,
+                relaxation: None,
                 speed: None,
             }),
         ),
@@ -342,6 +342,7 @@ fn plan() -> Plan {
         specimens: vec![Specimen {
             name: "beam".into(),
             mass: MASS,
+            mass_from: None,
             mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: STIFFNESS }),
