@@ -5,6 +5,7 @@ mod amended;
 mod certificate;
 mod disk;
 mod faults;
+mod floors;
 mod golden;
 mod hand;
 mod killed;
