@@ -32,10 +32,10 @@ fn spring() -> VirtualRig {
     VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0)
 }
 
-/// Serves the spring once while `client` talks, and gives what both say.
 /// One control point, whatever it is called.
 const NEES: Protocol = Protocol::Nees { control_points: Vec::new() };
 
+/// Serves the spring once while `client` talks, and gives what both say.
 #[expect(clippy::needless_pass_by_value, reason = "each test makes its own")]
 fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(SocketAddr) -> T + Send) -> (T, Session) {
     served_on(&mut spring(), &protocol, limits, client)

@@ -6,6 +6,7 @@ mod certificate;
 mod disk;
 mod faults;
 mod floors;
+mod frame;
 mod golden;
 mod hand;
 mod killed;

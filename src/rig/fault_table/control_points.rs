@@ -26,6 +26,13 @@ fn text() -> String {
     SINE.replace("use \"lib/two_actuator_frame.psd\"\n", &rig)
 }
 
+/// The results of both, as near as the wire says them.
+fn same(real: &[(&str, f64)], ideal: &[(&str, f64)]) {
+    for ((name, real), (_, ideal)) in real.iter().zip(ideal) {
+        assert!((real - ideal).abs() <= NEAR + 1e-9 * ideal.abs(), "{name}: {real} is not {ideal}");
+    }
+}
+
 fn plan() -> Plan {
     checked(&text(), "bench")
 }
@@ -37,9 +44,7 @@ fn two_storeys_over_two_control_points_are_the_virtual_run() {
     assert_eq!(ended.tally, Tally::default());
     let (real, ideal) = (results(&ended.record), ideal(&text()));
     assert!(real.len() == ideal.len() && real.len() > 8);
-    for (real, ideal) in real.iter().zip(&ideal) {
-        assert!((real - ideal).abs() <= NEAR + 1e-9 * ideal.abs(), "{real} is not {ideal}");
-    }
+    same(&real, &ideal);
     // One transaction proposes both floors, and every step is one.
     let proposals: Vec<&str> = ended.log.lines().filter(|line| line.contains("> propose\\t")).collect();
     assert!(
@@ -70,7 +75,5 @@ fn a_reply_that_is_late_or_twice_is_not_taken_for_another_floors() {
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
     assert!(ended.tally.ignored >= 10, "{:?}", ended.tally);
     let (real, ideal) = (results(&ended.record), ideal(&text()));
-    for (real, ideal) in real.iter().zip(&ideal) {
-        assert!((real - ideal).abs() <= NEAR + 1e-9 * ideal.abs(), "{real} is not {ideal}");
-    }
+    same(&real, &ideal);
 }
