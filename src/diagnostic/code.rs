@@ -117,6 +117,7 @@ codes! {
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;
     E649 BreaksTwice Error;
+    E651 NotTogether Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

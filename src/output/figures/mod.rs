@@ -13,14 +13,16 @@ mod impact;
 mod plain;
 mod raster;
 mod shake;
+mod together;
 mod vector;
 
 use rayon::prelude::*;
 
 use super::{OutputError, Run};
+use crate::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
 use crate::record::{History, ProcedureRecord, ShakeHistory};
-use chart::Chart;
+use chart::{Chart, Reference};
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
 pub use plain::{Curve, Curves, PlainAxis};
@@ -39,7 +41,7 @@ pub(super) struct Drawn {
 /// Every figure of the report that this record can draw, in the report's order. A procedure that was stopped before
 /// it recorded anything has no figure.
 pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
-    run.plan.report.figures.par_iter().filter_map(|figure| one(run, *figure)).collect()
+    run.plan.report.figures.par_iter().filter_map(|figure| one(run, figure)).collect()
 }
 
 /// What the figures of a report plot, in the report's order.
@@ -47,24 +49,49 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
 pub fn data(run: &Run<'_>) -> Figures {
     let one = |figure: &Figure| {
         let procedure = run.record.procedures.get(figure.procedure.0)?;
-        let (chart, _) = chart_of(run, procedure, *figure)?;
-        Some(data::of(format!("{}_{}", procedure.name, figure.kind.name()), &procedure.name, &chart))
+        let (chart, _) = chart_of(run, procedure, figure)?;
+        Some(data::of(name_of(run, figure), &procedure.name, &chart))
     };
     Figures { figures: run.plan.report.figures.iter().filter_map(one).collect(), ..Figures::default() }
 }
 
-fn one(run: &Run<'_>, figure: Figure) -> Option<Result<Drawn, OutputError>> {
+fn one(run: &Run<'_>, figure: &Figure) -> Option<Result<Drawn, OutputError>> {
     let procedure = run.record.procedures.get(figure.procedure.0)?;
     let (chart, caption) = chart_of(run, procedure, figure)?;
     let drawn = draw::png(&chart).and_then(|png| draw::svg(&chart).map(|svg| (png, svg)));
     Some(match drawn {
-        Ok((png, svg)) => Ok(Drawn { path: format!("figures/{}_{}", procedure.name, figure.kind.name()), png, svg, caption }),
+        Ok((png, svg)) => Ok(Drawn { path: format!("figures/{}", name_of(run, figure)), png, svg, caption }),
         Err(reason) => Err(OutputError::Figure { figure: figure.kind.name(), procedure: procedure.name.clone(), reason }),
     })
 }
 
+/// `hit_displacement`, or `paused-moving_displacement`: no name of a procedure has a hyphen.
+fn name_of(run: &Run<'_>, figure: &Figure) -> String {
+    let name = |procedure: ProcedureId| run.record.procedures.get(procedure.0).map(|procedure| procedure.name.as_str());
+    let names: Vec<&str> = figure.procedures().filter_map(name).collect();
+    format!("{}_{}", names.join("-"), figure.kind.name())
+}
+
+/// Several procedures on one chart: those of them that ran, with the bounds that requirements set on any of them.
+fn beside_each_other(run: &Run<'_>, figure: &Figure) -> Option<(Chart, String)> {
+    let procedures: Vec<_> = figure.procedures().filter_map(|procedure| run.record.procedures.get(procedure.0)).collect();
+    let mut limits: Vec<Reference> = Vec::new();
+    for (id, procedure) in figure.procedures().zip(&procedures) {
+        let result = together::bounded(figure.kind, &procedure.history);
+        for line in result.map_or_else(Vec::new, |result| impact::limits_on(run, id, result)) {
+            if limits.iter().all(|known| known.label != line.label || known.y.to_bits() != line.y.to_bits()) {
+                limits.push(line);
+            }
+        }
+    }
+    together::chart(figure.kind, &procedures, limits)
+}
+
 /// The chart and its caption; None where the procedure does not draw this figure or has no steps.
-fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Option<(Chart, String)> {
+fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Option<(Chart, String)> {
+    if !figure.beside.is_empty() {
+        return beside_each_other(run, figure);
+    }
     let name = &procedure.name;
     Some(match (&procedure.history, figure.kind) {
         (History::Impact(history), _) if history.steps.is_empty() => return None,
@@ -140,7 +167,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
 }
 
 /// The charts of a frame on moving ground; None before its first step.
-fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: Figure, kind: FigureKind) -> Option<(Chart, String)> {
+fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: &Figure, kind: FigureKind) -> Option<(Chart, String)> {
     if history.steps.is_empty() {
         return None;
     }
