@@ -215,10 +215,10 @@ pub fn figure_of_one<'n>(figure: &str, procedure: &str, span: Span, shared: impl
 }
 
 pub fn figure_of_two_kinds(figure: &str, first: (&str, Span), other: (&str, Span)) -> Diagnostic {
-    let message = format!("`{figure}` of a `{}` and of a `{}` are different things", first.0, other.0);
+    let message = format!("`{figure}` shows another thing of `{}` than of `{}`", other.0, first.0);
     Diagnostic::new(Code::NotTogether, message)
-        .at(other.1, format!("a `{}`", other.0))
-        .at(first.1, format!("a `{}`", first.0))
+        .at(other.1, format!("`{}`", other.0))
+        .at(first.1, format!("`{}`", first.0))
         .help("one chart shows procedures of one kind: write a figure for each kind")
 }
 

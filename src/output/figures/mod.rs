@@ -22,7 +22,7 @@ use super::{OutputError, Run};
 use crate::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
 use crate::record::{History, ProcedureRecord, ShakeHistory};
-use chart::{Chart, Reference};
+use chart::Chart;
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
 pub use plain::{Curve, Curves, PlainAxis};
@@ -72,25 +72,11 @@ fn name_of(run: &Run<'_>, figure: &Figure) -> String {
     format!("{}_{}", names.join("-"), figure.kind.name())
 }
 
-/// Several procedures on one chart: those of them that ran, with the bounds that requirements set on any of them.
-fn beside_each_other(run: &Run<'_>, figure: &Figure) -> Option<(Chart, String)> {
-    let procedures: Vec<_> = figure.procedures().filter_map(|procedure| run.record.procedures.get(procedure.0)).collect();
-    let mut limits: Vec<Reference> = Vec::new();
-    for (id, procedure) in figure.procedures().zip(&procedures) {
-        let result = together::bounded(figure.kind, &procedure.history);
-        for line in result.map_or_else(Vec::new, |result| impact::limits_on(run, id, result)) {
-            if limits.iter().all(|known| known.label != line.label || known.y.to_bits() != line.y.to_bits()) {
-                limits.push(line);
-            }
-        }
-    }
-    together::chart(figure.kind, &procedures, limits)
-}
-
 /// The chart and its caption; None where the procedure does not draw this figure or has no steps.
 fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Option<(Chart, String)> {
     if !figure.beside.is_empty() {
-        return beside_each_other(run, figure);
+        let drawn: Vec<_> = figure.procedures().filter_map(|procedure| run.record.procedures.get(procedure.0)).collect();
+        return together::chart(figure.kind, &drawn);
     }
     let name = &procedure.name;
     Some(match (&procedure.history, figure.kind) {

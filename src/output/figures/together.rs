@@ -1,21 +1,23 @@
 //! Several procedures of one kind on one chart, one curve each, on the same axes. In: their records, the figure. Out: a
-//! [`Chart`] in SI and what it shows in words. Of a frame the top floor stands for its displacement and the lowest storey, which
-//! carries all the others, for its drift and shear.
+//! [`Chart`] in SI and what it shows in words. Bounds of requirements stand on the figures of the procedure they bound. Of a
+//! frame the top floor stands for its displacement and the lowest storey, which carries all the others, for its drift and shear.
 
-use super::chart::{Chart, Colour, DASH_DOT, DASHED, DOTTED, LONG, Quantity, Reference, SOLID, Series, Style, palette};
+use super::chart::{Chart, Colour, DASH_DOT, DOTTED, LONG, Quantity, SOLID, SPARSE, Series, Style, palette};
 use crate::plan::{FigureKind, MOST_TOGETHER};
 use crate::quantity::Dimension;
 use crate::record::{History, ImpactHistory, ProcedureRecord, ShakeHistory, ShakeStep};
 
-/// The first solid and wide, the later ones narrower and dashed, so that a curve below another still shows.
+/// Those that may lie on each other are told apart all the same: a narrow line of gaps on a broad one shows both.
 const STYLES: [(Colour, f64, &[f64]); MOST_TOGETHER] = [
-    (palette::BLUE, 2.4, SOLID),
-    (palette::VERMILION, 1.6, SOLID),
-    (palette::BLACK, 1.4, DASHED),
+    (palette::BLUE, 2.0, SOLID),
+    (palette::VERMILION, 2.6, SOLID),
+    (palette::BLACK, 1.3, SPARSE),
     (palette::GREEN, 1.8, LONG),
     (palette::PURPLE, 1.6, DASH_DOT),
     (palette::SKY, 1.8, DOTTED),
 ];
+
+const LOOP: f64 = 1.2;
 
 /// What one chart of several procedures shows of each.
 struct Shown {
@@ -25,9 +27,12 @@ struct Shown {
 }
 
 /// The chart, and its words; None where no procedure has steps, or none has this figure.
-pub(super) fn chart(kind: FigureKind, procedures: &[&ProcedureRecord], limits: Vec<Reference>) -> Option<(Chart, String)> {
+pub(super) fn chart(kind: FigureKind, procedures: &[&ProcedureRecord]) -> Option<(Chart, String)> {
     let first = procedures.iter().find_map(|procedure| shown(kind, &procedure.history))?;
+    // A loop that runs many times needs a fine line.
+    let loops = matches!(kind, FigureKind::ForceDisplacement | FigureKind::Hysteresis);
     let curves = procedures.iter().zip(STYLES).filter_map(|(procedure, (colour, width, dash))| {
+        let width = if loops { LOOP } else { width };
         let points = points(kind, &procedure.history).filter(|points| !points.is_empty())?;
         Some(Series { label: procedure.name.clone(), points, style: Style::line(colour, width, dash) })
     });
@@ -41,18 +46,7 @@ pub(super) fn chart(kind: FigureKind, procedures: &[&ProcedureRecord], limits: V
         _ => names.concat(),
     };
     let caption = format!("{names} on one chart: {}.", first.words);
-    Some((Chart { x: first.x, y: first.y, bands: Vec::new(), series, references: limits }, caption))
-}
-
-/// The result that a requirement bounds on this figure.
-pub(super) const fn bounded(kind: FigureKind, history: &History) -> Option<&'static str> {
-    match (history, kind) {
-        (History::Impact(_), FigureKind::Displacement) => Some("max_displacement"),
-        (History::Impact(_), FigureKind::ContactForce) => Some("max_contact_force"),
-        (History::Shake(_), FigureKind::Drift) => Some("max_drift"),
-        (History::Shake(_), FigureKind::BaseShear) => Some("max_base_shear"),
-        _ => None,
-    }
+    Some((Chart { x: first.x, y: first.y, bands: Vec::new(), series, references: Vec::new() }, caption))
 }
 
 fn shown(kind: FigureKind, history: &History) -> Option<Shown> {
