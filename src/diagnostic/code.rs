@@ -133,6 +133,7 @@ codes! {
     W711 ResolutionUnknown Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
+    W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
 }

@@ -74,8 +74,9 @@ impl Shaking<'_> {
                 session.guard.pause(*pause)?;
                 session.guard.read()?
             };
-            let tracking = monitors.take(solver.predict(&load), &reading);
-            let state = solver.complete(&reading.displacement, &reading.force);
+            solver.complete(&reading.displacement, &reading.force);
+            let state = solver.state();
+            let tracking = monitors.take(&state.target, &reading, solver.taken(&reading.force));
             let told = self.take(state, acceleration, tracking, session);
             self.watch.judge(told.tracking_energy_error, session);
             session.guard.check_energy_error(told.energy_error)?;
@@ -141,9 +142,11 @@ impl Monitors {
         Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
     }
 
-    fn take(&mut self, commanded: &[f64], reading: &Reading) -> Tracking {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        let each = self.0.iter_mut().zip(axes).map(|(monitor, (to, (measured, force)))| monitor.take(*to, *measured, *force));
+    /// `taken`: what the recursion takes for the forces at the commands, N.
+    fn take(&mut self, commanded: &[f64], reading: &Reading, taken: &[f64]) -> Tracking {
+        let read = reading.displacement.iter().zip(&reading.force).zip(taken);
+        let axes = self.0.iter_mut().zip(commanded).zip(read);
+        let each = axes.map(|((monitor, to), ((measured, force), taken))| monitor.take_as(*to, *measured, *force, *taken));
         each.fold(Tracking::default(), |all, axis| Tracking {
             energy_error: all.energy_error + axis.energy_error,
             indicator: all.indicator + axis.indicator,

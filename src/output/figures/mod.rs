@@ -157,7 +157,7 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: &Figure, ki
     if history.steps.is_empty() {
         return None;
     }
-    let limits = |result| impact::limits_on(run, figure.procedure, result);
+    let limits = |result| shake::of_size(impact::limits_on(run, figure.procedure, result));
     let chosen = if shake::is_chosen(history) { "; not every one is drawn" } else { "" };
     Some(match kind {
         FigureKind::Modes => (
