@@ -1,52 +1,61 @@
-//! The build's own name: a digest of everything the program is made from, so that a record can say which program wrote
-//! it, and a run is not gone on with by another. In: sources, grammar, locked dependencies. Out: `PSD_BUILD`.
+//! The build's own name: a digest of everything the program is made from and what it was made with, so that a record can
+//! say which program wrote it, and a run is not gone on with by another. In: sources, grammar, manifests, the compiler. Out:
+//! `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, neither of which knows a place on this machine or a day. Anybody can do it again:
+//! `LC_ALL=C; find Cargo.toml Cargo.lock build.rs grammar src -type f | sort | xargs sha256sum | sha256sum`
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::{env, fs};
 
-/// FNV-1a, 64 bits: it tells builds apart, it proves nothing. (Fowler, Noll, Vo; offset basis and prime as published.)
-struct Digest(u64);
-
-impl Digest {
-    fn take(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-}
+use sha2::{Digest as _, Sha256};
 
 fn main() {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo gives the folder"));
     let mut files = Vec::new();
     for folder in ["src", "grammar"] {
         println!("cargo::rerun-if-changed={folder}");
-        walk(&root.join(folder), &mut files);
+        walk(&root, folder, &mut files);
     }
-    for file in ["Cargo.toml", "Cargo.lock"] {
+    for file in ["Cargo.toml", "Cargo.lock", "build.rs"] {
         println!("cargo::rerun-if-changed={file}");
-        files.push(root.join(file));
+        files.push(file.to_owned());
     }
     files.sort();
-    let mut digest = Digest(0xcbf2_9ce4_8422_2325);
-    for file in files {
+    let mut listed = String::new();
+    for name in files {
         // A package may come without its lock file.
-        let Ok(bytes) = fs::read(&file) else { continue };
-        let name = file.strip_prefix(&root).unwrap_or(&file).to_string_lossy().replace('\\', "/");
-        for part in [name.as_bytes(), bytes.as_slice()] {
-            digest.take(&(part.len() as u64).to_le_bytes());
-            digest.take(part);
-        }
+        let Ok(bytes) = fs::read(root.join(&name)) else { continue };
+        let _ = writeln!(listed, "{}  {name}", sha256(&bytes));
     }
-    println!("cargo::rustc-env=PSD_BUILD={:016x}", digest.0);
+    println!("cargo::rustc-env=PSD_BUILD={}", sha256(listed.as_bytes()));
+    println!("cargo::rustc-env=PSD_TOOLCHAIN={}", toolchain());
 }
 
-fn walk(folder: &Path, files: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            walk(&path, files);
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}
+
+/// What the machine code depends on beside the sources: target, profile, compiler.
+fn toolchain() -> String {
+    println!("cargo::rerun-if-env-changed=RUSTC");
+    let told = |name| env::var(name).unwrap_or_else(|_| "unknown".to_owned());
+    let version = Command::new(told("RUSTC")).arg("--version").output().ok();
+    let version = version.and_then(|output| String::from_utf8(output.stdout).ok());
+    let version = version.map_or_else(|| "rustc unknown".to_owned(), |text| text.trim().to_owned());
+    format!("{}, {} profile at optimisation {}, {version}", told("TARGET"), told("PROFILE"), told("OPT_LEVEL"))
+}
+
+fn walk(root: &Path, folder: &str, files: &mut Vec<String>) {
+    for entry in fs::read_dir(root.join(folder)).into_iter().flatten().flatten() {
+        let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
+        if entry.path().is_dir() {
+            walk(root, &name, files);
         } else {
-            files.push(path);
+            files.push(name);
         }
     }
 }

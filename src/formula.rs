@@ -2,6 +2,8 @@
 //! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
 //! Out: an [`Estimate`], the value with its standard uncertainty.
 
+use crate::uncertainty::{Contribution, Moved, Source, combined, sources_of};
+
 /// Position of a procedure in the plan, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProcedureId(pub usize);
@@ -79,6 +81,17 @@ pub enum ResultValue {
 pub trait Results {
     /// The result, or None if its procedure has not run to it.
     fn result(&self, reference: ResultReference) -> Option<ResultValue>;
+
+    /// What its uncertainty is made of; of a result that says no more, all of it is its own.
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        let ResultReference { procedure, name, .. } = reference;
+        match self.result(reference) {
+            Some(ResultValue::Number { uncertainty: Some(own), .. }) => {
+                vec![Contribution::new(Source::Fit { procedure, result: name }, own)]
+            }
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// No procedure has run: constants only.
@@ -110,33 +123,39 @@ enum Value {
 }
 
 impl Formula {
-    /// The value, and its standard uncertainty propagated to first order (GUM 5.1.2, uncorrelated inputs): the root sum of squares of
-    /// each measured result's effect on the value. `critical` is Δtc (s), for `time_step` only.
+    /// The value, and its standard uncertainty propagated to first order: the root sum of squares of what each source of the
+    /// results it reads does to the value (JCGM 100:2008, 5.1.2 and, of results that share sources, 5.2.2). `critical` is Δtc
+    /// (s), for `time_step` only.
     ///
     /// # Errors
     /// A result that does not exist in this run, or a value that is not finite.
     pub fn evaluate(&self, results: &dyn Results, critical: Option<f64>) -> Result<Estimate, FormulaError> {
-        let value = self.number(results, critical, None)?;
+        let value = self.number(results, critical)?;
+        let uncertainty = combined(&self.contributions(results, critical)?);
+        Ok(Estimate { value, uncertainty })
+    }
+
+    /// What each source of the results it reads does to the value.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn contributions(&self, results: &dyn Results, critical: Option<f64>) -> Result<Vec<Contribution>, FormulaError> {
         let mut references = Vec::new();
         self.collect_references(&mut references);
-        let mut variance = None;
-        for reference in references {
-            let Some(ResultValue::Number { value: Some(at), uncertainty: Some(u) }) = results.result(reference) else { continue };
-            if reference.part == Part::Uncertainty || u == 0.0 {
-                continue;
-            }
-            // Half the effect of moving the result by ±u: exact for a linear formula.
-            let up = self.number(results, critical, Some((reference, at + u)))?;
-            let down = self.number(results, critical, Some((reference, at - u)))?;
-            variance = Some(variance.unwrap_or(0.0) + (0.5 * (up - down)).powi(2));
-        }
-        Ok(Estimate { value, uncertainty: variance.map(f64::sqrt) })
+        let sources = sources_of(&references, results);
+        let effect = |source| {
+            // Half the effect of moving the source by ±u: exact for a linear formula.
+            let up = self.number(&Moved { results, source, by: 1.0 }, critical)?;
+            let down = self.number(&Moved { results, source, by: -1.0 }, critical)?;
+            Ok(Contribution::new(source, 0.5 * (up - down)))
+        };
+        sources.into_iter().map(effect).collect()
     }
 
     /// The value where no result is needed: constants folded by `check`.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
-        self.number(&NoResults, None, None).ok()
+        self.number(&NoResults, None).ok()
     }
 
     /// The result this formula is, if it is nothing but one.
@@ -175,32 +194,21 @@ impl Formula {
         }
     }
 
-    fn number(
-        &self,
-        results: &dyn Results,
-        critical: Option<f64>,
-        moved: Option<(ResultReference, f64)>,
-    ) -> Result<f64, FormulaError> {
-        match self.value(results, critical, moved)? {
+    fn number(&self, results: &dyn Results, critical: Option<f64>) -> Result<f64, FormulaError> {
+        match self.value(results, critical)? {
             Value::Number(value) if value.is_finite() => Ok(value),
             Value::Number(_) => Err(FormulaError::NotFinite),
             Value::List(_) => Err(FormulaError::NotANumber),
         }
     }
 
-    fn value(
-        &self,
-        results: &dyn Results,
-        critical: Option<f64>,
-        moved: Option<(ResultReference, f64)>,
-    ) -> Result<Value, FormulaError> {
-        let number = |formula: &Formula| formula.number(results, critical, moved);
+    fn value(&self, results: &dyn Results, critical: Option<f64>) -> Result<Value, FormulaError> {
+        let number = |formula: &Formula| formula.number(results, critical);
         Ok(match self {
             Self::Constant(value) => Value::Number(*value),
             Self::CriticalTimeStep => Value::Number(critical.ok_or(FormulaError::Missing("critical"))?),
-            Self::Result(reference) => match moved.filter(|(which, _)| which == reference) {
-                Some((_, value)) => Value::Number(value),
-                None => match (results.result(*reference).ok_or(FormulaError::Missing(reference.name))?, reference.part) {
+            Self::Result(reference) => {
+                match (results.result(*reference).ok_or(FormulaError::Missing(reference.name))?, reference.part) {
                     (ResultValue::List(values), _) => Value::List(values),
                     (ResultValue::Number { value, .. }, Part::Value) => {
                         Value::Number(value.ok_or(FormulaError::Missing(reference.name))?)
@@ -208,10 +216,10 @@ impl Formula {
                     (ResultValue::Number { uncertainty, .. }, Part::Uncertainty) => {
                         Value::Number(uncertainty.ok_or(FormulaError::Missing(reference.name))?)
                     }
-                },
-            },
+                }
+            }
             Self::List(parts) => Value::List(parts.iter().map(number).collect::<Result<_, _>>()?),
-            Self::Index(inner, index) => match inner.value(results, critical, moved)? {
+            Self::Index(inner, index) => match inner.value(results, critical)? {
                 Value::List(values) => Value::Number(*values.get(*index).ok_or(FormulaError::NoSuchEntry(*index))?),
                 Value::Number(_) => return Err(FormulaError::NotANumber),
             },
@@ -229,7 +237,7 @@ impl Formula {
             Self::Call(function, arguments) => {
                 let mut values = Vec::new();
                 for argument in arguments {
-                    match argument.value(results, critical, moved)? {
+                    match argument.value(results, critical)? {
                         Value::Number(value) => values.push(value),
                         Value::List(list) => values.extend(list),
                     }

@@ -7,6 +7,7 @@
 //! Each arrow is one public function that takes the left and gives the right. No stage calls back, and no stage after
 //! `check` sees text. `mechanics` holds the numerics, `rig` the door to hardware, `cli` the program around them all.
 
+pub mod digest;
 pub mod inert;
 pub mod source;
 
@@ -19,6 +20,7 @@ pub mod syntax;
 pub mod formula;
 pub mod plan;
 pub mod schema;
+pub mod uncertainty;
 
 pub mod check;
 

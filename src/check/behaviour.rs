@@ -27,7 +27,7 @@ pub struct Written<'a> {
 
 /// The behaviour, whole and not too large.
 pub fn behaviour<'a>(checker: &mut Checker<'a>, written: &Written<'a>) -> Option<Behaviour> {
-    let found = part(checker, written, written.expr, true)?;
+    let found = part(checker, written, written.expr, Stands::Outermost)?;
     if count(&found) > MOST_PARTS {
         return checker.fail(fault::too_many_parts(MOST_PARTS, "springs", written.expr.span));
     }
@@ -47,7 +47,15 @@ fn in_series(behaviour: &Behaviour) -> usize {
     if matches!(behaviour, Behaviour::Series(_)) { parts.sum() } else { parts.max().unwrap_or(1) }
 }
 
-fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, outermost: bool) -> Option<Behaviour> {
+/// Where a behaviour stands: what the load cell feels of a speed or in time cannot stand inside another.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stands {
+    Outermost,
+    BesideBranch,
+    Inside,
+}
+
+fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, stands: Stands) -> Option<Behaviour> {
     let place = written.place;
     let chosen = checker.chosen(written.field, written.variants, expr)?;
     let mut number = |name: &str| checker.constant_argument(&chosen, name, place);
@@ -88,11 +96,20 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, ou
         }
         "rate" => {
             let (reference_velocity, exponent) = (number("reference_velocity"), number("exponent"));
-            if !outermost {
-                return checker.fail(fault::rate_inside(expr.span));
+            if stands != Stands::Outermost {
+                return checker.fail(fault::felt_inside("rate", expr.span));
             }
             let of = Box::new(inner(checker, written, &chosen)?);
             Some(Behaviour::Rate { of, reference_velocity: reference_velocity?, exponent: exponent? })
+        }
+        "maxwell" => {
+            let (stiffness, time_constant) = (number("stiffness"), number("time_constant"));
+            if stands == Stands::Inside {
+                return checker.fail(fault::felt_inside("maxwell", expr.span));
+            }
+            let (_, beside) = chosen.find("of")?;
+            let of = Box::new(part(checker, written, beside?, Stands::BesideBranch)?);
+            Some(Behaviour::Maxwell { of, stiffness: stiffness?, time_constant: time_constant? })
         }
         "multilinear" => multilinear(checker, &chosen, place),
         "table" => table(checker, &chosen),
@@ -107,7 +124,7 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, ou
 
 fn inner<'a>(checker: &mut Checker<'a>, written: &Written<'a>, chosen: &Chosen<'a>) -> Option<Behaviour> {
     let (_, expr) = chosen.find("of")?;
-    part(checker, written, expr?, false)
+    part(checker, written, expr?, Stands::Inside)
 }
 
 /// The behaviours that a variant joins, and where each stands.
@@ -125,7 +142,7 @@ fn parts<'a>(
     if exprs.len() > MOST_PARTS {
         return checker.fail(fault::too_many_parts(MOST_PARTS, "springs", span));
     }
-    let found: Vec<_> = exprs.into_iter().map(|expr| Some((part(checker, written, expr, false)?, expr.span))).collect();
+    let found: Vec<_> = exprs.into_iter().map(|expr| Some((part(checker, written, expr, Stands::Inside)?, expr.span))).collect();
     found.into_iter().collect()
 }
 

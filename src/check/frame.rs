@@ -17,7 +17,7 @@ use crate::syntax::ast::ExprKind;
 pub const FIELDS: [&str; 3] = ["storeys", "mass_matrix", "stiffness_matrix"];
 
 /// Fields of a specimen of one degree of freedom, which a frame has none of.
-const OF_ONE: [&str; 7] = ["mass", "length", "area", "density", "behaviour", "damping", "coulomb"];
+const OF_ONE: [&str; 8] = ["mass", "mass_uncertainty", "length", "area", "density", "behaviour", "damping", "coulomb"];
 
 pub fn is_frame(checker: &Checker, block: usize) -> bool {
     FIELDS.iter().any(|field| checker.given(block, field).is_some())

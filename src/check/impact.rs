@@ -4,13 +4,16 @@ use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::values;
 use super::fields::whole;
-use super::{integrator, mode, specimen};
+use super::{integrator, mode, specimen, storey_impact};
 use crate::formula::{Formula, Operator};
 use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, Mode, ProcedureKind, Until};
 use crate::schema::Kind;
 
 pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
-    blow(checker, block).map(ProcedureKind::Impact)
+    match storey_impact::struck_frame(checker, block) {
+        Some((specimen, frame)) => storey_impact::storey_impact(checker, block, specimen, frame.as_ref()),
+        None => blow(checker, block).map(ProcedureKind::Impact),
+    }
 }
 
 /// What the fields of an impact say, in whatever block they stand.
@@ -18,9 +21,14 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
     let head = checker.scope.blocks[block].block.head;
     let striker = checker.reference(block, "striker", Kind::Striker);
     let specimen_block = checker.specimen_block(block);
+    let no_frame = storey_impact::no_frame(checker, block, specimen_block);
     let mass = match checker.given(block, "mass") {
         Some(_) => checker.quantity(block, "mass"),
         None => specimen_block.and_then(|tested| specimen::export(checker, tested, "mass", head)).map(Formula::Constant),
+    };
+    let mass_uncertainty = match checker.given(block, "mass") {
+        Some(_) => Some(0.0),
+        None => specimen_block.and_then(|tested| checker.constant(tested, "mass_uncertainty")),
     };
     let stiffness = checker.stiffness_or_specimens(block, specimen_block);
     let damping = checker.quantity(block, "damping");
@@ -36,7 +44,7 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         None => Some(twentieth_of_critical()),
     };
     let duration = checker.quantity(block, "duration");
-    let until = checker.word(block, "until", "striker_stop");
+    let until = until(checker, block);
     let pause = checker.quantity(block, "pause");
     let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
     let inspect = triggers(checker, block);
@@ -44,6 +52,7 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         specimen: checker.scope.place_in_kind(specimen_block?),
         striker: checker.scope.place_in_kind(striker?),
         mass: mass?,
+        mass_uncertainty: mass_uncertainty?,
         stiffness: stiffness?,
         damping: damping?,
         contact: contact?,
@@ -53,11 +62,7 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         mode: mode?,
         time_step: time_step?,
         duration: duration?,
-        until: match until? {
-            "duration" => Until::Duration,
-            "rebound" => Until::Rebound,
-            _ => Until::StrikerStop,
-        },
+        until: until?,
         pause: pause?,
         max_tangent_ratio: max_tangent_ratio?,
         inspect: inspect?,
@@ -69,11 +74,20 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         let steps = (duration / time_step).ceil();
         return checker.fail(values::too_many("steps", steps, MOST_STEPS, at, "shorten `duration` or take a longer `time_step`"));
     }
+    no_frame?;
     integrator::meets_the_contact(checker, block, impact.integrator, &impact.contact)?;
     Some(impact)
 }
 
-fn twentieth_of_critical() -> Formula {
+pub fn until(checker: &mut Checker, block: usize) -> Option<Until> {
+    Some(match checker.word(block, "until", "striker_stop")? {
+        "duration" => Until::Duration,
+        "rebound" => Until::Rebound,
+        _ => Until::StrikerStop,
+    })
+}
+
+pub fn twentieth_of_critical() -> Formula {
     Formula::Binary(Operator::Divide, Box::new(Formula::CriticalTimeStep), Box::new(Formula::Constant(20.0)))
 }
 
@@ -89,7 +103,7 @@ pub fn time_step_before_the_run(impact: &Impact) -> Option<f64> {
     impact.time_step.evaluate(&crate::formula::NoResults, critical).ok().map(|estimate| estimate.value)
 }
 
-fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
+pub fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
     let Some((entry, _)) = checker.given(block, "contact") else { return Some(Contact::Rigid) };
     let place = checker.place(block, entry);
     let chosen = checker.choice(block, "contact")?;

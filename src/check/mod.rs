@@ -42,6 +42,7 @@ mod scope;
 mod shake;
 mod specimen;
 mod stiffness_ramp;
+mod storey_impact;
 mod striker;
 mod table_file;
 #[cfg(test)]
@@ -86,6 +87,8 @@ pub struct Options {
     pub settings: Vec<(String, String)>,
     /// `--date`, ISO 8601.
     pub date: Option<String>,
+    /// A run is to begin, the command line names nobody, and nobody can be asked.
+    pub unattended: bool,
 }
 
 /// The outcome of a check. `plan` is there if no error stands.
@@ -94,6 +97,8 @@ pub struct Checked {
     pub plan: Option<Plan>,
     pub diagnostics: Vec<Diagnostic>,
     pub sources: Sources,
+    /// Where the rig of the run says how it is reached; empty for the ideal one.
+    pub rig_links: Vec<Span>,
 }
 
 /// Checks a plan and all it uses.
@@ -109,10 +114,11 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     let scope = Scope::collect(&imports.asts, &settings, &mut faults);
     let mut checker = Checker::new(&sources, &scope, loader, faults, unread, imports.incomplete);
     let plan = plan(&mut checker, name, files, options);
+    let rig_links = rig::links_of_run(&checker, options.rig.as_deref());
     let mut diagnostics = checker.faults;
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
     let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
-    Checked { plan, diagnostics, sources }
+    Checked { plan, diagnostics, sources, rig_links }
 }
 
 /// The lines at which the text could not be read.
@@ -134,6 +140,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         checker.entries_of(block);
     }
     let (title, particulars) = plan_block::plan_block(checker, options.date.as_deref());
+    if options.unattended {
+        real_rig::attended(checker, &particulars);
+    }
     let parameters = checker.parameters();
     let of_kind = |checker: &Checker, kind| checker.scope.of_kind(kind).map(|(index, _)| index).collect::<Vec<_>>();
     let specimens: Vec<_> =
@@ -156,6 +165,12 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             warnings::impact(checker, *block, impact, striker);
             mode::damping_twice(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
             integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
+        }
+        if let Some(Procedure { kind: ProcedureKind::StoreyImpact(impact), .. }) = procedure
+            && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
+            && let Some(Some(striker)) = strikers.get(impact.striker)
+        {
+            storey_impact::judge(checker, *block, impact, frame, striker);
         }
         if let Some(Procedure { kind: ProcedureKind::Shake(shaking), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(shaking.specimen)

@@ -2,9 +2,9 @@
 //! `pendulum.energy`, or from a procedure that ran, `k0.stiffness.u`.
 
 use super::checker::{Checker, Node, Place, Reads, Shape, Typed};
-use super::faults::{names as fault, types, values};
+use super::faults::{frames, names as fault, types, values};
 use super::scope::Meaning;
-use super::{specimen, striker};
+use super::{specimen, storey_impact, striker};
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::quantity::Dimension;
 use crate::schema::{self, Kind};
@@ -15,7 +15,7 @@ impl<'a> Checker<'a> {
     /// The value a bare name stands for.
     pub fn name(&mut self, name: &str, span: Span, place: Place) -> Option<Typed> {
         if let Reads::Blow(procedure) = place.reads
-            && let Some(result) = schema::block(Kind::Impact).result(name)
+            && let Some(result) = schema::block(Kind::Impact).result(name).filter(|result| !result.of_storey)
         {
             let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
             return Some(Typed::number(formula, result.dimension, span));
@@ -46,7 +46,7 @@ impl<'a> Checker<'a> {
                     siblings.iter().map(|entry| entry.key.node.as_str()).filter(|key| *key != name).chain(self.scope.names());
                 // After a blow its results have names of their own.
                 let results = matches!(place.reads, Reads::Blow(_)).then(|| schema::block(Kind::Impact).results);
-                let results = results.unwrap_or_default().iter().map(|result| result.name);
+                let results = results.unwrap_or_default().iter().filter(|result| !result.of_storey).map(|result| result.name);
                 let fault = fault::unknown_name(name, span, known.chain(results));
                 self.fail(fault)
             }
@@ -106,6 +106,10 @@ impl<'a> Checker<'a> {
     fn member(&mut self, block: usize, name: &Ident, span: Span, place: Place) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
         if let (Some(result), Some(procedure)) = (declared.kind.result(&name.node), declared.procedure) {
+            if result.of_storey && storey_impact::struck_frame(self, block).is_none() {
+                let fault = frames::result_of_a_storey(result.name, name.span, declared.block.head);
+                return self.fail(fault);
+            }
             let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
             let shape = if result.list { Shape::List } else { Shape::Number };
             let typed = Typed { shape, ..Typed::number(formula, result.dimension, span) };

@@ -18,6 +18,16 @@ use crate::syntax::ast::{Argument, Expr, ExprKind};
 /// A request is sent after 0, T, 3T and given up after 7T.
 const PATIENCE: f64 = 7.0;
 
+/// Who runs the test on a real rig has a name: what moves the specimen is somebody's act.
+pub fn attended(checker: &mut Checker, particulars: &[(&'static str, String)]) {
+    let named = particulars.iter().any(|(field, name)| *field == "operator" && !name.trim().is_empty());
+    if let Some(block) = checker.real_rig.filter(|_| !named) {
+        let declared = &checker.scope.blocks[block];
+        let at = declared.name.map_or(declared.block.head, |name| name.span);
+        checker.faults.push(fault::nobody_named(at));
+    }
+}
+
 /// What a real rig says; None where something of it is faulty or missing, which [`complete`] says.
 pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     let devices = devices(checker, block);
@@ -258,6 +268,11 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     let (reference, due) = (lacks(|calibration| &calibration.reference), lacks(|calibration| &calibration.due));
     if reference || due {
         checker.faults.push(fault::not_certifiable(&rig.plan.name, head, reference, due));
+    }
+    if let (Some((_, None)), Some((_, entry))) =
+        (&rig.plan.calibration.displacement, checker.given(block, "displacement_calibration"))
+    {
+        checker.faults.push(fault::displacement_without_day(&rig.plan.name, entry.value.span));
     }
     if axes.clone().any(|axis| link.readings_of(axis).resolution == 0.0) {
         let at = checker.given(block, "resolution").map_or(head, |(_, entry)| entry.value.span);

@@ -8,7 +8,7 @@ use super::faults::whole as fault;
 use super::real_rig;
 use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
 use crate::schema::{Kind, RigKind};
-use crate::source::FileId;
+use crate::source::{FileId, Span};
 use crate::syntax::ast::{Expr, ExprKind};
 
 /// At once, for as long as it takes up to ten seconds.
@@ -27,6 +27,14 @@ pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> 
     let named = |name: Option<&crate::syntax::ast::Ident>| name.is_some_and(|name| Some(name.node.as_str()) == asked);
     let block = checker.scope.of_kind(Kind::Rig).find(|(_, block)| named(block.name)).map(|(index, _)| index);
     block.filter(|block| kind(checker, *block) == Some(RigKind::Real))
+}
+
+/// The fields that say how the rig of the run is reached, where it is one that moves a specimen.
+pub fn links_of_run(checker: &Checker, asked: Option<&str>) -> Vec<Span> {
+    let Some(block) = real_rig_of_run(checker, asked) else { return Vec::new() };
+    let entries = &checker.scope.blocks[block].block.fields;
+    let reach = |key: &str| key == "link" || key == "axes" || key.starts_with("actuator") || key.starts_with("load_cell");
+    entries.iter().filter(|entry| reach(&entry.key.node)).map(|entry| entry.key.span.to(entry.value.span)).collect()
 }
 
 /// Checks every rig; gives the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.
@@ -173,16 +181,40 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         Some(_) => checker.text_field(block, field).map(Some),
         None => Some(None),
     };
-    let (reference, due) = (text("calibration"), text("calibration_due"));
-    if let (Some(Some(day)), Some((_, entry))) = (&due, checker.given(block, "calibration_due"))
-        && !calendar::is_day(day)
-    {
-        return checker.fail(rigs::not_a_day(day, entry.value.span));
+    let (reference, due, force_class) = (text("calibration"), text("calibration_due"), text("force_class"));
+    let (own, own_due) = (text("displacement_calibration"), text("displacement_calibration_due"));
+    let displacement_class = text("displacement_class");
+    for (field, due) in [("calibration_due", &due), ("displacement_calibration_due", &own_due)] {
+        if let (Some(Some(day)), Some((_, entry))) = (due, checker.given(block, field))
+            && !calendar::is_day(day)
+        {
+            return checker.fail(rigs::not_a_day(day, entry.value.span));
+        }
     }
     let newtons_per_count = match checker.given(block, "force_per_count") {
         Some(_) => checker.constant(block, "force_per_count").map(Some),
         None => Some(None),
     };
     let zero_count = checker.constant(block, "zero_count");
-    Some(Calibration { reference: reference?, due: due?, newtons_per_count: newtons_per_count?, zero_count: zero_count? })
+    let (own, own_due) = (own?, own_due?);
+    if own.is_none()
+        && let Some((_, entry)) = checker.given(block, "displacement_calibration_due")
+    {
+        return checker.fail(rigs::day_of_no_calibration(&entry.key));
+    }
+    let (force, displacement) =
+        (checker.constant(block, "force_uncertainty"), checker.constant(block, "displacement_uncertainty"));
+    let zero = checker.constant(block, "zero_uncertainty");
+    Some(Calibration {
+        reference: reference?,
+        due: due?,
+        force_class: force_class?,
+        displacement: own.map(|reference| (reference, own_due)),
+        displacement_class: displacement_class?,
+        newtons_per_count: newtons_per_count?,
+        zero_count: zero_count?,
+        force_uncertainty: force?,
+        displacement_uncertainty: displacement?,
+        zero_uncertainty: zero?,
+    })
 }

@@ -57,7 +57,7 @@ fn fifth_of_critical() -> Formula {
 }
 
 /// One number is Rayleigh's, a list has one for each mode.
-fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
+pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
     let Some((entry, written)) = checker.given(block, "damping_ratio") else {
         return Some(ShakeDamping::Rayleigh(Formula::Constant(0.0)));
     };

@@ -5,9 +5,11 @@ use super::checker::Checker;
 use super::faults::{frames, names as fault, specimens};
 use super::frame;
 use super::limits::CheckedLimits;
+use super::striker::uncertainty;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
+use crate::syntax::ast::ExprKind;
 
 /// A specimen whose entries are all right; None where a fault was reported.
 pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
@@ -16,7 +18,16 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
         let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
-        return Some(Specimen { name: name?.node.clone(), mass, frame, behaviour: None, damping: 0.0, coulomb: 0.0 });
+        return Some(Specimen {
+            name: name?.node.clone(),
+            mass,
+            mass_from: None,
+            mass_uncertainty: 0.0,
+            frame,
+            behaviour: None,
+            damping: 0.0,
+            coulomb: 0.0,
+        });
     }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {
@@ -39,8 +50,17 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
-    let frame = None;
-    Some(Specimen { name: name?.node.clone(), mass: mass?, frame, behaviour: behaviour?, damping: damping?, coulomb: coulomb? })
+    let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
+    Some(Specimen {
+        name: name?.node.clone(),
+        mass: mass?,
+        mass_from: mass_from(checker, block),
+        mass_uncertainty: mass_uncertainty?,
+        frame: None,
+        behaviour: behaviour?,
+        damping: damping?,
+        coulomb: coulomb?,
+    })
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
@@ -55,6 +75,15 @@ fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
     let (density, area, length) =
         (checker.constant(block, "density")?, checker.constant(block, "area")?, checker.constant(block, "length")?);
     Some(density * area * length / 2.0)
+}
+
+/// How the plan comes to the mass: its formula where it writes one, and that of the geometry where it gives no mass.
+fn mass_from(checker: &Checker, block: usize) -> Option<String> {
+    match checker.given(block, "mass") {
+        Some((_, entry)) if matches!(entry.value.kind, ExprKind::Number { .. }) => None,
+        Some((_, entry)) => Some(checker.text(entry.value.span).to_owned()),
+        None => Some("density * area * length / 2".to_owned()),
+    }
 }
 
 /// q·A·L, kg.
@@ -118,7 +147,7 @@ pub fn warn_of_short_tables(checker: &mut Checker, specimens: &[Option<Specimen>
         }
         // Behind a spring or beside one the specimen's displacement is not the table's.
         let table = match behaviour {
-            Behaviour::Rate { of, .. } => of,
+            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } => of,
             other => other,
         };
         let (Behaviour::Table(table), [named_at]) = (table, named.as_slice()) else { continue };

@@ -2,8 +2,9 @@
 
 use super::checker::Checker;
 use super::curve;
-use super::faults::values;
-use crate::plan::{ProcedureKind, RampFit, StiffnessRamp};
+use super::faults::{specimens, values};
+use super::fields::whole;
+use crate::plan::{ProcedureKind, RampFit, RelaxationModel, StiffnessRamp, WatchedHold};
 
 /// Most readings of one ramp.
 pub const MOST_READINGS: f64 = 1e7;
@@ -15,10 +16,17 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
     let (samples, repeats) = (checker.count(block, "samples"), checker.count(block, "repeats"));
     let return_path = checker.word(block, "return", "false").map(|word| word == "true");
     let fit = fit(checker, block);
+    let relaxation = relaxation(checker, block);
     let speed = checker.optional(block, "speed");
-    let (displacements, samples, repeats) = (displacements?, samples?, repeats?);
+    let (displacements, samples, repeats, pause) = (displacements?, samples?, repeats?, pause?);
+    if let Some((_, entry)) = checker.given(block, "relaxation")
+        && pause.constant() == Some(0.0)
+    {
+        return checker.fail(specimens::relaxation_without_hold(entry.value.span));
+    }
     #[expect(clippy::cast_precision_loss, reason = "a list has at most 100,000 entries")]
-    let readings = displacements.len() as f64 * f64::from(samples) * f64::from(repeats);
+    let readings = displacements.len() as f64
+        * (f64::from(samples) * f64::from(repeats) + relaxation.flatten().map_or(0.0, |hold| f64::from(hold.readings)));
     if readings > MOST_READINGS {
         let head = checker.scope.blocks[block].block.head;
         return checker.fail(values::too_many("readings", readings, MOST_READINGS, head, "take fewer `samples` or `repeats`"));
@@ -26,11 +34,12 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
     Some(ProcedureKind::StiffnessRamp(StiffnessRamp {
         specimen: specimen?,
         displacements,
-        pause: pause?,
+        pause,
         samples,
         repeats,
         return_path: return_path?,
         fit: fit?,
+        relaxation: relaxation?,
         speed: speed?,
     }))
 }
@@ -44,4 +53,19 @@ fn fit(checker: &mut Checker, block: usize) -> Option<RampFit> {
         "bilinear" => Some(RampFit::Bilinear),
         _ => Some(RampFit::Linear),
     }
+}
+
+/// How the pauses are watched; None where a fault was reported.
+#[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+fn relaxation(checker: &mut Checker, block: usize) -> Option<Option<WatchedHold>> {
+    let Some((entry, _)) = checker.given(block, "relaxation") else { return Some(None) };
+    let place = checker.place(block, entry);
+    let chosen = checker.choice(block, "relaxation")?;
+    let readings = checker.constant_argument(&chosen, "readings", place).and_then(whole);
+    let accuracy = checker.optional_argument(&chosen, "accuracy", place);
+    let model = match chosen.variant.name {
+        "standard_linear_solid" => RelaxationModel::StandardLinearSolid,
+        _ => RelaxationModel::Exponential,
+    };
+    Some(Some(WatchedHold { model, readings: readings?, accuracy: accuracy? }))
 }

@@ -1,8 +1,9 @@
 //! `striker NAME { … }`: mass, gap, and its velocity, which a height of fall or the swing of a pendulum gives as well.
 
 use super::checker::Checker;
-use super::faults::names as fault;
+use super::faults::{names as fault, values};
 use crate::plan::Striker;
+use crate::quantity::Dimension;
 use crate::source::Span;
 
 /// Standard gravity, m/s².
@@ -44,7 +45,36 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
         checker.quantity(block, field);
     }
     let (velocity, gap, gravity) = (velocity(checker, block), checker.constant(block, "gap"), checker.constant(block, "gravity"));
-    Some(Striker { name: name?.node.clone(), mass: mass?, velocity: velocity?, gap: gap?, gravity: gravity? })
+    let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
+    let velocity_uncertainty = uncertainty(checker, block, "velocity_uncertainty", velocity);
+    Some(Striker {
+        name: name?.node.clone(),
+        mass: mass?,
+        mass_uncertainty: mass_uncertainty?,
+        velocity: velocity?,
+        velocity_uncertainty: velocity_uncertainty?,
+        gap: gap?,
+        gravity: gravity?,
+    })
+}
+
+/// A standard uncertainty (SI), small beside the `value` it is of.
+pub fn uncertainty(checker: &mut Checker, block: usize, field: &'static str, value: Option<f64>) -> Option<f64> {
+    let uncertainty = checker.constant(block, field)?;
+    match (value, checker.given(block, field)) {
+        (Some(value), Some((_, entry))) if uncertainty > MOST_UNCERTAIN * value => {
+            let dimension = entry_dimension(field);
+            checker.fail(values::too_uncertain(field, uncertainty, value, dimension, entry.value.span))
+        }
+        _ => Some(uncertainty),
+    }
+}
+
+/// Share of a value that its standard uncertainty may be: beyond it, nothing is linear, and 0 is no longer out of reach.
+const MOST_UNCERTAIN: f64 = 0.2;
+
+fn entry_dimension(field: &str) -> Dimension {
+    if field == "velocity_uncertainty" { Dimension::VELOCITY } else { Dimension::MASS }
 }
 
 /// `velocity`, else √(2·gn·h), where a pendulum falls by h = L(1 − cos θ).

@@ -1,9 +1,10 @@
 //! What runs but is unwise. In: what was checked. Out: warnings, with the numbers.
 
 use super::checker::Checker;
-use super::faults::{cyclic, whole as fault};
+use super::faults::{cyclic, values, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{Contact, Impact, Procedure, ProcedureKind, Requirement, Striker};
+use crate::plan::{Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker};
+use crate::schema::Kind;
 use crate::source::{FileId, Span};
 
 /// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
@@ -19,12 +20,17 @@ pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Opt
     if let (Contact::Limit { force }, Some(mass), Some(striker)) = (&impact.contact, impact.mass.constant(), striker)
         && let Some(force) = force.constant()
     {
-        // Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
-        let first = 2.0 * mass * striker.mass * striker.velocity / ((2.0 * mass + striker.mass) * force);
-        let resolved = mass * striker.mass / (mass + striker.mass) * striker.velocity / (5.0 * force);
-        if step > resolved {
-            checker.faults.push(fault::limit_force_not_resolved(at, step, first, resolved));
-        }
+        limit_force(checker, at, step, (mass, force), striker);
+    }
+}
+
+/// What a limit force (N) needs of the time step, on a structure of `mass` (kg): Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and
+/// Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
+pub fn limit_force(checker: &mut Checker, at: Span, step: f64, (mass, force): (f64, f64), striker: &Striker) {
+    let first = 2.0 * mass * striker.mass * striker.velocity / ((2.0 * mass + striker.mass) * force);
+    let resolved = mass * striker.mass / (mass + striker.mass) * striker.velocity / (5.0 * force);
+    if step > resolved {
+        checker.faults.push(fault::limit_force_not_resolved(at, step, first, resolved));
     }
 }
 
@@ -32,6 +38,7 @@ pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Opt
 pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement], plan: Span) {
     peak_forces(checker, procedures, requirements);
     blows_on_blows(checker, procedures);
+    unused_uncertainties(checker, procedures);
     match procedures.last() {
         None => checker.faults.push(fault::nothing_runs(plan)),
         Some((block, _)) if requirements.is_empty() => {
@@ -52,7 +59,7 @@ fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     let mut before: Option<usize> = None;
     for (block, procedure) in procedures {
         match procedure.as_ref().map(|procedure| &procedure.kind) {
-            Some(ProcedureKind::Impact(_)) => {
+            Some(ProcedureKind::Impact(_) | ProcedureKind::StoreyImpact(_)) => {
                 if let Some(first) = before {
                     let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
                     let name = first.name.map_or("", |name| name.node.as_str());
@@ -68,6 +75,28 @@ fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     }
 }
 
+/// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own.
+fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    let used: Vec<usize> = procedures
+        .iter()
+        .filter_map(|(_, procedure)| match &procedure.as_ref()?.kind {
+            ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow, .. }) => {
+                (blow.mass_uncertainty > 0.0).then_some(blow.specimen)
+            }
+            _ => None,
+        })
+        .collect();
+    let specimens: Vec<usize> = checker.scope.of_kind(Kind::Specimen).map(|(block, _)| block).collect();
+    for block in specimens.into_iter().enumerate().filter(|(place, _)| !used.contains(place)).map(|(_, block)| block) {
+        let stated = checker.given(block, "mass_uncertainty").map(|(_, entry)| entry.value.span);
+        let some = stated.is_some() && checker.constant(block, "mass_uncertainty").is_some_and(|stated| stated > 0.0);
+        if let (true, Some(span)) = (some, stated) {
+            let name = checker.scope.blocks[block].name.map_or("", |name| name.node.as_str());
+            checker.faults.push(values::uncertainty_unused(name, span));
+        }
+    }
+}
+
 fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
     for (index, requirement) in requirements.iter().enumerate() {
         let mut references = Vec::new();
@@ -76,7 +105,8 @@ fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)],
         }
         for reference in references.iter().filter(|reference| reference.name == "max_contact_force") {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
-                && let ProcedureKind::Impact(Impact { contact: Contact::Rigid, .. }) = procedure.kind
+                && let ProcedureKind::Impact(Impact { contact: Contact::Rigid, .. })
+                | ProcedureKind::StoreyImpact(StoreyImpact { contact: Contact::Rigid, .. }) = procedure.kind
             {
                 let (condition, head) =
                     (checker.scope.requirements[index].condition.span, checker.scope.blocks[*block].block.head);

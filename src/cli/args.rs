@@ -12,7 +12,9 @@ pub use evidence::{KeygenArguments, ReportArguments, SignArguments, VerifyArgume
 
 /// Pseudo-dynamic structural tests, from a plan to a certificate.
 #[derive(Debug, Parser)]
-#[command(name = "psd", version, about, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "psd", version, long_version = concat!(
+    env!("CARGO_PKG_VERSION"), "\nsources, SHA-256 ", env!("PSD_BUILD"), "\nbuilt for ", env!("PSD_TOOLCHAIN"),
+), about, max_term_width = 100, arg_required_else_help = true)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -60,9 +62,15 @@ pub enum Command {
 
 #[derive(Debug, Subcommand)]
 pub enum RigCommand {
-    /// Lists the serial ports of this machine
-    List,
+    /// Lists the serial ports of this machine, with the names that stay
+    List {
+        /// What is printed: a line a port, or JSON
+        #[arg(long, value_enum, default_value_t = Format::Human)]
+        format: Format,
+    },
     /// Says who the rig is, what it reads and how far it is from each limit; nothing moves
+    #[command(after_help = "Exit codes: 0 it answers and stands inside the limits, 2 the plan or the command line is wrong,\n\
+        3 no rig answers there, or another than the plan's, 4 it stands outside a limit.")]
     Probe {
         /// The plan, a `.psd` file
         #[arg(value_name = "PLAN")]
@@ -71,6 +79,9 @@ pub enum RigCommand {
         plan_settings: PlanSettings,
     },
     /// Shows the readings as they come; nothing moves
+    #[command(after_help = "In a pipe one line a reading, in SI: `| head` ends it too.\n\n\
+        Exit codes: 0 ended by Ctrl-C, `q`, `--count` or its reader, 2 the plan or the command line is wrong,\n\
+        3 the rig failed or was silent.")]
     Monitor {
         /// The plan, a `.psd` file
         #[arg(value_name = "PLAN")]
@@ -78,30 +89,47 @@ pub enum RigCommand {
         #[command(flatten)]
         plan_settings: PlanSettings,
         /// Ends after so many readings
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
         count: Option<u64>,
+        /// Time from one reading to the next, from 10 ms to 1 min
+        #[arg(long, value_name = "TIME", default_value = "100 ms")]
+        every: String,
     },
     /// Moves the rig by hand inside the plan's limits, asking first on every move
-    Jog {
-        /// The plan, a `.psd` file
-        #[arg(value_name = "PLAN")]
-        plan: PathBuf,
-        #[command(flatten)]
-        plan_settings: PlanSettings,
-        /// Where to, such as "1 mm" [default: places are typed, one a line]
-        #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
-        to: Option<String>,
-        /// How fast, such as "0.5 mm/s" [default: the rig's own, within the plan's limits]
-        #[arg(long, value_name = "SPEED")]
-        speed: Option<String>,
-        /// Answers the question before a move with yes
-        #[arg(long)]
-        yes: bool,
-    },
+    Jog(JogArguments),
     /// Stands in for the rig of a plan, at the plan's own port, until Ctrl-C
     Simulate(SimulateArguments),
     /// Lets a coordinator or OpenSees drive the plan's rig, inside the plan's limits
     Serve(ServeArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "On a real rig every question, answer and move is on record, in a run folder that `psd verify` proves.\n\n\
+    Exit codes: 0 it went where it was told, 2 the plan or the command line is wrong, 3 the rig failed,\n\
+    4 a limit or a person stood in the way."
+)]
+pub struct JogArguments {
+    /// The plan, a `.psd` file
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Where to, such as "1 mm"; of several axes "1 mm, 2 mm" [default: places are typed, one a line]
+    #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
+    pub to: Option<String>,
+    /// How fast, such as "0.5 mm/s" [default: the rig's own, within the plan's limits]
+    #[arg(long, value_name = "SPEED")]
+    pub speed: Option<String>,
+    /// Answers the question before a move with yes
+    #[arg(long)]
+    pub yes: bool,
+    /// Whose hand it is [default: the plan's `operator`]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub operator: Option<String>,
+    /// Run folder of the record on a real rig, new or empty [default: runs/PLAN-N]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -158,8 +186,8 @@ pub struct ServeArguments {
     /// Releases a real rig without asking: who starts this answers for it
     #[arg(long)]
     pub yes: bool,
-    /// Who stands by at a real rig
-    #[arg(long, value_name = "NAME")]
+    /// Who stands by at a real rig [default: the plan's `operator`]
+    #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,
 }
 
@@ -361,7 +389,7 @@ fn setting(text: &str) -> Result<(String, String), String> {
 }
 
 /// A person's name: one short line.
-fn name(text: &str) -> Result<String, String> {
+pub(super) fn name(text: &str) -> Result<String, String> {
     let name = text.trim();
     if name.is_empty() || name.chars().count() > 200 || name != escape(name) || name.contains('\n') {
         return Err("a name is one line of at most 200 letters".to_owned());

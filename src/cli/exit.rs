@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use super::room::NoRoom;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::rig::RigFault;
@@ -77,6 +78,10 @@ pub enum Failure {
     Journal(#[from] crate::record::journal::JournalFault),
     #[error("{0}")]
     Rig(#[from] crate::rig::RigFault),
+    #[error(transparent)]
+    NoRoom(#[from] super::room::NoRoom),
+    #[error("{fault}")]
+    NotOpened { fault: crate::rig::RigFault, place: String },
     #[error("no rehearsal: {0}")]
     Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
     #[error("the run cannot go on: {0}")]
@@ -84,6 +89,11 @@ pub enum Failure {
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
     Signals(std::io::Error),
 }
+
+/// What a device is told to be that does not answer, and what that may come from.
+const SILENT: &str = "no usable answer";
+const LOOK_FOR: &str = "the baud rate, the dialect, crossed wires, or a device that still starts; `psd rig simulate` in its place shows\n       \
+    whether the plan is right";
 
 impl Failure {
     pub fn command_line(message: impl Into<String>) -> Self {
@@ -103,16 +113,31 @@ impl Failure {
         self
     }
 
+    /// A rig that cannot be opened, with the place in the plan that says how.
+    #[must_use]
+    pub fn in_the_plan(self, place: impl FnOnce(&str) -> Option<String>) -> Self {
+        match self {
+            Self::Rig(fault) => match place(&fault.to_string()) {
+                Some(place) => Self::NotOpened { fault, place },
+                None => Self::Rig(fault),
+            },
+            other => other,
+        }
+    }
+
     pub const fn exit(&self) -> Exit {
         match self {
             Self::CommandLine { .. } | Self::NotAPlan { .. } | Self::Unrehearsed(_) => Exit::Wrong,
-            Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted) => Exit::Stopped,
+            Self::Rig(fault) | Self::NotOpened { fault, .. } => match fault {
+                RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted => Exit::Stopped,
+                RigFault::Device(_) | RigFault::Following { .. } => Exit::Fault,
+            },
             Self::File { .. }
             | Self::Output(_)
             | Self::Stdout(_)
             | Self::Record(_)
             | Self::Journal(_)
-            | Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
+            | Self::NoRoom(_)
             | Self::Refused(_)
             | Self::Signals(_) => Exit::Fault,
         }
@@ -120,13 +145,20 @@ impl Failure {
 
     /// As told to the person.
     pub fn report(&self, settings: Settings) -> String {
-        let help = match self {
-            Self::CommandLine { help, .. } | Self::File { help, .. } => help.as_deref(),
-            _ => None,
+        let (head, help) = match self {
+            Self::CommandLine { help, .. } | Self::File { help, .. } => ("error:".to_owned(), help.clone()),
+            Self::NoRoom(fault) => (format!("error[{}]", NoRoom::CODE), Some(fault.help())),
+            Self::NotOpened { fault: RigFault::Device(told), .. } if told.contains(SILENT) => {
+                ("error:".to_owned(), Some(LOOK_FOR.to_owned()))
+            }
+            _ => ("error:".to_owned(), None),
         };
-        let mut text = format!("{} {}\n", settings.paint_error("error:"), escape(&self.to_string()));
+        let mut text = format!("{} {}\n", settings.paint_error(&head), escape(&self.to_string()));
+        if let Self::NotOpened { place, .. } = self {
+            let _ = writeln!(text, "{} {}", settings.paint_note("  at:"), escape(place));
+        }
         if let Some(help) = help {
-            let _ = writeln!(text, "{} {}", settings.paint_note(" help:"), escape(help));
+            let _ = writeln!(text, "{} {}", settings.paint_note(" help:"), escape(&help));
         }
         text
     }

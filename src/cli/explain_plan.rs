@@ -118,8 +118,17 @@ impl<'a> DryRun<'a> {
                 let energy = explain_tracking::energy(self.plan, index);
                 section(&format!("{}, impact", procedure.name), [impact(history), foretold, energy].concat());
             }
+            if let History::StoreyImpact(history) = &procedure.history
+                && !history.floors.is_empty()
+            {
+                let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
+                section(&format!("{}, modes", procedure.name), modes);
+                let heading = format!("{}, impact on storey {}", procedure.name, history.struck + 1);
+                section(&heading, [impact(&history.blow), explain_shake::floors(history)].concat());
+            }
             if let (History::Shake(history), ProcedureKind::Shake(shake)) = (&procedure.history, &planned.kind) {
-                section(&format!("{}, modes", procedure.name), explain_shake::modes(history));
+                let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
+                section(&format!("{}, modes", procedure.name), modes);
                 let foretold = explain_tracking::shake_rows(self.plan, shake, history);
                 let energy = explain_tracking::energy(self.plan, index);
                 section(&format!("{}, shake", procedure.name), [explain_shake::steps(history), foretold, energy].concat());
@@ -332,6 +341,8 @@ mod tests {
         let specimen = Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            mass_from: None,
+            mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
             damping: 0.0,
@@ -341,6 +352,7 @@ mod tests {
             specimen: 0,
             striker: 0,
             mass: Constant(1.0),
+            mass_uncertainty: 0.0,
             stiffness: Constant(327.65),
             damping: Constant(0.0),
             contact: Contact::Rigid,
@@ -360,7 +372,15 @@ mod tests {
             particulars: Vec::new(),
             parameters: Vec::new(),
             specimens: vec![specimen],
-            strikers: vec![Striker { name: "hammer".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
+            strikers: vec![Striker {
+                name: "hammer".to_owned(),
+                mass: 10.0,
+                mass_uncertainty: 0.0,
+                velocity: 1.0,
+                velocity_uncertainty: 0.0,
+                gap: 0.0,
+                gravity: 0.0,
+            }],
             grounds: Vec::new(),
             rig: RigPlan {
                 name: "noisy".to_owned(),

@@ -1,13 +1,13 @@
 //! What `psd check --explain` says of a frame before anything moves: its modes and its time step, and of the dry run its
-//! peaks. In: the steps of a shake. Out: rows of text.
+//! peaks. In: the steps of a shake, or of an impact on a storey. Out: rows of text.
 
 use crate::quantity::Dimension;
 use crate::quantity::display::{digits, join, readable, significant, unit};
-use crate::record::{ShakeHistory, ShakeStep};
+use crate::record::{Floors, Modes, ShakeHistory, ShakeStep, StoreyImpactHistory};
 
 /// One row a mode: period, damping, the part of the mass that goes with it, and its shape from the lowest floor up.
-pub fn modes(history: &ShakeHistory) -> Vec<Vec<String>> {
-    let Some(modes) = &history.modes else { return Vec::new() };
+pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
+    let Some(modes) = modes else { return Vec::new() };
     let head = ["mode", "period", "damping", "effective mass", "shape, floor by floor"].map(str::to_owned).to_vec();
     let percent = |fraction: f64| format!("{} %", significant(100.0 * fraction, 3));
     let rows = modes.periods.iter().enumerate().map(|(mode, period)| {
@@ -15,7 +15,7 @@ pub fn modes(history: &ShakeHistory) -> Vec<Vec<String>> {
         vec![
             (mode + 1).to_string(),
             readable(*period, Dimension::TIME),
-            percent(history.damping_ratios.get(mode).copied().unwrap_or(0.0)),
+            percent(ratios.get(mode).copied().unwrap_or(0.0)),
             percent(modes.effective_mass[mode]),
             shape.join("  "),
         ]
@@ -36,17 +36,27 @@ pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
         row("critical time step", readable(history.critical_time_step, Dimension::TIME)),
         row("chosen time step", format!("{}, {} {judged}", readable(history.time_step, Dimension::TIME), significant(ratio, 3))),
         row("virtual time", format!("{} in {} steps", readable(ends, Dimension::TIME), history.steps.len() - 1)),
-        row("largest displacement, floor by floor", peaks(history, |step| step.computed.clone(), Dimension::LENGTH)),
-        row("largest drift, storey by storey", peaks(history, ShakeStep::drift, Dimension::LENGTH)),
-        row("largest shear, storey by storey", peaks(history, ShakeStep::shear, Dimension::FORCE)),
-        row("largest ground acceleration", peaks(history, |step| vec![step.ground_acceleration], Dimension::ACCELERATION)),
+        row("largest displacement, floor by floor", peaks(&history.steps, |step| step.computed.clone(), Dimension::LENGTH)),
+        row("largest drift, storey by storey", peaks(&history.steps, ShakeStep::drift, Dimension::LENGTH)),
+        row("largest shear, storey by storey", peaks(&history.steps, ShakeStep::shear, Dimension::FORCE)),
+        row("largest ground acceleration", peaks(&history.steps, |step| vec![step.ground_acceleration], Dimension::ACCELERATION)),
+    ]
+}
+
+/// Of an impact on a storey: the predicted peaks of all floors and storeys.
+pub fn floors(history: &StoreyImpactHistory) -> Vec<Vec<String>> {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    vec![
+        row("largest displacement, floor by floor", peaks(&history.floors, |step| step.computed.clone(), Dimension::LENGTH)),
+        row("largest drift, storey by storey", peaks(&history.floors, Floors::drift, Dimension::LENGTH)),
+        row("largest shear, storey by storey", peaks(&history.floors, Floors::shear, Dimension::FORCE)),
     ]
 }
 
 /// Largest sizes, all in one unit.
-fn peaks(history: &ShakeHistory, read: fn(&ShakeStep) -> Vec<f64>, dimension: Dimension) -> String {
+fn peaks<S>(steps: &[S], read: fn(&S) -> Vec<f64>, dimension: Dimension) -> String {
     let mut largest: Vec<f64> = Vec::new();
-    for step in &history.steps {
+    for step in steps {
         let values = read(step);
         largest.resize(values.len(), 0.0);
         for (largest, value) in largest.iter_mut().zip(values) {

@@ -12,7 +12,7 @@
 use crate::check::tracking;
 use crate::plan::{Impact, Link, Mode, Plan, Shake};
 use crate::quantity::Dimension;
-use crate::quantity::display::{readable, significant};
+use crate::quantity::display::{minus, readable, significant};
 use crate::record::{ImpactHistory, ProcedureRecord, ShakeHistory};
 
 /// What is foretold of one impact; nothing where the rig declares nothing that it misses.
@@ -87,7 +87,7 @@ pub(super) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> 
         let omega = modes.angular_frequency(mode);
         let damping = history.damping_ratios.get(mode).copied().unwrap_or(0.0);
         let growth = Growth { omega, late, relative: unsettled / amplitude };
-        let percent = |ratio: f64| format!("{} %", significant(100.0 * ratio, 3));
+        let percent = |ratio: f64| format!("{} %", minus(&significant(100.0 * ratio, 3)));
         rows.push(vec![
             if mode == 0 { "growth by tracking".to_owned() } else { String::new() },
             format!(

@@ -27,6 +27,7 @@ mod rehearse;
 mod report;
 mod resume;
 mod rig;
+mod room;
 mod run;
 mod run_folder;
 mod screen;

@@ -13,9 +13,15 @@ pub fn tell(text: &str) {
 
 /// Gives a result, as [`tell`] does.
 pub fn give(text: &str) -> Result<(), Failure> {
+    give_on(text).map(drop)
+}
+
+/// [`give`], and whether anybody reads on: what would never end by itself ends with its reader.
+pub fn give_on(text: &str) -> Result<bool, Failure> {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(inert::terminal(text).as_bytes()).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Stdout(error)),
-        _ => Ok(()),
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(Failure::Stdout(error)),
     }
 }

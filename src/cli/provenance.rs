@@ -1,14 +1,22 @@
 //! Where a run's numbers come from. In: the plan as it was checked. Out: [`Provenance`]. A function of the plan and
 //! this program's version alone, so that the same plan gives the same id everywhere.
 
-use std::fmt::Write as _;
-
 use sha2::{Digest as _, Sha256};
 
 use super::record_file::Circumstances;
-use crate::output::{Provenance, RealRun};
+use crate::digest::{hex, sha256};
+use crate::output::{Build, Provenance, RealRun};
 use crate::plan::Plan;
 use crate::run::rehearsal;
+
+/// The sources that this program was built from, and what with.
+pub const BUILD: &str = env!("PSD_BUILD");
+pub const TOOLCHAIN: &str = env!("PSD_TOOLCHAIN");
+
+/// This program.
+pub fn this_build() -> Build {
+    Build { sources: BUILD.to_owned(), toolchain: TOOLCHAIN.to_owned() }
+}
 
 /// The provenance of a run of `plan` by this version of the program.
 pub fn of(plan: &Plan) -> Provenance {
@@ -18,9 +26,11 @@ pub fn of(plan: &Plan) -> Provenance {
     Provenance {
         run_id: run_id(plan, version),
         psd_version: version.to_owned(),
-        plan_sha256: hex(&Sha256::digest(text.as_bytes())),
+        build: this_build(),
+        plan_sha256: sha256(text.as_bytes()),
         date,
         real: None,
+        equipment: None,
         amends: None,
     }
 }
@@ -70,19 +80,6 @@ fn run_id(plan: &Plan, version: &str) -> String {
         digest.update(rehearsal::REHEARSAL);
     }
     hex(&digest.finalize())[..16].to_owned()
-}
-
-/// SHA-256 in hex.
-pub fn sha256(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
-}
-
-/// Two digits a byte.
-pub fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }
 
 #[cfg(test)]

@@ -1,13 +1,48 @@
 //! A real rig for a command. In: a checked plan that names one. Out: the rig, open, with who watches it.
 
-use super::args::PlanSettings;
+use super::args::{PlanSettings, name};
 use super::exit::Failure;
+use super::output::tell;
 use super::record_file::Circumstances;
 use super::settings::Settings;
 use super::watch::{Attendance, Signals, Watcher};
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, Wish, connect};
 use crate::run::tape::Wall;
+
+/// Whether nobody is named on the command line, and nobody can be asked.
+pub fn unattended(attendance: &Attendance, settings: Settings) -> bool {
+    attendance.operator.is_none() && (attendance.yes || !settings.can_ask)
+}
+
+/// The name of who runs the test on a real rig, asked for at the terminal where neither command line nor plan gives it. Nothing
+/// is open yet, and Ctrl-C ends the program.
+pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure> {
+    if plan.rig.link.as_real().is_none() || operator(plan, &attendance).is_some() {
+        return Ok(attendance);
+    }
+    let nobody =
+        || Failure::command_line("nobody is named who runs the test: nothing was opened").help("--operator \"A. Tester\"");
+    loop {
+        tell("  who runs the test? [your name] ");
+        let mut line = String::new();
+        let count = std::io::stdin().read_line(&mut line).map_err(|_| nobody())?;
+        if count == 0 {
+            tell("\n");
+            return Err(nobody());
+        }
+        match name(&line) {
+            Ok(name) => return Ok(Attendance { operator: Some(name), ..attendance }),
+            Err(reason) => tell(&format!("  {reason}\n")),
+        }
+    }
+}
+
+/// Who is named, by the command line or by the plan.
+pub fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
+    let of_plan = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
+    attendance.operator.clone().or(of_plan).filter(|name| !name.trim().is_empty())
+}
 
 /// A rig that is open, and who watches it.
 pub struct Opened {
@@ -38,9 +73,8 @@ pub fn open_for_client(plan: &Plan, attendance: &Attendance, settings: Settings,
 
 /// Who stands by, on which machine, and when it began.
 pub fn circumstances(plan: &Plan, attendance: &Attendance) -> Circumstances {
-    let named = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
     let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
-    Circumstances { operator: attendance.operator.clone().or(named), host: Some(host), began: wall_clock()(), served: None }
+    Circumstances { operator: operator(plan, attendance), host: Some(host), began: wall_clock()(), served: None }
 }
 
 /// UTC, to the millisecond.

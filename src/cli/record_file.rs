@@ -6,18 +6,19 @@ use std::path::{Path, PathBuf};
 use super::args::PlanSettings;
 use super::exit::Failure;
 use super::loader::plain;
+use super::room;
 use crate::check::{LoadFault, Loader, Options, check};
-use crate::output::{Provenance, RealRun};
+use crate::digest::sha256;
+use crate::output::{Build, Provenance, RealRun};
 use crate::plan::Plan;
-use crate::record::journal::{Durability, FileStorage, Journal, Line, Recovered, Storage, recover};
+use crate::record::equipment::{Device, Equipment};
+use crate::record::journal::{Durability, FileStorage, Journal, Line, OLDEST_FORMAT, Recovered, Storage, recover};
+use crate::rig::Rig;
 use crate::run::rehearsal;
 use crate::run::tape::{self, Header, HeaderFile, Played};
 
 /// Name of the journal in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
-
-/// Digest of the sources that this program was built from.
-pub const BUILD: &str = env!("PSD_BUILD");
 
 /// What only a real rig's record says of the place and the people.
 #[derive(Clone, Debug, Default)]
@@ -30,20 +31,25 @@ pub struct Circumstances {
     pub served: Option<String>,
 }
 
-/// What a run starts from.
-pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, circumstances: Circumstances) -> Header {
-    let file = |file: &crate::plan::PlanFile| HeaderFile {
-        name: file.name.clone(),
-        sha256: super::provenance::sha256(file.text.as_bytes()),
-    };
+/// What a run starts from, on the device that answered.
+pub fn header(
+    plan: &Plan,
+    device: Device,
+    settings: &PlanSettings,
+    provenance: &Provenance,
+    circumstances: Circumstances,
+) -> Header {
+    let file = |file: &crate::plan::PlanFile| HeaderFile { name: file.name.clone(), sha256: sha256(file.text.as_bytes()) };
     let Circumstances { operator, host, began, served } = circumstances;
     Header {
         run_id: provenance.run_id.clone(),
         psd: provenance.psd_version.clone(),
-        build: BUILD.to_owned(),
+        build: provenance.build.sources.clone(),
+        toolchain: provenance.build.toolchain.clone(),
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
+        equipment: Some(Equipment::of(plan, device)),
         rehearsal: rehearsal::told(plan).is_some(),
         served,
         date: settings.date.clone(),
@@ -53,14 +59,30 @@ pub fn header(plan: &Plan, settings: &PlanSettings, provenance: &Provenance, cir
     }
 }
 
+/// What a rig says of itself.
+pub fn device(rig: &dyn Rig) -> Device {
+    Device::of(&rig.identity(), rig.declared_noise())
+}
+
 /// Texts of the plan's files, in the header's order.
 pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
 }
 
-/// Opens the record of a run that is about to begin.
+/// Opens the record of a run that is about to begin, where there is room for all of it.
 pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
-    begin_in(Box::new(FileStorage::create(&journal_of(folder))?), plan, header)
+    let path = journal_of(folder);
+    let storage = FileStorage::create(&path)?;
+    // What a client will ask for nobody knows.
+    if header.served.is_none()
+        && let Err(failure) = room::enough(folder, &storage, plan, 0)
+    {
+        drop(storage);
+        // Nothing is left of a run that did not begin, not even its folder if it is empty.
+        let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(folder));
+        return Err(failure);
+    }
+    begin_in(Box::new(storage), plan, header)
 }
 
 /// A record that nobody keeps: the run is the same as one on record, to the last bit of every time.
@@ -113,11 +135,15 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     let recovered = recover(bytes).map_err(|damage| damaged(format!("the record is damaged: {damage}")))?;
     let played = Played::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
     for (file, text) in played.header.files.iter().zip(&played.texts) {
-        if super::provenance::sha256(text.as_bytes()) != file.sha256 {
+        if sha256(text.as_bytes()) != file.sha256 {
             return Err(damaged(format!("the text of `{}` is not the one of its digest", file.name)));
         }
     }
     let plan = plan_of(&played).map_err(damaged)?;
+    if played.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
+        return Err(damaged("its header does not say what was measured with".to_owned()));
+    }
+    fits(&played, &plan).map_err(damaged)?;
     let provenance = provenance_of(&played.header, &plan, &recovered);
     Ok(ReadRecord { recovered, played, plan, provenance })
 }
@@ -134,7 +160,8 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
     let (Some(first), Some(text)) = (header.files.first(), played.texts.first()) else {
         return Err("the record holds no plan".to_owned());
     };
-    let options = Options { rig: header.rig.clone(), settings: header.settings.clone(), date: header.date.clone() };
+    let (rig, settings, date) = (header.rig.clone(), header.settings.clone(), header.date.clone());
+    let options = Options { rig, settings, date, unattended: false };
     let checked = check(&first.name, text, &files, &options);
     let plan = checked.plan.ok_or_else(|| {
         let fault = checked.diagnostics.iter().find(|found| found.is_error());
@@ -144,12 +171,23 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
     if header.rehearsal { rehearsal::measured_part(&plan).map_err(|fault| fault.to_string()) } else { Ok(plan) }
 }
 
+/// What the header says of the equipment is what plan and rig say of it: nobody wrote another calibration into it.
+fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
+    let (Some(told), Some(rig)) = (&played.header.equipment, &played.rig) else { return Ok(()) };
+    if *told == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {
+        return Ok(());
+    }
+    Err("what its header says of rig, calibration or limits is not what its plan and its rig say".to_owned())
+}
+
 /// The provenance that the record gives; the plan's own date counts where none was given on the command line.
 fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
     let stated = Provenance {
         run_id: header.run_id.clone(),
         psd_version: header.psd.clone(),
+        build: Build { sources: header.build.clone(), toolchain: header.toolchain.clone() },
         plan_sha256: header.files.first().map_or_else(String::new, |file| file.sha256.clone()),
+        equipment: header.equipment.clone(),
         ..super::provenance::of(plan)
     };
     if plan.rig.link.as_real().is_none() {

@@ -9,6 +9,7 @@ use super::explain_plan::DryRun;
 use super::output::{give, tell};
 use super::run::{Ran, on_its_rig, summary};
 use super::settings::Settings;
+use super::watch::Attendance;
 use crate::diagnostic::excerpt::escape;
 use crate::plan::{Behaviour, Plan};
 use crate::quantity::Dimension;
@@ -17,9 +18,9 @@ use crate::rig::VirtualRig;
 use crate::run::rehearsal;
 
 /// Measures, predicts, and says with the exit code whether every limit would be kept.
-pub fn rehearse(plan: &Plan, arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
+pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Exit, Failure> {
     let part = rehearsal::measured_part(plan)?;
-    let Ran { folder, provenance, recorded } = on_its_rig(&part, arguments, settings)?;
+    let Ran { folder, provenance, recorded } = on_its_rig(&part, arguments, attendance, settings)?;
     let (exit, files) = conclude(folder.path(), &part, &provenance, &recorded, settings)?;
     let predicted = if exit <= Exit::Missed {
         let stand_in = rehearsal::prediction(plan, &recorded.record)?;

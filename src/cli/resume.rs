@@ -9,12 +9,14 @@ use super::conclude::conclude;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::{give, tell};
-use super::record_file::{self, BUILD, ReadRecord, journal_of};
+use super::provenance::{BUILD, TOOLCHAIN};
+use super::record_file::{self, ReadRecord, journal_of};
 use super::settings::Settings;
 use super::watch::Attendance;
-use super::{plan_file, provenance, real_rig};
+use super::{plan_file, provenance, real_rig, room};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
+use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::rig::Rig;
 use crate::run::tape::{self, AmendBody, Bands, Header, Played, ResumeBody, RigBody};
@@ -32,6 +34,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     if read.played.ended {
         return Err(tape::Refusal::Ended.into());
     }
+    if read.played.header.served.as_deref() == Some(tape::BY_HAND) {
+        return Err(Failure::command_line("this was done by hand: there is nothing to go on with")
+            .help("`psd rig jog` goes from where the rig stands"));
+    }
     if read.played.header.served.is_some() {
         return Err(Failure::command_line("a client drove this run: psd cannot go on in its place")
             .help("start it anew with `psd rig serve`"));
@@ -45,6 +51,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     // Before a port is opened or a byte written: the record, by the plan that is to go on.
     tape::same_measure(&read.plan.rig, &plan.rig)?;
     tape::rehearse(&plan, &read.played)?;
+    room::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
 
     let torn = storage.truncate_to(read.recovered.whole)?;
     let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
@@ -89,6 +96,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
             env!("CARGO_PKG_VERSION")
         ));
     }
+    let was = equipment_of(read)?;
     let (mut plan, mut header, mut texts) = (read.plan.clone(), recorded.clone(), read.played.texts.clone());
     if let Some(path) = &arguments.plan {
         let options = real_rig::settings_of(recorded);
@@ -96,12 +104,19 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
         let Some(given) = checked.plan else {
             return Err(Failure::command_line(format!("{} has errors: see `psd check`", path.display())));
         };
-        let now = record_file::header(&given, &options, &provenance::of(&given), record_file::Circumstances::default());
+        let nobody = record_file::Circumstances::default();
+        let now = record_file::header(&given, was.device.clone(), &options, &provenance::of(&given), nobody);
         differences.extend(changed_files(recorded, &now));
         header = Header { files: now.files, ..header };
         texts = record_file::texts(&given);
         plan = given;
     }
+    let now = Equipment::of(&plan, was.device.clone());
+    if let Some(what) = was.measures_otherwise(&now) {
+        return Err(tape::Refusal::OtherMeasure { what }.into());
+    }
+    differences.extend(was.changes(&now));
+    header.equipment = Some(now);
     if differences.is_empty() {
         return Ok((plan, read.provenance.clone(), None));
     }
@@ -110,11 +125,22 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
         return Err(Failure::command_line(format!("not what the run began with:\n  {told}"))
             .help("`--amend` accepts it; who and why go into the record and onto the certificate"));
     }
-    header = Header { psd: env!("CARGO_PKG_VERSION").to_owned(), build: BUILD.to_owned(), ..header };
+    header =
+        Header { psd: env!("CARGO_PKG_VERSION").to_owned(), build: BUILD.to_owned(), toolchain: TOOLCHAIN.to_owned(), ..header };
     let plan_sha256 = header.files.first().map_or_else(String::new, |file| file.sha256.clone());
-    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), ..read.provenance.clone() };
+    let (equipment, build) = (header.equipment.clone(), provenance::this_build());
+    let provenance = Provenance { plan_sha256, psd_version: header.psd.clone(), build, equipment, ..read.provenance.clone() };
     let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
     Ok((plan, provenance, Some((AmendBody { by, reason, differences, header }, texts))))
+}
+
+/// What the record says it was measured with; of version 1, what its plan and its rig say.
+fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
+    if let Some(told) = &read.played.header.equipment {
+        return Ok(told.clone());
+    }
+    let rig = read.played.rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
+    Ok(Equipment::of(&read.plan, Device::of(&rig.identity, rig.noise)))
 }
 
 /// Files whose digests differ, or that only one of the two has.
@@ -138,6 +164,7 @@ fn settle(
 ) -> Result<ResumeBody, Failure> {
     let recorded = played.last_rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
     tape::same_rig(&recorded.identity, &rig.identity(), arguments.re_referenced)?;
+    tape::same_resolution(recorded.noise, rig.declared_noise())?;
     let found = rig.read()?;
     let axes = 0..plan.rig.axes().unwrap_or(1);
     let band = axes.clone().map(|axis| 4.0 * link.readings_of(axis).resolution).fold(plan.rig.settle.band, f64::max);

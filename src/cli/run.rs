@@ -10,8 +10,9 @@ use super::record_file::{self, Circumstances};
 use super::rehearse::rehearse;
 use super::run_folder::RunFolder;
 use super::settings::Settings;
+use super::trial::{self, Extent};
 use super::watch::{Attendance, Watcher};
-use super::{plan_file, provenance, real_rig, trial};
+use super::{plan_file, provenance, real_rig};
 use crate::diagnostic::json;
 use crate::golden::{Outcome, Tested, console};
 use crate::output::{OutputFile, Provenance};
@@ -21,7 +22,9 @@ use crate::run::tape::{self, Recorded};
 
 /// Runs one plan.
 pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
-    let checked = plan_file::open(&arguments.plan, &arguments.plan_settings)?;
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    let unattended = real_rig::unattended(&attendance, settings);
+    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
@@ -29,23 +32,25 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         }
         return Ok(Exit::Wrong);
     };
+    let attendance = real_rig::named(attendance, plan)?;
+    let in_the_plan = |failure: Failure| failure.in_the_plan(|fault| plan_file::place_of_link(&checked, &arguments.plan, fault));
     if arguments.rehearse {
-        return rehearse(plan, arguments, settings);
+        return rehearse(plan, arguments, &attendance, settings).map_err(in_the_plan);
     }
     let blessed = arguments.bless.then(|| BlessedFolder::of(&arguments.plan)).transpose()?;
     if blessed.is_some() && !trial::is_as_written(plan, &arguments.plan_settings) {
         return Err(Failure::command_line("`--bless` is of the plan as it is written, on its virtual rig")
             .help("leave out `--set`, `--rig` and `--date`, or write them into the plan"));
     }
-    let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, settings)?;
+    let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
     let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
-        if exit <= Exit::Missed {
-            let trial = trial::of(&arguments.plan)?;
+        let trial = trial::of(&arguments.plan, Extent::All)?;
+        if trial.ended.as_ref() == Some(&recorded.record.outcome) {
             let outcome = Outcome::Blessed(blessed.bless(&trial.files, &trial.tolerances, false)?);
             tell(&console::told(&Tested { name: blessed.path().display().to_string(), outcome }, settings.color));
         } else {
-            tell("  not blessed: the run did not come to its end\n");
+            tell("  not blessed: the run was stopped, and the plan as it is written goes on\n");
         }
     }
     match arguments.format {
@@ -63,11 +68,15 @@ pub(super) struct Ran {
 }
 
 /// Runs the plan on the rig that it names, and keeps the record.
-pub(super) fn on_its_rig(plan: &Plan, arguments: &RunArguments, settings: Settings) -> Result<Ran, Failure> {
-    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+pub(super) fn on_its_rig(
+    plan: &Plan,
+    arguments: &RunArguments,
+    attendance: &Attendance,
+    settings: Settings,
+) -> Result<Ran, Failure> {
     match plan.rig.link {
-        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, &attendance, settings),
-        Link::Real(_) => on_a_real_rig(plan, arguments, &attendance, settings),
+        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, attendance, settings),
+        Link::Real(_) => on_a_real_rig(plan, arguments, attendance, settings),
     }
 }
 
@@ -76,9 +85,12 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
     let mut watcher = Watcher::new(settings, attendance, plan, true, Wish::default()).map_err(Failure::Signals)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let provenance = provenance::of(plan);
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, Circumstances::default());
+    let mut rig = virtual_rig(plan);
+    let device = record_file::device(rig.as_ref());
+    let header = record_file::header(plan, device, &arguments.plan_settings, &provenance, Circumstances::default());
+    let provenance = Provenance { equipment: header.equipment.clone(), ..provenance };
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let recorded = tape::record(plan, virtual_rig(plan).as_mut(), &mut watcher, journal, Box::new(|| None));
+    let recorded = tape::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None));
     watcher.finish();
     Ok(Ran { folder, provenance, recorded })
 }
@@ -89,7 +101,9 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     let provenance = provenance::of_real_run(plan, &circumstances);
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
+    let device = record_file::device(&opened.connected.rig);
+    let header = record_file::header(plan, device, &arguments.plan_settings, &provenance, circumstances);
+    let provenance = Provenance { equipment: header.equipment.clone(), ..provenance };
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let wall = real_rig::wall_clock();
     let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);

@@ -11,8 +11,9 @@ use super::record_file::{self, Circumstances};
 use super::{plan_file, provenance};
 use crate::diagnostic::render::{Appearance, render_all};
 use crate::golden::{DIAGNOSTICS, Tolerances};
-use crate::output::{OutputFile, Run, figure_data};
+use crate::output::{OutputFile, Provenance, Run, figure_data, numbers};
 use crate::plan::Plan;
+use crate::record::Outcome;
 use crate::rig::virtual_rig;
 use crate::run::tape;
 use crate::run::{Inspection, Observer, StepReport};
@@ -20,30 +21,49 @@ use crate::verdict;
 
 /// What a plan gives.
 pub struct Trial {
+    /// Every file, or those alone that are compared.
     pub files: Vec<OutputFile>,
     pub tolerances: Tolerances,
     /// `pass`; None where the plan fails to check.
     pub verdict: Option<&'static str>,
+    /// How the run ended; None where there was none.
+    pub ended: Option<Outcome>,
+}
+
+/// Which of a plan's files are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    All,
+    /// Numbers and words: no picture is drawn and no paper set.
+    Compared,
 }
 
 /// Runs one plan.
-pub fn of(path: &Path) -> Result<Trial, Failure> {
+pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     let checked = plan_file::open(path, &PlanSettings::default())?;
     let Some(plan) = &checked.plan else {
         let text = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
         let files = vec![OutputFile { path: DIAGNOSTICS.to_owned(), bytes: text.into_bytes() }];
-        return Ok(Trial { files, tolerances: Tolerances::default(), verdict: None });
+        return Ok(Trial { files, tolerances: Tolerances::default(), verdict: None, ended: None });
     };
     let operator = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
     let provenance = provenance::of(plan);
-    let header = record_file::header(plan, &PlanSettings::default(), &provenance, Circumstances::default());
+    let mut rig = virtual_rig(plan);
+    let device = record_file::device(rig.as_ref());
+    let header = record_file::header(plan, device, &PlanSettings::default(), &provenance, Circumstances::default());
+    let provenance = Provenance { equipment: header.equipment.clone(), ..provenance };
     let journal = record_file::begin_nowhere(plan, &header)?;
-    let recorded = tape::record(plan, virtual_rig(plan).as_mut(), &mut Unattended { operator }, journal, Box::new(|| None));
+    let recorded = tape::record(plan, rig.as_mut(), &mut Unattended { operator }, journal, Box::new(|| None));
     let record = recorded.record;
     let assessment = verdict::assess(plan, &record);
-    let mut files = made_of(plan, &record, &assessment, &provenance, None)?;
-    files.push(figure_data(&Run { plan, record: &record, assessment: &assessment, provenance: &provenance }));
-    Ok(Trial { files, tolerances: Tolerances::of(plan), verdict: Some(assessment.verdict.name()) })
+    let run = Run { plan, record: &record, assessment: &assessment, provenance: &provenance };
+    let mut files = match extent {
+        Extent::All => made_of(plan, &record, &assessment, &provenance, None)?,
+        Extent::Compared => numbers(&run)?,
+    };
+    files.push(figure_data(&run));
+    let verdict = Some(assessment.verdict.name());
+    Ok(Trial { files, tolerances: Tolerances::of(plan), verdict, ended: Some(record.outcome) })
 }
 
 /// Whether the plan, as the command line sets it up, can be blessed: only as it is written, on its virtual rig.

@@ -32,6 +32,9 @@ macro_rules! codes {
     };
 }
 
+/// Codes that no plan gives: what they say is of the machine that is to run it.
+pub const OF_THE_MACHINE: &[Code] = &[Code::NoRoom];
+
 codes! {
     // 1: the text
     E101 Syntax Error;
@@ -95,6 +98,7 @@ codes! {
     E616 TooManyAxes Error;
     E617 UnknownColumn Error;
     E618 ToleranceTwice Error;
+    E619 NobodyNamed Error;
     E620 GroundRecord Error;
     E621 BadMatrix Error;
     E622 StoreyStiffness Error;
@@ -104,11 +108,15 @@ codes! {
     E626 FrameOnRealRig Error;
     E627 DampingRatios Error;
     E628 NoOneStiffness Error;
+    E629 NoRoom Error;
     E630 CornersDoNotFit Error;
     E631 BadTableFile Error;
     E632 BehaviourIncomplete Error;
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
+    E635 TooUncertain Error;
+    E640 WhichStorey Error;
+    E641 NoUseOnAFrame Error;
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;
@@ -117,6 +125,7 @@ codes! {
     E647 NoUseWithRate Error;
     E648 ConditionWithoutBlow Error;
     E649 BreaksTwice Error;
+    E650 RelaxationWithoutHold Error;
     E651 NotTogether Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
@@ -131,6 +140,7 @@ codes! {
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;
     W711 ResolutionUnknown Warning;
+    W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
     W719 TrackingStops Warning;

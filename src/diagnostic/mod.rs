@@ -6,7 +6,7 @@ pub mod excerpt;
 pub mod json;
 pub mod render;
 
-pub use code::Code;
+pub use code::{Code, OF_THE_MACHINE};
 
 use crate::source::Span;
 

@@ -111,11 +111,15 @@ impl Moved {
 }
 
 impl Finding {
-    pub(super) fn new(part: Part, name: impl Into<String>, change: Change) -> Self {
+    /// A difference of a part.
+    #[must_use]
+    pub fn new(part: Part, name: impl Into<String>, change: Change) -> Self {
         Self { part, name: name.into(), change }
     }
 
-    pub(super) fn text(part: Part, name: impl Into<String>, was: &str, is: &str) -> Self {
+    /// A text that reads otherwise.
+    #[must_use]
+    pub fn text(part: Part, name: impl Into<String>, was: &str, is: &str) -> Self {
         Self::new(part, name, Change::Text { was: was.to_owned(), is: is.to_owned(), first: None })
     }
 }

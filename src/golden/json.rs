@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::finding::{Change, Finding, Moved, Place};
 use super::tested::{Outcome, Report};
+use crate::inert;
 use crate::quantity::display::si_unit;
 
 /// Name and version of the format; a change that breaks a reader raises the number.
@@ -29,6 +30,12 @@ pub fn document(report: &Report) -> Value {
         .collect();
     let failed = report.tested.len() - report.good();
     json!({ "schema": SCHEMA, "plans": plans, "good": report.good(), "failed": failed, "unused": report.unused })
+}
+
+/// The document as it is printed: indented, and no text of a plan in it steers a terminal.
+#[must_use]
+pub fn text(report: &Report) -> String {
+    inert::json(&format!("{:#}\n", document(report)))
 }
 
 /// One difference.

@@ -5,6 +5,7 @@ use quick_junit::{NonSuccessKind, Report as Junit, TestCase, TestCaseStatus, Tes
 
 use super::tested::{Outcome, Report, Tested};
 use super::words::Words;
+use crate::inert::one_line;
 
 /// The report.
 ///
@@ -14,7 +15,8 @@ pub fn junit(report: &Report) -> Result<String, quick_junit::SerializeError> {
     // A suite is counted when it is added: it is whole by then.
     let mut suites: Vec<TestSuite> = Vec::new();
     for tested in &report.tested {
-        let (folder, name) = tested.name.rsplit_once('/').unwrap_or((".", &tested.name));
+        let plain = one_line(&tested.name);
+        let (folder, name) = plain.rsplit_once('/').unwrap_or((".", &plain));
         if suites.last().is_none_or(|suite| suite.name.as_str() != folder) {
             suites.push(TestSuite::new(folder));
         }
@@ -33,7 +35,7 @@ fn status(tested: &Tested) -> TestCaseStatus {
     if tested.outcome.is_good() {
         return TestCaseStatus::success();
     }
-    let complaint = tested.outcome.complaint().unwrap_or_default();
+    let complaint = one_line(&tested.outcome.complaint().unwrap_or_default());
     if tested.outcome == Outcome::NotRun {
         let mut status = TestCaseStatus::skipped();
         status.set_message(complaint);
@@ -43,7 +45,7 @@ fn status(tested: &Tested) -> TestCaseStatus {
     let mut status = TestCaseStatus::non_success(kind);
     status.set_type(tested.outcome.name());
     status.set_message(complaint);
-    let lines: Vec<String> = tested.outcome.findings().iter().map(|finding| Words::of(finding).line()).collect();
+    let lines: Vec<String> = tested.outcome.findings().iter().map(|finding| one_line(&Words::of(finding).line())).collect();
     status.set_description(lines.join("\n"));
     status
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::tested::{Outcome, Report};
 use super::words::Words;
+use crate::inert;
 
 /// The report, with a line a plan.
 #[must_use]
@@ -34,12 +35,12 @@ pub fn tap(report: &Report) -> String {
 
 /// A description without what steers a reader of the protocol: `#` begins a directive.
 fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>().replace('#', "＃")
+    inert::one_line(text).replace('#', "＃")
 }
 
 /// A JSON string is a YAML string.
 fn quoted(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
+    inert::json(&serde_json::Value::from(text).to_string())
 }
 
 #[cfg(test)]

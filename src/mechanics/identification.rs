@@ -7,6 +7,8 @@ pub struct LineFit {
     pub slope_error: f64,
     pub intercept: f64,
     pub intercept_error: f64,
+    /// Of slope and intercept, −1 to 1: both turn about the middle of the points.
+    pub correlation: f64,
     pub r_squared: f64,
 }
 
@@ -41,6 +43,8 @@ pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
         slope_error: (variance / xx).sqrt(),
         intercept: mean_y - slope * mean_x,
         intercept_error: (variance * (1.0 / count + mean_x * mean_x / xx)).sqrt(),
+        // Covariance −x̄ s²/Sxx over both errors (JCGM 100:2008, H.3.3).
+        correlation: -mean_x / (xx / count + mean_x * mean_x).sqrt(),
         r_squared: if yy > 0.0 { 1.0 - residual / yy } else { 1.0 },
     })
 }

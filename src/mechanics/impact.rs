@@ -8,7 +8,7 @@ use super::law::{Advance, Bodies, Start};
 use super::scheme::{AnyScheme, Scheme};
 use super::specimen::RestoringForce;
 use super::tangent::TangentStiffness;
-use crate::plan::Integrator;
+use crate::plan::{Integrator, Until};
 
 /// All an impact starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -293,6 +293,16 @@ impl ImpactSolver {
         let fastest = state.velocity.hypot(state.restoring_force / (mass * self.stiffness).sqrt());
         let farthest = state.displacement - state.restoring_force / self.stiffness - fastest * (mass / self.stiffness).sqrt();
         back >= fastest || state.striker_displacement < farthest + state.indentation
+    }
+
+    /// Whether the run has come to its end before its duration.
+    #[must_use]
+    pub fn over(&self, until: Until) -> bool {
+        match until {
+            Until::StrikerStop => self.finished(),
+            Until::Rebound => self.rebounded(),
+            Until::Duration => false,
+        }
     }
 
     /// Whether the last step ended with Ẋs ≤ 0 and Ẋ ≤ 0.

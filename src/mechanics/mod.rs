@@ -15,11 +15,18 @@ pub mod identification;
 pub mod impact;
 pub mod integrator;
 pub mod law;
+pub mod maxwell;
 pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
+pub mod recorded_path;
+pub mod relaxation;
+#[cfg(test)]
+mod relaxation_tests;
+pub mod rerun;
 pub mod scheme;
+pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod summary;

@@ -111,6 +111,10 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
             let (velocity, exponent) = (shown(*reference_velocity, Of::VELOCITY), shown(*exponent, Of::NUMBER));
             format!("[{}], on the load cell times 1 + (v/{velocity})^{exponent} while it moves", words(of, shown))
         }
+        Behaviour::Maxwell { of, stiffness, time_constant } => {
+            let (stiffness, tau) = (shown(*stiffness, Of::STIFFNESS), shown(*time_constant, Of::TIME));
+            format!("[{}], beside it {stiffness} that relax with a time constant of {tau}", words(of, shown))
+        }
         Behaviour::Beam(beam) => beam_words(beam, shown),
         Behaviour::Portal(portal) => portal_words(portal, shown),
     }

@@ -1,11 +1,8 @@
 //! The manifest: SHA-256 of every file, in the format that `sha256sum --check` reads. In: the files of a run folder.
 //! Out: `manifest.sha256`, itself not listed.
 
-use std::fmt::Write as _;
-
-use sha2::{Digest as _, Sha256};
-
 use super::OutputFile;
+use crate::digest::sha256;
 
 /// Its name; it does not list itself.
 pub(super) const NAME: &str = "manifest.sha256";
@@ -23,13 +20,6 @@ pub(super) fn with<'a>(files: impl Iterator<Item = &'a OutputFile>, others: &[(S
     lines.sort();
     let text = lines.into_iter().fold(String::new(), |text, (path, hash)| text + &hash + "  " + path + "\n");
     OutputFile { path: NAME.to_owned(), bytes: text.into_bytes() }
-}
-
-fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
 }
 
 #[cfg(test)]

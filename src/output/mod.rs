@@ -3,6 +3,7 @@
 
 mod amendment;
 pub mod behaviour;
+mod budget;
 mod certificate;
 pub mod comparison;
 pub mod console;
@@ -13,16 +14,20 @@ mod manifest;
 mod number;
 mod shake_table;
 pub mod standing;
+mod storey_table;
 pub mod summary;
 mod tables;
 
 pub use figures::{Curve, Curves, FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures, PlainAxis};
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use crate::inert;
-use crate::plan::{Format, Plan, PlanFile};
+use crate::plan::{Format, Link, Plan, PlanFile};
 use crate::record::Record;
+use crate::record::equipment::{Device, Equipment};
+use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
 
@@ -37,18 +42,36 @@ pub struct Run<'a> {
     pub provenance: &'a Provenance,
 }
 
+impl Run<'_> {
+    /// What was measured with and held to: as the record tells it, else as plan and rig give it.
+    fn equipment(&self) -> Cow<'_, Equipment> {
+        let planned = || {
+            let noise = match &self.plan.rig.link {
+                Link::Virtual(link) => DeclaredNoise { force: link.noise, resolution: link.resolution },
+                Link::Real(link) => DeclaredNoise { force: link.readings.noise, resolution: link.readings.resolution },
+            };
+            Cow::Owned(Equipment::of(self.plan, Device::of(&self.record.rig, noise)))
+        };
+        self.provenance.equipment.as_ref().map_or_else(planned, Cow::Borrowed)
+    }
+}
+
 /// Where the numbers come from. Nothing here is read from the machine on a virtual rig.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
     /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
     pub run_id: String,
     pub psd_version: String,
+    /// Which program of that version.
+    pub build: Build,
     /// SHA-256 of the plan's text, hex.
     pub plan_sha256: String,
     /// From the plan or `--date`; of a real run else the day it began.
     pub date: Option<String>,
     /// Of a run on a real rig.
     pub real: Option<RealRun>,
+    /// As the record's first line tells it; None where it does not, or where there is none.
+    pub equipment: Option<Equipment>,
     /// Of a report that takes the place of another.
     pub amends: Option<Amends>,
 }
@@ -65,6 +88,15 @@ impl Provenance {
     pub fn operator(&self) -> Option<&str> {
         self.real.as_ref().and_then(|real| real.operator.as_deref())
     }
+}
+
+/// What a program was made from and with. Of the program that made the run: a report made anew says the same.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Build {
+    /// SHA-256 over the digests of its sources, hex.
+    pub sources: String,
+    /// Target, profile, compiler; empty where the record is older than that.
+    pub toolchain: String,
 }
 
 /// What the record of a real run says of people and place, and of itself. Times are UTC, ISO 8601.
@@ -106,10 +138,13 @@ pub enum OutputError {
 /// A table, figure or summary that cannot be encoded.
 pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let figures = figures::all(run)?;
+    let mut tables = tables::all(run)?;
+    // As they will lie in the folder, for the report names them.
+    tell_apart(&mut tables);
     let mut files = Vec::new();
     let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
     if html || pdf {
-        let report = certificate::document(run, &figures);
+        let report = certificate::document(run, &figures, &tables);
         if html {
             let page = inert::page(&document::html::html(&report));
             files.push(OutputFile { path: "certificate.html".to_owned(), bytes: page.into_bytes() });
@@ -119,8 +154,8 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
             files.push(OutputFile { path: "certificate.pdf".to_owned(), bytes });
         }
     }
-    files.push(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() });
-    files.extend(tables::all(run)?);
+    files.push(summary_file(run)?);
+    files.extend(tables);
     for figure in figures {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
         files.push(OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() });
@@ -129,6 +164,21 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     tell_apart(&mut files);
     files.push(manifest::of(&files));
     Ok(files)
+}
+
+/// The files of numbers and words alone: the summary and the tables.
+///
+/// # Errors
+/// A table or a summary that cannot be encoded.
+pub fn numbers(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+    let mut files = vec![summary_file(run)?];
+    files.extend(tables::all(run)?);
+    tell_apart(&mut files);
+    Ok(files)
+}
+
+fn summary_file(run: &Run<'_>) -> Result<OutputFile, OutputError> {
+    Ok(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() })
 }
 
 /// What the figures of a run plot, for who holds it against another run.

@@ -26,6 +26,19 @@ pub(super) fn text_beside(value: f64, beside: f64, dimension: Dimension) -> Stri
     kept_together(&display::readable_beside(value, beside, dimension))
 }
 
+/// A part of a whole, in its unit and to this digit of it, so that parts add up at sight: `10.000 J`, `0.030 J`.
+pub(super) fn part_of(part: f64, whole: f64, digits: u8, dimension: Dimension) -> String {
+    let (unit, factor) = unit(whole, dimension);
+    let decimals = f64::from(digits) - 1.0 - (whole / factor).abs().log10().floor();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 12")]
+    let decimals = if decimals.is_finite() { decimals.clamp(0.0, 12.0) as usize } else { 3 };
+    let text = format!("{:.decimals$}", part / factor);
+    // A rounded zero has no sign.
+    let size = text.trim_start_matches('-');
+    let zero = size.bytes().all(|byte| matches!(byte, b'0' | b'.'));
+    join(&minus(if zero { size } else { &text }), &unit)
+}
+
 /// No line ends between a number and its unit, which is its last word.
 fn kept_together(text: &str) -> String {
     match text.rsplit_once(' ') {
@@ -59,7 +72,10 @@ pub(super) fn parts(value: f64, uncertainty: Option<f64>, dimension: Dimension) 
     let (unit, factor) = unit(value, dimension);
     let set = display::typeset(&unit);
     let Some(uncertainty) = uncertainty.filter(|u| u.is_finite()).map(|u| u / factor) else {
-        return Parts { value: digits(value, factor, dimension), standard: None, expanded: None, unit: set };
+        // A row of zeros is counted by nobody.
+        let small = value != 0.0 && (value / factor).abs() < 1e-3;
+        let value = if small { minus(&format!("{:.3e}", value / factor)) } else { digits(value, factor, dimension) };
+        return Parts { value, standard: None, expanded: None, unit: set };
     };
     let scaled = value / factor;
     let (value, [standard, expanded]) = match decimals_of(scaled, uncertainty) {
@@ -124,20 +140,37 @@ pub(super) fn bound(condition: &ConditionOutcome) -> String {
         // Nearer than a thousandth, the tolerance is readable only in a unit of its own.
         Some(Bound::Within { target, tolerance }) if tolerance >= 1e-3 * target.abs() && target != 0.0 => {
             let (unit, factor) = unit(target, condition.dimension);
-            let pair = format!("{} ± {}", digits(target, factor), digits(tolerance, factor));
-            join(&pair, &unit) + percent
+            let (target, tolerance) = to_one_decimal(digits(target, factor), digits(tolerance, factor));
+            join(&format!("{target} ± {tolerance}"), &unit) + percent
         }
         Some(Bound::Within { target, tolerance }) => format!("{} ± {}", number(target), number(tolerance)),
     }
 }
 
-/// The margin of a condition in a unit of its own; None where there is no margin.
+/// Two numbers that end at the same decimal; as they are where one has a power of ten.
+fn to_one_decimal(a: String, b: String) -> (String, String) {
+    let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    if a.contains('×') || b.contains('×') {
+        return (a, b);
+    }
+    let wanted = decimals(&a).max(decimals(&b));
+    let filled = |text: String| match wanted - decimals(&text) {
+        0 => text,
+        lacking => {
+            let point = if text.contains('.') { "" } else { "." };
+            text + point + &"0".repeat(lacking)
+        }
+    };
+    (filled(a), filled(b))
+}
+
+/// The margin of a condition in the unit of its value; None where there is no margin.
 pub(super) fn margin(condition: &ConditionOutcome) -> Option<String> {
     condition.bound?;
     condition.margin.map(|margin| distance(margin, condition))
 }
 
-/// The guard band of a condition in a unit of its own; None where there is none.
+/// The guard band of a condition in the unit of its value; None where there is none.
 pub(super) fn guard_band(condition: &ConditionOutcome) -> Option<String> {
     condition.guard_band.map(|band| distance(band, condition))
 }
@@ -146,7 +179,10 @@ fn distance(distance: f64, condition: &ConditionOutcome) -> String {
     /// The distance to a limit is itself a difference: more digits would be the value's noise.
     const DIGITS: usize = 3;
     let (scale, percent) = if in_percent(condition) { (100.0, "\u{a0}%") } else { (1.0, "") };
-    let (unit, factor) = unit(distance, condition.dimension);
+    // Beside the value, in its unit; where that would be a row of zeros, in its own.
+    let beside =
+        condition.value.filter(|value| distance == 0.0 || (distance / unit(*value, condition.dimension).1).abs() >= 1e-3);
+    let (unit, factor) = unit(beside.unwrap_or(distance), condition.dimension);
     join(&minus(&rounded(scale * distance / factor, DIGITS)), &unit) + percent
 }
 
@@ -184,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_margin_has_its_own_unit_and_a_bound_no_empty_zeros() {
+    fn a_margin_has_the_values_unit_or_its_own_and_a_bound_ends_with_its_tolerance() {
         let condition = |text: &str, dimension, bound: Bound, value| ConditionOutcome {
             text: text.to_owned(),
             verdict: crate::verdict::Verdict::Pass,
@@ -205,7 +241,23 @@ mod tests {
         assert_eq!((bound(&percent), value(&percent).unwrap()), ("< 1\u{a0}%".to_owned(), "0.1710\u{a0}%".to_owned()));
         assert_eq!(margin(&percent).unwrap(), "0.829\u{a0}%");
         let energy = Bound::Within { target: 9.48, tolerance: 0.948 };
-        assert_eq!(bound(&condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.0)), "9.48 ± 0.948\u{a0}J");
+        assert_eq!(bound(&condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.0)), "9.480 ± 0.948\u{a0}J");
+        let reached = condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.316);
+        assert_eq!(margin(&reached).unwrap(), "0.784\u{a0}J");
+        let stiff = Bound::Within { target: 3e5, tolerance: 1.5e3 };
+        assert_eq!(bound(&condition("k within 0.5 % of 300 kN/m", Dimension::STIFFNESS, stiff, 3e5)), "300.0 ± 1.5\u{a0}kN/m");
+    }
+
+    #[test]
+    fn parts_of_a_whole_add_up_at_sight() {
+        let part = |value| part_of(value, 10.0, 5, Dimension::ENERGY);
+        assert_eq!(
+            (part(10.0), part(0.0304), part(-1.4e-8)),
+            ("10.000\u{a0}J".into(), "0.030\u{a0}J".into(), "0.000\u{a0}J".into())
+        );
+        assert_eq!(part_of(-0.0017, 4299.0, 5, Dimension::ENERGY), "0.0000\u{a0}kJ");
+        assert_eq!(part_of(0.0, 0.0, 5, Dimension::ENERGY), "0.000\u{a0}J");
+        assert_eq!(parts(-0.000_174, None, Dimension::NUMBER).value, "−1.740 × 10⁻⁴");
     }
 
     #[test]

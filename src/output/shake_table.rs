@@ -3,7 +3,7 @@
 
 use polars::prelude::Column;
 
-use crate::record::ShakeStep;
+use crate::record::{Floors as _, ShakeStep};
 
 /// Rows and columns, the storeys of a step after each other from the ground up.
 pub(super) fn columns(steps: &[ShakeStep]) -> (usize, Vec<Column>) {

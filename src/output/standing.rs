@@ -1,7 +1,10 @@
 //! What a run's report may be taken for. In: a run. Out: its [`Standing`], and every ground against a certificate, the
 //! gravest first. Days are judged against the run's own from its record: no clock is read.
 
+use std::collections::BTreeSet;
+
 use super::Run;
+use crate::mechanics::self_test;
 use crate::record::Outcome;
 use crate::run::rehearsal;
 
@@ -65,18 +68,30 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !told(run.provenance.operator()) {
         missing.push("the operator's name".to_owned());
     }
-    let calibration = &run.plan.rig.calibration;
-    if !told(calibration.reference.as_deref()) {
+    let channels = &run.equipment().channels;
+    if !channels.iter().all(|channel| told(channel.certificate.as_deref())) {
         missing.push("the calibration's reference".to_owned());
     }
-    match (calibration.due.as_deref(), last_day(run)) {
-        (None, _) => missing.push("the day until which the calibration holds".to_owned()),
-        (Some(_), None) => missing.push("the day of the test".to_owned()),
-        (Some(due), Some(day)) if due < day => {
-            missing.push(format!("a valid calibration (it held until {due}, the test ended on {day})"));
+    // Where force and displacement hold until the same day, one calibration is spoken of.
+    let days: BTreeSet<Option<&str>> = channels.iter().map(|channel| channel.due.as_deref()).collect();
+    for channel in channels {
+        let what =
+            if days.len() > 1 { format!("calibration of the {}", channel.measures.name()) } else { "calibration".to_owned() };
+        match (channel.due.as_deref(), last_day(run)) {
+            (None, _) => missing.push(format!("the day until which the {what} holds")),
+            (Some(_), None) => missing.push("the day of the test".to_owned()),
+            (Some(due), Some(day)) if due < day => {
+                missing.push(format!("a valid {what} (it held until {due}, the test ended on {day})"));
+            }
+            (Some(_), Some(_)) => {}
         }
-        (Some(_), Some(_)) => {}
     }
+    if !self_test::passed() {
+        missing.push("a program that passes its own test".to_owned());
+    }
+    // What two axes lack is said once.
+    let mut said = BTreeSet::new();
+    missing.retain(|lack| said.insert(lack.clone()));
     missing
 }
 

@@ -134,6 +134,38 @@ pub struct ProcedureSummary {
     /// Values the procedure was run with.
     pub inputs: Ordered<Quantity>,
     pub results: Ordered<Quantity>,
+    /// Of each result that uncertain inputs enter, what they contribute, largest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub uncertainty_budgets: Vec<BudgetSummary>,
+}
+
+/// What the standard uncertainty of a result is made of: u² is the sum of the squares of the contributions.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct BudgetSummary {
+    pub result: &'static str,
+    pub unit: String,
+    pub u: Option<f64>,
+    pub contributions: Vec<ContributionSummary>,
+}
+
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ContributionSummary {
+    pub input: String,
+    /// `sampled` where errors were drawn.
+    #[schemars(extend("enum" = ["linearised", "sampled"]))]
+    pub method: &'static str,
+    /// Of the input; null where it has none of its own.
+    pub value: Option<f64>,
+    /// SI unit of the input; of a factor, none.
+    pub input_unit: String,
+    /// Standard uncertainty of the input.
+    pub input_u: Option<f64>,
+    /// Change of the result over that of the input, both in SI units.
+    pub sensitivity: Option<f64>,
+    /// Change of the result when the input moves by its standard uncertainty, in the unit of the result.
+    pub contribution: Option<f64>,
+    /// Whether the result follows the input smoothly; where not, the contribution is the largest change seen.
+    pub smooth: bool,
 }
 
 /// A value, its SI unit and its standard uncertainty in that unit.

@@ -6,10 +6,10 @@ mod cyclic;
 
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
 
-use super::{OutputError, OutputFile, Run, shake_table, wants};
+use super::{OutputError, OutputFile, Run, shake_table, storey_table, wants};
 use crate::inert;
 use crate::plan::Format;
-use crate::record::{History, ImpactStep, ProcedureRecord, RampStep, SweepStep};
+use crate::record::{History, Hold, ImpactStep, ProcedureRecord, RampStep, SweepStep};
 use crate::run::driven::DrivenStep;
 
 /// The tables of every procedure that recorded steps, in the formats the plan asks for.
@@ -25,6 +25,12 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
                 let frame = DataFrame::new(steps.len(), impact(steps)).map_err(failed)?;
                 written(run, &format!("{}_{number}", procedure.name), frame, &mut files).map_err(failed)?;
             }
+        }
+        if let History::Ramp(history) = &procedure.history
+            && !history.holds.is_empty()
+        {
+            let holds = holds(&history.holds).map_err(failed)?;
+            written(run, &format!("{}_holds", procedure.name), holds, &mut files).map_err(failed)?;
         }
         if let History::Cycle(history) = &procedure.history {
             let cycles = cyclic::cycles(history).map_err(failed)?;
@@ -87,6 +93,7 @@ fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> 
         History::Move(steps) => (steps.len(), ramp(steps)),
         History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
         History::Impact(history) => (history.steps.len(), impact(&history.steps)),
+        History::StoreyImpact(history) => storey_table::columns(history),
         History::Shake(history) => shake_table::columns(&history.steps),
         History::Escalate(history) => (history.blows.len(), blows::rows(history)),
         History::Cycle(history) => (history.steps.len(), cyclic::steps(&history.steps)),
@@ -141,6 +148,18 @@ fn ramp(steps: &[RampStep]) -> Vec<Column> {
         Column::new("tangent_stiffness_n_per_m".into(), tangents),
         Column::new("returning".into(), returning),
     ]
+}
+
+/// One row a reading of a hold.
+fn holds(holds: &[Hold]) -> Result<DataFrame, PolarsError> {
+    let rows: Vec<(u64, f64, f64)> =
+        holds.iter().flat_map(|hold| hold.readings.iter().map(|(time, force)| (hold.step, *time, *force))).collect();
+    let columns = vec![
+        integers("step", &rows, |row| row.0),
+        numbers("time_s", &rows, |row| row.1),
+        numbers("restoring_force_n", &rows, |row| row.2),
+    ];
+    DataFrame::new(rows.len(), columns)
 }
 
 fn sweep(steps: &[SweepStep]) -> Vec<Column> {

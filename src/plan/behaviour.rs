@@ -34,6 +34,8 @@ pub enum Behaviour {
     Parallel(Vec<Behaviour>),
     /// What the load cell reads while the actuator moves at v: R (1 + (|v|/`reference_velocity`)^`exponent`).
     Rate { of: Box<Behaviour>, reference_velocity: f64, exponent: f64 },
+    /// A spring and a dashpot one behind the other, beside the rest: its force relaxes. `stiffness` N/m, `time_constant` s.
+    Maxwell { of: Box<Behaviour>, stiffness: f64, time_constant: f64 },
     /// A portal frame by plastic hinges.
     Portal(Portal),
 }
@@ -127,7 +129,7 @@ pub enum Breaks {
 }
 
 impl Behaviour {
-    /// Stiffness at no displacement, N/m; where there is none (a joint with clearance and no friction), that in bearing.
+    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in bearing.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {
         match self {
@@ -142,9 +144,19 @@ impl Behaviour {
             Self::Bolted(bolted) => bolted.stiffness,
             Self::Table(table) => table.initial_stiffness(),
             Self::Fracture { of, .. } | Self::Rate { of, .. } => of.initial_stiffness(),
+            Self::Maxwell { of, stiffness, .. } => of.initial_stiffness() + stiffness,
             Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.initial_stiffness()).sum::<f64>(),
             Self::Parallel(parts) => parts.iter().map(Self::initial_stiffness).sum(),
             Self::Portal(portal) => portal.stiffness,
+        }
+    }
+
+    /// Stiffness at no displacement when all that relaxes has, N/m: what a slow test measures.
+    #[must_use]
+    pub fn relaxed_stiffness(&self) -> f64 {
+        match self {
+            Self::Maxwell { of, .. } => of.relaxed_stiffness(),
+            other => other.initial_stiffness(),
         }
     }
 
@@ -153,7 +165,7 @@ impl Behaviour {
     pub fn parts(&self) -> &[Behaviour] {
         match self {
             Self::Series(parts) | Self::Parallel(parts) => parts,
-            Self::Fracture { of, .. } | Self::Rate { of, .. } => std::slice::from_ref(of),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } => std::slice::from_ref(of),
             _ => &[],
         }
     }
@@ -163,7 +175,8 @@ impl Behaviour {
     pub fn capacity(&self) -> f64 {
         let hardens = |hardening: f64, force: f64| if hardening > 0.0 { f64::INFINITY } else { force };
         match self {
-            Self::Elastic { .. } | Self::Beam(_) => f64::INFINITY,
+            // However fast it is moved, a branch resists.
+            Self::Elastic { .. } | Self::Beam(_) | Self::Maxwell { .. } => f64::INFINITY,
             Self::Bilinear { yield_force, hardening, .. } | Self::BoucWen { yield_force, hardening, .. } => {
                 hardens(*hardening, *yield_force)
             }
@@ -218,6 +231,10 @@ impl Behaviour {
                 }
             }
             Self::Rate { of, .. } => **of = of.scaled(factor),
+            Self::Maxwell { of, stiffness, .. } => {
+                **of = of.scaled(factor);
+                *stiffness *= factor;
+            }
             Self::Series(parts) | Self::Parallel(parts) => *parts = all(parts),
         }
         same

@@ -50,13 +50,15 @@ pub enum FigureKind {
     CycleEnergy,
     /// Secant stiffness of each cycle.
     StiffnessDegradation,
+    /// Force still to relax against the time held.
+    Relaxation,
     /// What each blow of a rising row came to, against its energy.
     Blows,
 }
 
 impl FigureKind {
     /// Every figure there is, in the order of the reference.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Displacement,
         Self::StrikerVelocity,
         Self::Velocity,
@@ -73,6 +75,7 @@ impl FigureKind {
         Self::Backbone,
         Self::CycleEnergy,
         Self::StiffnessDegradation,
+        Self::Relaxation,
         Self::Blows,
     ];
 
@@ -96,6 +99,7 @@ impl FigureKind {
             Self::Backbone => "backbone",
             Self::CycleEnergy => "cycle_energy",
             Self::StiffnessDegradation => "stiffness_degradation",
+            Self::Relaxation => "relaxation",
             Self::Blows => "blows",
         }
     }
@@ -117,7 +121,7 @@ impl FigureKind {
     #[must_use]
     pub const fn of(kind: &ProcedureKind) -> &'static [FigureKind] {
         match kind {
-            ProcedureKind::StiffnessRamp(_) => &[Self::ForceDisplacement],
+            ProcedureKind::StiffnessRamp(_) => &[Self::ForceDisplacement, Self::Relaxation],
             ProcedureKind::DampingSweep(_) => &[Self::DampingFit],
             ProcedureKind::Impact(_) => &[
                 Self::Displacement,
@@ -125,6 +129,18 @@ impl FigureKind {
                 Self::StrikerVelocity,
                 Self::ContactForce,
                 Self::ForceDisplacement,
+                Self::Energy,
+                Self::Tracking,
+            ],
+            ProcedureKind::StoreyImpact(_) => &[
+                Self::Modes,
+                Self::Displacement,
+                Self::Drift,
+                Self::Hysteresis,
+                Self::BaseShear,
+                Self::Velocity,
+                Self::StrikerVelocity,
+                Self::ContactForce,
                 Self::Energy,
                 Self::Tracking,
             ],

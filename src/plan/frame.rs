@@ -1,7 +1,7 @@
 //! Frames of storeys and the motion of the ground under them: many degrees of freedom, one for each floor, counted from the
 //! ground up. In: what `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
-use super::{Behaviour, InspectTrigger, Integrator, Mode};
+use super::{Behaviour, Contact, InspectTrigger, Integrator, Mode, Until};
 use crate::formula::Formula;
 use crate::mechanics::frame::Damping;
 
@@ -128,6 +128,34 @@ pub struct Shake {
     pub duration: Option<Formula>,
     /// s, at every step.
     pub pause: Formula,
+    pub inspect: Vec<InspectTrigger>,
+}
+
+/// A striker on one floor of a frame.
+#[derive(Clone, Debug)]
+pub struct StoreyImpact {
+    /// Index into `Plan::specimens`; it has a frame.
+    pub specimen: usize,
+    /// Index into `Plan::strikers`.
+    pub striker: usize,
+    /// The struck floor, from 0.
+    pub struck: usize,
+    pub damping: ShakeDamping,
+    pub contact: Contact,
+    pub integrator: Integrator,
+    /// Whether it runs beyond the stability limit of its integrator.
+    pub allow_unstable: bool,
+    /// Whether readings are corrected to the place that was commanded.
+    pub i_modification: bool,
+    /// s; may read `critical`.
+    pub time_step: Formula,
+    /// s, at most.
+    pub duration: Formula,
+    pub until: Until,
+    /// s, at every step.
+    pub pause: Formula,
+    /// c of "the tangent stays in 0 .. c·K".
+    pub max_tangent_ratio: Formula,
     pub inspect: Vec<InspectTrigger>,
 }
 

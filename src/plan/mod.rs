@@ -13,14 +13,16 @@ mod rig;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};
+use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
 pub use crate::mechanics::multilinear_fit::BreakCount;
+pub use crate::mechanics::relaxation::RelaxationModel;
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind, MOST_TOGETHER};
-pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, rayleigh};
+pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal};
@@ -90,6 +92,10 @@ pub struct Specimen {
     pub name: String,
     /// Equivalent mass at the struck section, kg; of a frame, all its floors.
     pub mass: f64,
+    /// How the plan comes to it, in its own words; None where it states the number.
+    pub mass_from: Option<String>,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
     /// The storeys, where it has any; each has an actuator and a load cell.
     pub frame: Option<Frame>,
     /// What a virtual rig bends.
@@ -114,8 +120,12 @@ pub struct Striker {
     pub name: String,
     /// kg
     pub mass: f64,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
     /// m/s, towards the structure.
     pub velocity: f64,
+    /// Standard, m/s; 0 where none is stated.
+    pub velocity_uncertainty: f64,
     /// Distance to the structure at the start, m, at least 0.
     pub gap: f64,
     /// Acceleration along its way, m/s²: gn of a weight that falls.
@@ -181,6 +191,30 @@ impl Limits {
         tracking_energy_error: Interval::ALL,
         nrms_error: Interval::ALL,
     };
+
+    /// As the guard holds them: what tracking does to the energy has a limit always.
+    #[must_use]
+    pub fn held(&self) -> Self {
+        if self.tracking_energy_error.is_bounded() {
+            return *self;
+        }
+        Self { tracking_energy_error: Interval { low: 0.0, high: monitor::HOLD }, ..*self }
+    }
+
+    /// Every limit by the name of its field.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
+        [
+            ("displacement", self.displacement, Dimension::LENGTH),
+            ("force", self.force, Dimension::FORCE),
+            ("speed", self.speed, Dimension::VELOCITY),
+            ("increment", self.increment, Dimension::LENGTH),
+            ("tracking_error", self.tracking_error, Dimension::LENGTH),
+            ("energy_error", self.energy_error, Dimension::NUMBER),
+            ("tracking_energy_error", self.tracking_energy_error, Dimension::NUMBER),
+            ("nrms_error", self.nrms_error, Dimension::NUMBER),
+        ]
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -194,6 +228,7 @@ pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
     DampingSweep(DampingSweep),
     Impact(Impact),
+    StoreyImpact(StoreyImpact),
     Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
@@ -212,7 +247,7 @@ impl ProcedureKind {
         match self {
             Self::StiffnessRamp(_) => "stiffness ramp",
             Self::DampingSweep(_) => "damping sweep",
-            Self::Impact(_) => "impact",
+            Self::Impact(_) | Self::StoreyImpact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
             Self::Unload(_) => "unload",
@@ -229,6 +264,7 @@ impl ProcedureKind {
             Self::StiffnessRamp(ramp) => Some(ramp.specimen),
             Self::DampingSweep(sweep) => Some(sweep.specimen),
             Self::Impact(impact) => Some(impact.specimen),
+            Self::StoreyImpact(impact) => Some(impact.specimen),
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
@@ -254,8 +290,20 @@ pub struct StiffnessRamp {
     /// Also back to the start through the same displacements.
     pub return_path: bool,
     pub fit: RampFit,
+    /// Readings during the pauses of the first repeat.
+    pub relaxation: Option<WatchedHold>,
     /// Actuator speed, m/s.
     pub speed: Option<Formula>,
+}
+
+/// How the force is watched while it relaxes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WatchedHold {
+    pub model: RelaxationModel,
+    /// In a pause, after the first.
+    pub readings: u32,
+    /// N, to which the force is to be known. None: the noise of the rig's cell, if it declares one.
+    pub accuracy: Option<f64>,
 }
 
 /// What is fitted to force on displacement.
@@ -293,6 +341,8 @@ pub struct Impact {
     pub striker: usize,
     /// M, kg
     pub mass: Formula,
+    /// Standard uncertainty of a mass that is the specimen's, kg; 0 where none is stated, or the mass is another.
+    pub mass_uncertainty: f64,
     /// K0, N/m
     pub stiffness: Formula,
     /// C of eqs. 4–5, N·s/m

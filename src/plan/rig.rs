@@ -118,14 +118,26 @@ pub struct Settle {
 /// Where the numbers of a rig are traced to.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Calibration {
-    /// Text of the calibration reference, if given.
+    /// Text of the calibration reference, if given; of the force alone where `displacement` has one of its own.
     pub reference: Option<String>,
     /// Day until which it holds, `YYYY-MM-DD`, if given.
     pub due: Option<String>,
+    /// Class of the force measurement, as stated.
+    pub force_class: Option<String>,
+    /// Of the displacement: its own reference and the day until which that holds, where it has one.
+    pub displacement: Option<(String, Option<String>)>,
+    /// Class of the displacement measurement, as stated.
+    pub displacement_class: Option<String>,
     /// Of a cell that gives raw counts: N per count, its sign the cell's.
     pub newtons_per_count: Option<f64>,
     /// Count at no force.
     pub zero_count: f64,
+    /// Standard uncertainty of the factor between its newtons and newtons; 0 where none is stated.
+    pub force_uncertainty: f64,
+    /// Of the factor between its metres and metres.
+    pub displacement_uncertainty: f64,
+    /// Of its reading of no force, N.
+    pub zero_uncertainty: f64,
 }
 
 /// A rig that moves a real specimen.

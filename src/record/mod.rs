@@ -2,7 +2,9 @@
 //! certificates are functions of it.
 
 mod cycle;
+pub mod equipment;
 mod escalate;
+mod floors;
 pub mod journal;
 
 use serde::{Deserialize, Serialize};
@@ -12,14 +14,16 @@ pub use crate::mechanics::backbone::BilinearFit;
 pub use crate::mechanics::contact::StepState;
 use crate::mechanics::energy::Energies;
 pub use crate::mechanics::frame::{FrameEnergies, Modes};
-use crate::mechanics::frame::{drifts, shears};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
+pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
 use crate::quantity::Dimension;
 use crate::rig::Identity;
+use crate::uncertainty::{Contribution, Source};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use escalate::{Blow, EscalateHistory};
+pub use floors::{FloorStep, Floors, StoreyImpactHistory};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -92,6 +96,8 @@ pub struct NamedResult {
     pub name: &'static str,
     pub value: ResultValue,
     pub dimension: Dimension,
+    /// What the uncertainty of a number is made of; empty where it is all its own, or there is none.
+    pub contributions: Vec<Contribution>,
 }
 
 /// What was recorded step by step.
@@ -100,6 +106,7 @@ pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),
     Impact(ImpactHistory),
+    StoreyImpact(StoreyImpactHistory),
     Shake(ShakeHistory),
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
@@ -136,7 +143,10 @@ pub struct RampHistory {
     pub fit: Option<LineFit>,
     /// Of a ramp past yield, where the plan asks for it.
     pub bilinear: Option<BilinearFit>,
-    pub multilinear: Option<MultilinearFit>,
+    pub multilinear: Option<Box<MultilinearFit>>,
+    /// Pauses that were watched, and what they tell.
+    pub holds: Vec<Hold>,
+    pub relaxation: Option<Box<RelaxationFit>>,
 }
 
 /// One reading of a damping sweep.
@@ -233,21 +243,17 @@ pub struct ShakeStep {
     pub tracking: Tracking,
 }
 
-impl ShakeStep {
-    /// Drift of each storey, m, of the computed displacements.
-    #[must_use]
-    pub fn drift(&self) -> Vec<f64> {
-        let mut drift = vec![0.0; self.computed.len()];
-        drifts(&self.computed, &mut drift);
-        drift
+impl Floors for ShakeStep {
+    fn time(&self) -> f64 {
+        self.time
     }
 
-    /// Shear of each storey, N: the forces of the floors it carries; the first is the base shear.
-    #[must_use]
-    pub fn shear(&self) -> Vec<f64> {
-        let mut shear = vec![0.0; self.restoring_force.len()];
-        shears(&self.restoring_force, &mut shear);
-        shear
+    fn computed(&self) -> &[f64] {
+        &self.computed
+    }
+
+    fn restoring_force(&self) -> &[f64] {
+        &self.restoring_force
     }
 }
 
@@ -278,10 +284,28 @@ impl ProcedureRecord {
     }
 }
 
+impl NamedResult {
+    /// What the uncertainty of the result, as `reference` names it, is made of.
+    #[must_use]
+    pub fn contributions_of(&self, reference: ResultReference) -> Vec<Contribution> {
+        match self.value {
+            ResultValue::Number { uncertainty: Some(own), .. } if self.contributions.is_empty() => {
+                vec![Contribution::new(Source::Fit { procedure: reference.procedure, result: self.name }, own)]
+            }
+            _ => self.contributions.clone(),
+        }
+    }
+}
+
 impl Results for Record {
     /// Procedures are recorded in the plan's order, so that their place there is their place here.
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         let found = self.procedures.get(reference.procedure.0)?.result(reference.name)?;
         Some(found.value.clone())
+    }
+
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        let found = self.procedures.get(reference.procedure.0).and_then(|procedure| procedure.result(reference.name));
+        found.map_or_else(Vec::new, |found| found.contributions_of(reference))
     }
 }

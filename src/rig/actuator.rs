@@ -1,6 +1,7 @@
 //! The virtual actuator. In: reference motion, s of rig time. Out: where the piston stands and how fast it moves.
 //! In closed form, so that a settling of minutes costs as much as none. It knows no specimen and no load cell.
 
+use crate::mechanics::maxwell::Travel;
 use crate::mechanics::path::Rate;
 
 /// A servo whose piston follows its reference with a first-order lag: ẋ = (reference − x) / lag.
@@ -54,30 +55,40 @@ impl Actuator {
     }
 
     /// The reference moves evenly to `to` in `seconds`. With e = reference − x: ė = v − e/lag, so
-    /// e(t) = v·lag + (e₀ − v·lag)·exp(−t/lag). The reference goes on at this velocity until `stop`.
-    pub(super) fn advance(&mut self, to: f64, seconds: f64) {
+    /// e(t) = v·lag + (e₀ − v·lag)·exp(−t/lag). The reference goes on at this velocity until `stop`. How the piston went.
+    pub(super) fn advance(&mut self, to: f64, seconds: f64) -> Travel {
         if seconds <= 0.0 {
-            return;
+            return Travel::rest(0.0);
         }
         let velocity = (to - self.reference) / seconds;
+        let mut travel = Travel::even(velocity, seconds);
         if self.lag > 0.0 {
+            (travel.fading, travel.lag) = (self.lagging / self.lag - velocity, self.lag);
             let steady = velocity * self.lag;
             self.lagging = steady + (self.lagging - steady) * (-seconds / self.lag).exp();
         }
         self.reference = to;
         self.reference_velocity = velocity;
+        travel
     }
 
     /// The reference runs to `to` in `seconds`, its velocity a parabola in time with these ends. With e = reference − x:
     /// ė = q − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
-    pub(super) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) {
+    pub(super) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Travel {
+        let mut travel = Travel { start: before, fading: 0.0, lag: 0.0, seconds };
         if self.lag > 0.0 {
             let lag = self.lag;
+            // ẋ = e/lag, its first part a parabola again.
+            let Rate { velocity, acceleration, jerk } = before;
+            let velocity = velocity - lag * (acceleration - lag * jerk);
+            travel.start = Rate { velocity, acceleration: acceleration - lag * jerk, jerk };
+            (travel.fading, travel.lag) = (self.lagging / lag - velocity, lag);
             let steady = |rate: Rate| lag * (rate.velocity - lag * (rate.acceleration - lag * rate.jerk));
             self.lagging = steady(after) + (self.lagging - steady(before)) * (-seconds / lag).exp();
         }
         self.reference = to;
         self.reference_velocity = after.velocity;
+        travel
     }
 
     /// The reference stands; the piston goes on towards it.
@@ -86,11 +97,14 @@ impl Actuator {
     }
 
     /// `seconds` pass with the reference at rest.
-    pub(super) fn rest(&mut self, seconds: f64) {
+    pub(super) fn rest(&mut self, seconds: f64) -> Travel {
         self.stop();
+        let mut travel = Travel::rest(seconds);
         if self.lag > 0.0 && self.lagging != 0.0 {
+            (travel.fading, travel.lag) = (self.lagging / self.lag, self.lag);
             self.lagging *= (-seconds / self.lag).exp();
         }
+        travel
     }
 
     /// Stays where it is.

@@ -4,7 +4,6 @@
 
 use super::failpoint::{Guarding, on};
 use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally, named_axis};
-use crate::mechanics::monitor;
 use crate::plan::{Interval, Limits};
 
 /// A rig and what nothing may drive it past.
@@ -125,22 +124,6 @@ impl<'rig> Guard<'rig> {
         Ok(())
     }
 
-    /// The targets on the way to `targets`, in equal increments none of which is longer than the limit; the last is
-    /// `targets` itself. What the plan asks for as one move, a limited increment makes several.
-    #[must_use]
-    pub fn way_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
-        let longest = targets.iter().zip(&self.commanded).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
-        let parts = (longest / self.limits.increment.high * (1.0 - 4.0 * f64::EPSILON)).ceil().max(1.0);
-        // A limit of nothing allows no way at all: the one move is then refused as it should be.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 1e5")]
-        let parts = if parts <= 1e5 { parts as u32 } else { 1 };
-        let between = (1..parts).map(|part| {
-            let fraction = f64::from(part) / f64::from(parts);
-            self.commanded.iter().zip(targets).map(|(from, to)| from + (to - from) * fraction).collect()
-        });
-        between.chain(std::iter::once(targets.to_vec())).collect()
-    }
-
     /// Stays for `seconds` of rig time.
     ///
     /// # Errors
@@ -231,8 +214,7 @@ impl<'rig> Guard<'rig> {
     /// Share of the input energy up to which tracking may err: the plan's, else the default.
     #[must_use]
     pub fn tracking_energy_limit(&self) -> Interval {
-        let limit = self.limits.tracking_energy_error;
-        if limit.is_bounded() { limit } else { Interval { low: 0.0, high: monitor::HOLD } }
+        self.limits.held().tracking_energy_error
     }
 
     /// Stops all motion and keeps the load. What was proposed is forgotten.
@@ -306,7 +288,7 @@ pub(super) fn outside(limits: &Limits, own: &[Limits], reading: &Reading) -> Opt
 }
 
 /// Size of a change of target, m. The rounding of the subtraction is not held against the plan: 0.3 − 0.2 is not quite 0.1.
-fn increment(from: f64, to: f64) -> f64 {
+pub(super) fn increment(from: f64, to: f64) -> f64 {
     let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs());
     ((to - from).abs() - rounding).max(0.0)
 }

@@ -10,6 +10,7 @@ pub mod failpoint;
 mod fault_table;
 mod guard;
 mod guard_glide;
+mod guard_way;
 mod load_cell;
 mod one_or_several;
 pub mod port;

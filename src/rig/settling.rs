@@ -1,6 +1,7 @@
 //! When the virtual rig counts as settled. In: the plan's criterion and how far the piston lags. Out: seconds to wait.
 
 use crate::mechanics::damping::StrengthRate;
+use crate::mechanics::maxwell::MaxwellBranch;
 use crate::plan::Settle;
 
 /// What moves after the reference has arrived.
@@ -63,6 +64,42 @@ pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
     (total <= settle.timeout).then_some(total)
 }
 
+/// The criterion with half of its force rate kept for what relaxes beside the specimen; all of it is the lag's where nothing does.
+pub(super) fn shared(settle: &Settle, unsettled: &Unsettled, branches: &[MaxwellBranch]) -> Settle {
+    let left = settle.force_rate - unsettled.drift.abs();
+    if branches.is_empty() || settle.force_rate <= 0.0 || left <= 0.0 || unsettled.lag == 0.0 {
+        return *settle;
+    }
+    Settle { force_rate: settle.force_rate - 0.5 * left, ..*settle }
+}
+
+/// Seconds more, after the `waited` of the lag, until branches that relax change the force no faster than is left for them, and
+/// that for the dwell; None if that does not come within the timeout. Their rates fall, so that the first such instant is found by
+/// halving.
+pub(super) fn relaxing_time(settle: &Settle, unsettled: &Unsettled, branches: &[MaxwellBranch], waited: f64) -> Option<f64> {
+    if branches.is_empty() || settle.band == 0.0 || settle.force_rate <= 0.0 {
+        return Some(0.0);
+    }
+    let left = (settle.force_rate - unsettled.drift.abs()) * if unsettled.lag == 0.0 { 1.0 } else { 0.5 };
+    let met = |seconds: f64| branches.iter().map(|branch| branch.rate_after(seconds)).sum::<f64>() <= left;
+    if met(0.0) {
+        return Some(0.0);
+    }
+    let (mut low, mut high) = (0.0, settle.timeout - waited - settle.dwell);
+    if high < 0.0 || !met(high) {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if met(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(high + settle.dwell)
+}
+
 /// The largest lag up to `most` at which `met` holds, which does so at all smaller ones: by halving, over a range of powers
 /// of two, for an exponent below 1 may need a lag far below the band.
 fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
@@ -84,6 +121,7 @@ fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanics::maxwell::Travel;
 
     const SETTLE: Settle = Settle { band: 1e-5, force_rate: 0.0, dwell: 0.3, timeout: 10.0 };
     const LAGGING: Unsettled =
@@ -115,5 +153,24 @@ mod tests {
         let wait = settling_time(&settle, &unsettled).expect("it settles");
         let by_hand = 0.1 * (1e-3_f64 / 1e-5).ln();
         assert!((wait - by_hand).abs() < 1e-9, "{wait} s is not {by_hand} s");
+    }
+
+    /// 200 N that relax with 2 s change by 100 N/s at first: 5 N/s come after 2 ln 20 s.
+    #[test]
+    fn what_relaxes_keeps_the_rig_unsettled_until_it_is_slow() {
+        let mut branch = MaxwellBranch::new(1e5, 2.0);
+        branch.follow(&Travel::even(2e-3 / 1e-6, 1e-6));
+        let settle = Settle { force_rate: 5.0, ..SETTLE };
+        let still = Unsettled { lagging: 0.0, lag: 0.0, ..LAGGING };
+        assert_eq!(shared(&settle, &still, &[branch]), settle);
+        let wait = relaxing_time(&settle, &still, &[branch], 0.3).unwrap();
+        assert!((wait - (2.0 * 20_f64.ln() + 0.3)).abs() < 1e-5, "{wait}");
+        assert_eq!(relaxing_time(&Settle { timeout: 5.0, ..settle }, &still, &[branch], 0.3), None);
+        assert_eq!(relaxing_time(&SETTLE, &still, &[branch], 0.3), Some(0.0), "a band alone does not ask");
+        // Beside a lag either has half of what the drift leaves.
+        let drifting = Unsettled { drift: 1.0, ..LAGGING };
+        assert_eq!(shared(&settle, &drifting, &[branch]).force_rate, 3.0);
+        let wait = relaxing_time(&settle, &drifting, &[branch], 0.3).unwrap();
+        assert!((wait - (2.0 * 50_f64.ln() + 0.3)).abs() < 1e-5, "{wait}");
     }
 }

@@ -10,6 +10,7 @@ use super::virtual_rig::OWN_SPEED;
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
+use crate::mechanics::maxwell::{MaxwellBranch, Travel};
 use crate::mechanics::path::Path;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Frame, Settle, Storey, VirtualLink};
@@ -45,7 +46,13 @@ struct Axis {
 enum Structure {
     /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift.
     /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
-    Storeys { models: Vec<SpecimenModel>, dampers: Vec<CellDamping>, drift: Vec<f64>, shear: Vec<f64> },
+    Storeys {
+        models: Vec<SpecimenModel>,
+        dampers: Vec<CellDamping>,
+        branches: Vec<Vec<MaxwellBranch>>,
+        drift: Vec<f64>,
+        shear: Vec<f64>,
+    },
     /// R = K X.
     Matrix(SymmetricBand),
 }
@@ -60,7 +67,8 @@ impl Structure {
         let models = frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect();
         let damper = |storey: &Storey| CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour);
         let dampers = frame.storeys.iter().map(damper).collect();
-        Self::Storeys { models, dampers, drift: nothing.clone(), shear: nothing }
+        let branches = frame.storeys.iter().map(|storey| MaxwellBranch::all_of(&storey.behaviour)).collect();
+        Self::Storeys { models, dampers, branches, drift: nothing.clone(), shear: nothing }
     }
 
     fn move_to(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
@@ -76,6 +84,19 @@ impl Structure {
         }
     }
 
+    /// What relaxes in the storeys follows the floors, from the ground up.
+    fn relax(&mut self, travels: &[Travel]) {
+        let Self::Storeys { branches, .. } = self else { return };
+        let mut below = None;
+        for (branches, floor) in branches.iter_mut().zip(travels) {
+            let drift = below.map_or(*floor, |below| floor.less(below));
+            for branch in branches {
+                branch.follow(&drift);
+            }
+            below = Some(floor);
+        }
+    }
+
     /// The floors go on at these velocities, m/s: each storey's friction knows its direction.
     fn slide(&mut self, velocities: &[f64]) {
         if let Self::Storeys { dampers, .. } = self {
@@ -88,11 +109,15 @@ impl Structure {
     /// What the cells feel of the floors' forces at these velocities (m/s), N.
     fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
         let mut felt = restoring_force.to_vec();
-        if let Self::Storeys { dampers, shear, .. } = self
-            && dampers.iter().any(|damper| !damper.is_none())
+        if let Self::Storeys { dampers, branches, shear, .. } = self
+            && (dampers.iter().any(|damper| !damper.is_none()) || branches.iter().any(|storey| !storey.is_empty()))
         {
-            let storeys = dampers.iter_mut().zip(shear).zip(apart(velocities));
-            let shears: Vec<f64> = storeys.map(|((damper, shear), velocity)| damper.felt(*shear, velocity)).collect();
+            let relaxing = branches.iter().map(|storey| storey.iter().map(MaxwellBranch::force).sum::<f64>());
+            let storeys = dampers.iter_mut().zip(shear).zip(apart(velocities)).zip(relaxing);
+            let felt_by = |(((damper, shear), velocity), relaxing): (((&mut CellDamping, &mut f64), f64), f64)| {
+                damper.felt(*shear, velocity) + relaxing
+            };
+            let shears: Vec<f64> = storeys.map(felt_by).collect();
             floor_forces(&shears, &mut felt);
         }
         felt
@@ -178,9 +203,8 @@ impl VirtualFrame {
 
     /// `seconds` pass with the references at rest.
     fn rest(&mut self, seconds: f64) {
-        for axis in &mut self.axes {
-            axis.actuator.rest(seconds);
-        }
+        let travels: Vec<Travel> = self.axes.iter_mut().map(|axis| axis.actuator.rest(seconds)).collect();
+        self.structure.relax(&travels);
         self.time += seconds;
         self.follow();
     }
@@ -246,9 +270,8 @@ impl Rig for VirtualFrame {
         let aims: Vec<f64> = self.axes.iter().zip(&targets).map(|(axis, target)| axis.actuator.aim(*target)).collect();
         let ways = self.axes.iter().zip(&aims).map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
         let seconds = ways.fold(0.0, f64::max) / speed;
-        for (axis, aim) in self.axes.iter_mut().zip(&aims) {
-            axis.actuator.advance(*aim, seconds);
-        }
+        let went = self.axes.iter_mut().zip(&aims).map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
+        self.structure.relax(&went.collect::<Vec<Travel>>());
         self.time += seconds;
         self.follow();
         for axis in &mut self.axes {
@@ -360,6 +383,33 @@ mod tests {
         let behind = 0.01 * 0.02 * (1.0 - (-10.0_f64).exp());
         assert!((reading.displacement[1] + 0.002 - behind).abs() < 1e-15);
         assert!((reading.displacement[0] - 0.001 + 0.5 * behind).abs() < 1e-15);
+    }
+
+    /// A branch of 1 kN/m and 2 s in the upper storey feels the drift: 1 mm in 0.2 s; and strength that grows with the speed
+    /// feels the velocity of the drift while a lagging floor still moves.
+    #[test]
+    fn what_relaxes_or_gains_with_speed_is_felt_storey_by_storey() {
+        let of = || Box::new(Behaviour::Elastic { stiffness: 2000.0 });
+        let of_upper = |behaviour| {
+            let lower = storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 });
+            Frame::of_storeys(vec![lower, storey(2000.0, behaviour)])
+        };
+        let relaxing = of_upper(Behaviour::Maxwell { of: of(), stiffness: 1000.0, time_constant: 2.0 });
+        let mut rig = VirtualFrame::new("frame", VirtualLink::default(), AT_ONCE, &relaxing, 1.0);
+        let (reading, q) = (go(&mut rig, [0.001, 0.002]), 1000.0 * 0.005 * 2.0 * (1.0 - f64::exp(-0.1)));
+        assert!((reading.force[1] - 2.0 - q).abs() < 1e-12 && (reading.force[0] - 1.0 + q).abs() < 1e-12, "{reading:?}");
+        rig.pause(2.0).unwrap();
+        assert!((rig.read().unwrap().force[1] - 2.0 - q / 1f64.exp()).abs() < 1e-12);
+        let faster = of_upper(Behaviour::Rate { of: of(), reference_velocity: 0.01, exponent: 0.5 });
+        let mut rig = VirtualFrame::new("frame", VirtualLink { lag: 0.1, ..VirtualLink::default() }, AT_ONCE, &faster, 1.0);
+        let reading = go(&mut rig, [0.001, 0.003]);
+        // Each floor moves at e/lag; the drift is 2 mm less what it lags, 0.3 s on the way.
+        let lagging = |way: f64| way / 0.3 * 0.1 * (1.0 - f64::exp(-3.0));
+        let (drift, velocity) = (0.002 - lagging(0.002), lagging(0.002) / 0.1);
+        let shear = 2000.0 * drift * (1.0 + (velocity / 0.01).sqrt());
+        assert!((reading.force[1] - shear).abs() < 1e-12, "{} N is not {shear} N", reading.force[1]);
+        rig.pause(5.0).unwrap();
+        assert!((rig.read().unwrap().force[1] - 4.0).abs() < 1e-9, "at rest nothing of it is left");
     }
 
     #[test]

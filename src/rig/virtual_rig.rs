@@ -5,9 +5,10 @@ pub(super) mod glide;
 
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
-use super::settling::{Unsettled, settling_time};
+use super::settling::{Unsettled, relaxing_time, settling_time, shared};
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
+use crate::mechanics::maxwell::{MaxwellBranch, Travel};
 use crate::mechanics::path::Path;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Plan, Settle, Specimen, VirtualLink};
@@ -26,6 +27,8 @@ pub struct VirtualRig {
     cell: LoadCell,
     specimen: SpecimenModel,
     damping: CellDamping,
+    /// Beside the specimen: what relaxes.
+    branches: Vec<MaxwellBranch>,
     /// N·s/m, for the force rate while settling.
     viscous: f64,
     /// s
@@ -55,6 +58,7 @@ impl VirtualRig {
             cell: LoadCell::new(link.noise, link.force_resolution, link.drift, link.seed),
             specimen: model,
             damping: CellDamping::new(viscous, coulomb).with_rate_of(&behaviour),
+            branches: MaxwellBranch::all_of(&behaviour),
             viscous,
             time: 0.0,
             bent: 0.0,
@@ -87,8 +91,11 @@ impl VirtualRig {
         }
     }
 
-    /// The specimen and the friction on it follow the piston.
-    fn follow(&mut self) {
+    /// The specimen, what relaxes beside it and the friction on it follow the piston.
+    fn follow(&mut self, travel: &Travel) {
+        for branch in &mut self.branches {
+            branch.follow(travel);
+        }
         let position = self.actuator.position();
         if position != self.bent {
             self.damping.force(self.actuator.velocity());
@@ -99,13 +106,14 @@ impl VirtualRig {
 
     /// `seconds` pass with the reference at rest.
     fn rest(&mut self, seconds: f64) {
-        self.actuator.rest(seconds);
+        let travel = self.actuator.rest(seconds);
         self.time += seconds;
-        self.follow();
+        self.follow(&travel);
     }
 
     fn reading(&mut self) -> Reading {
-        let force = self.damping.felt(self.restoring_force, self.actuator.velocity());
+        let relaxing: f64 = self.branches.iter().map(MaxwellBranch::force).sum();
+        let force = self.damping.felt(self.restoring_force, self.actuator.velocity()) + relaxing;
         Reading {
             time: self.time,
             displacement: vec![self.sign * to_quantum(self.bent, self.link.resolution)],
@@ -150,27 +158,30 @@ impl Rig for VirtualRig {
             self.proposed.take().ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
         let aim = self.actuator.aim(target);
         let seconds = (aim - self.actuator.reference()).abs() / speed;
-        self.actuator.advance(aim, seconds);
+        let travel = self.actuator.advance(aim, seconds);
         self.time += seconds;
-        self.follow();
+        self.follow(&travel);
         self.actuator.stop();
         let unsettled = Unsettled {
             lagging: self.actuator.lagging(),
             lag: self.actuator.lag(),
             miss: (target - aim).abs(),
-            stiffness: self.specimen.initial_stiffness(),
+            stiffness: self.specimen.initial_stiffness() + self.branches.iter().map(MaxwellBranch::stiffness).sum::<f64>(),
             damping: self.viscous,
             drift: self.link.drift,
             rate: self.damping.rate.map(|rate| (self.restoring_force, rate)),
         };
-        if let Some(wait) = settling_time(&self.settle, &unsettled) {
+        let arrived = self.time;
+        if let Some(wait) = settling_time(&shared(&self.settle, &unsettled, &self.branches), &unsettled) {
             self.rest(wait);
-            Ok(())
-        } else {
-            self.rest(self.settle.timeout);
-            self.hold();
-            Err(RigFault::NotSettled { timeout: self.settle.timeout, axis: None })
+            if let Some(more) = relaxing_time(&self.settle, &unsettled, &self.branches, wait) {
+                self.rest(more);
+                return Ok(());
+            }
         }
+        self.rest((arrived + self.settle.timeout - self.time).max(0.0));
+        self.hold();
+        Err(RigFault::NotSettled { timeout: self.settle.timeout, axis: None })
     }
 
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
@@ -194,9 +205,9 @@ impl Rig for VirtualRig {
         for sample in 1..=samples {
             let fraction = sample as f64 / samples as f64;
             let to = if sample == samples { aim } else { from + (aim - from) * fraction };
-            self.actuator.advance(to, seconds / samples as f64);
+            let travel = self.actuator.advance(to, seconds / samples as f64);
             self.time = began + seconds * fraction;
-            self.follow();
+            self.follow(&travel);
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();
@@ -232,7 +243,16 @@ mod tests {
 
     pub(super) fn specimen(damping: f64, coulomb: f64) -> Specimen {
         let behaviour = Some(Behaviour::Elastic { stiffness: 1000.0 });
-        Specimen { name: "spring".to_owned(), mass: 1.0, frame: None, behaviour, damping, coulomb }
+        Specimen {
+            name: "spring".to_owned(),
+            mass: 1.0,
+            mass_from: None,
+            mass_uncertainty: 0.0,
+            frame: None,
+            behaviour,
+            damping,
+            coulomb,
+        }
     }
 
     fn rig(link: VirtualLink) -> VirtualRig {

@@ -11,7 +11,7 @@ use super::gliding::{Gliding, Passing};
 use super::impact::Setting;
 use super::session::{Session, first};
 use super::stop::Stop;
-use super::strike::{Strike, over};
+use super::strike::Strike;
 use crate::mechanics::impact::{ImpactSolver, ImpactState};
 use crate::mechanics::monitor::Monitor;
 use crate::plan::Impact;
@@ -35,7 +35,7 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
         let tracking = monitor.take_as(target, measured, force, taken);
         let state = *solver.complete(measured, force);
         strike.step(&state, tracking, session)?;
-        if over(plan.until, &solver) {
+        if solver.over(plan.until) {
             break;
         }
     }

@@ -48,6 +48,7 @@ pub(super) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
         name,
         value: ResultValue::List(fit.map(|fit| values(fit).iter().map(part).collect()).unwrap_or_default()),
         dimension,
+        contributions: Vec::new(),
     };
     let (value, error): (Part, Part) = (|pair| pair.0, |pair| pair.1);
     vec![

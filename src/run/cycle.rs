@@ -218,6 +218,7 @@ fn results(history: &CycleHistory) -> Vec<NamedResult> {
         name,
         value: ResultValue::List(cycles.iter().map(read).collect()),
         dimension,
+        contributions: Vec::new(),
     };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
     let count = cycles.len() as f64;

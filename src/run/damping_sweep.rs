@@ -61,6 +61,21 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     Performed { history: History::Sweep(SweepHistory { steps: sweep.steps, pairs, fit }), results, stop }
 }
 
+fn steady_from(seconds: f64, lag: f64) -> f64 {
+    END.max(LAGS * lag / seconds)
+}
+
+/// Readings of one way that takes `seconds`, at a rate (Hz) or by the plan's default.
+pub(super) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
+    let steady = 1.0 - END - steady_from(seconds, lag);
+    match rate {
+        Some(rate) => (rate * seconds).round().max(1.0),
+        // One more, for the first steady reading may just miss the beginning of the steady part.
+        None if steady > 0.0 => (STEADY_SAMPLES / steady).ceil() + 1.0,
+        None => STEADY_SAMPLES,
+    }
+}
+
 fn fit_of(pairs: &[(f64, f64)]) -> Option<LineFit> {
     let (velocities, forces): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
     fit_damping(&velocities, &forces)
@@ -135,17 +150,11 @@ impl Sweep {
 
     /// Share of a traverse of `seconds` after which it is steady.
     fn steady_from(&self, seconds: f64) -> f64 {
-        END.max(LAGS * self.lag / seconds)
+        steady_from(seconds, self.lag)
     }
 
     fn samples(&self, seconds: f64, rate: Option<f64>) -> Result<usize, Stop> {
-        let steady = 1.0 - END - self.steady_from(seconds);
-        let wanted = match rate {
-            Some(rate) => (rate * seconds).round().max(1.0),
-            // One more, for the first steady reading may just miss the beginning of the steady part.
-            None if steady > 0.0 => (STEADY_SAMPLES / steady).ceil() + 1.0,
-            None => STEADY_SAMPLES,
-        };
+        let wanted = wanted(seconds, self.lag, rate);
         if wanted > MOST_SAMPLES {
             return Err(Stop::BadInput {
                 field: "rate",

@@ -75,13 +75,22 @@ pub struct DrivenRecord {
     pub steps: Vec<DrivenStep>,
 }
 
-/// Lets `client` drive the plan's rig, a real one once it has passed the gate. Never fails: what went wrong is the record's
-/// outcome.
+/// Who drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driver {
+    /// A program: a real rig must have passed the gate first.
+    Client,
+    /// A person by hand, who says yes to every move; there may be no specimen yet to pass a gate with.
+    ByHand,
+}
+
+/// Lets `client` drive the plan's rig. Never fails: what went wrong is the record's outcome.
 #[must_use]
 pub fn drive(
     plan: &Plan,
     rig: &mut dyn Rig,
     observer: &mut dyn Observer,
+    driver: Driver,
     client: &mut dyn FnMut(&mut Specimen<'_, '_>),
 ) -> DrivenRecord {
     let identity = rig.identity();
@@ -94,7 +103,7 @@ pub fn drive(
         Err(early) => return ended(vec![early.0], early.1.outcome()),
     };
     let link = plan.rig.link.as_real();
-    if let Some(link) = link
+    if let Some(link) = link.filter(|_| driver == Driver::Client)
         && let Err(stop) = gate::pass(plan, link, "as its client says, within the plan's limits", &mut session)
     {
         session.end(&stop);
@@ -150,6 +159,11 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.guard.commanded()
     }
 
+    /// The targets on the way to `targets`, none farther from the one before than the limit on an increment.
+    pub fn way_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
+        self.guard.way_to(targets)
+    }
+
     /// Rig time, s.
     pub fn time(&self) -> f64 {
         self.guard.time()
@@ -177,8 +191,16 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     /// # Errors
     /// A limit stands in the way, or the rig refuses.
     pub fn propose(&mut self, targets: &[f64]) -> Result<(), RigFault> {
-        self.asked(&Request::targets(targets));
-        let proposed = self.guard.propose(targets, None);
+        self.propose_at(targets, None)
+    }
+
+    /// [`Self::propose`] at a speed, m/s; None: the rig's own.
+    ///
+    /// # Errors
+    /// As there; or the speed is beyond its limit.
+    pub fn propose_at(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        self.asked(&Request::targets_at(targets, speed));
+        let proposed = self.guard.propose(targets, speed);
         if matches!(proposed, Err(RigFault::LimitBreached { .. })) {
             self.driven.refused += 1;
         }
@@ -282,12 +304,15 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     /// One request again, as the record has it. What comes of it is on record too.
     pub(super) fn carry_out(&mut self, request: Request) {
         // A refusal has told its event, and what the client made of it are the requests that follow.
-        if let Some(targets) = request.proposed() {
-            let _ = self.propose(&targets);
+        if let Some((targets, speed)) = request.proposed() {
+            let _ = self.propose_at(&targets, speed);
             return;
         }
         let _ = match request {
-            Request::Propose { .. } | Request::ProposeAll { .. } | Request::ProposeNoNumber { .. } => Ok(()),
+            Request::Propose { .. }
+            | Request::ProposeAll { .. }
+            | Request::ProposeAt { .. }
+            | Request::ProposeNoNumber { .. } => Ok(()),
             Request::Come { client } => self.come(client),
             Request::Execute => self.execute(),
             Request::Read => self.read(),

@@ -4,6 +4,7 @@
 use super::Performed;
 use super::impact::{Setting, blow};
 use super::inputs::Inputs;
+use super::propagation::Doubts;
 use super::results::result;
 use super::session::Session;
 use super::stop::Stop;
@@ -14,6 +15,7 @@ use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult};
+use crate::uncertainty::Contribution;
 use crate::verdict::{Verdict, assess_condition};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -29,7 +31,9 @@ fn run(
     session: &mut Session<'_>,
     history: &mut EscalateHistory,
 ) -> Result<(), Stop> {
-    let setting = Setting::evaluate(&plan.blow, &whole.strikers[plan.blow.striker], inputs, session)?;
+    let noise = session.guard.declared_noise();
+    let setting = Setting::evaluate(&plan.blow, &whole.strikers[plan.blow.striker], inputs, noise)?;
+    let doubts = Doubts::new(&plan.blow, whole, inputs, noise);
     let velocities = inputs.list("speeds", &plan.velocities)?;
     if let Some(value) = velocities.iter().copied().find(|velocity| !(*velocity > 0.0 && velocity.is_finite())) {
         return Err(Stop::BadInput { field: "speeds", value, wanted: "greater than 0".into() });
@@ -39,7 +43,7 @@ fn run(
     for (index, striker_velocity) in velocities.iter().copied().enumerate() {
         let setting = Setting { input: ImpactInput { striker_velocity, ..setting.input }, ..setting };
         let energy = setting.input.striker_energy();
-        let blown = blow(&plan.blow, &setting, done, session);
+        let blown = blow(&plan.blow, &setting, &doubts, done, session);
         done += blown.history.steps.last().map_or(0, |last| last.step);
         let over = blown.stop.is_none();
         let known = OfBlow { own: plan.own, blow: &blown.results, before: inputs.results() };
@@ -119,6 +123,14 @@ impl Results for OfBlow<'_> {
         }
         self.before.result(reference)
     }
+
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        if reference.procedure == self.own {
+            let found = self.blow.iter().find(|result| result.name == reference.name);
+            return found.map_or_else(Vec::new, |result| result.contributions_of(reference));
+        }
+        self.before.contributions(reference)
+    }
 }
 
 /// A number among the results of a blow.
@@ -133,7 +145,8 @@ fn number(blow: &Blow, name: &str) -> Option<f64> {
 fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let blows = &history.blows;
     let of = |name: &str| blows.iter().map(|blow| number(blow, name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
-    let list = |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension };
+    let list =
+        |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
     let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;
     let passed = blows.iter().rev().find(|blow| blow.held == Some(true)).map(|blow| blow.energy);

@@ -33,9 +33,9 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
     for (axis, (gate, force)) in gates.iter().zip(&at_rest.force).enumerate() {
         if failpoint::on(Guarding::GateZero) && !within(force.abs(), 0.0, gate.zero) {
             return refuse(format!(
-                "{} at rest{}, {} is allowed: zero the cell, or take the load off",
+                "{}{} at rest, {} is allowed: zero the cell, or take the load off",
+                named_axis(axis, axes).map_or_else(String::new, |axis| format!("axis {axis}: ")),
                 readable(*force, Dimension::FORCE),
-                of_axis(named_axis(axis, axes)),
                 stated(gate.zero, Dimension::FORCE)
             ));
         }

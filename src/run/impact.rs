@@ -4,6 +4,7 @@
 
 use super::Performed;
 use super::inputs::Inputs;
+use super::propagation::Doubts;
 use super::results::result;
 use super::session::Session;
 use super::stop::Stop;
@@ -18,9 +19,11 @@ use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
+use crate::rig::DeclaredNoise;
 
 pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
-    let (setting, stop) = match Setting::evaluate(plan, &whole.strikers[plan.striker], inputs, session) {
+    let noise = session.guard.declared_noise();
+    let (setting, stop) = match Setting::evaluate(plan, &whole.strikers[plan.striker], inputs, noise) {
         Ok(setting) => (Some(setting), None),
         Err(stop) => (None, Some(stop)),
     };
@@ -28,7 +31,8 @@ pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, sess
         let history = ImpactHistory { steps: Vec::new(), time_step: 0.0, critical_time_step: 0.0 };
         return Performed { results: results(None, None, &history), history: History::Impact(history), stop };
     };
-    let Blown { history, results, stop } = blow(plan, &setting, 0, session);
+    let doubts = Doubts::new(plan, whole, inputs, noise);
+    let Blown { history, results, stop } = blow(plan, &setting, &doubts, 0, session);
     Performed { results, history: History::Impact(history), stop }
 }
 
@@ -40,7 +44,7 @@ pub(super) struct Blown {
 }
 
 /// The blow of a striker from where the rig is now; `before` steps of the procedure are done already.
-pub(super) fn blow(plan: &Impact, setting: &Setting, before: u64, session: &mut Session<'_>) -> Blown {
+pub(super) fn blow(plan: &Impact, setting: &Setting, doubts: &Doubts<'_>, before: u64, session: &mut Session<'_>) -> Blown {
     let mut strike = Strike::new(setting, before);
     let stop = strike.run(plan, session).err();
     let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
@@ -50,7 +54,13 @@ pub(super) fn blow(plan: &Impact, setting: &Setting, before: u64, session: &mut 
     }
     let history =
         ImpactHistory { steps: strike.steps, time_step: setting.input.time_step, critical_time_step: setting.critical_time_step };
-    Blown { results: results(summary.as_ref(), worst, &history), history, stop }
+    let mut results = results(summary.as_ref(), worst, &history);
+    if let (Some(summary), None) = (&summary, &stop)
+        && let Err(reason) = doubts.propagate(setting, &history.steps, summary, &mut results)
+    {
+        session.event(EventKind::Remark, format!("the uncertainty of the results is not known: {reason}"));
+    }
+    Blown { history, results, stop }
 }
 
 /// Everything known before the first step.
@@ -69,9 +79,10 @@ impl Setting {
         plan: &Impact,
         striker: &Striker,
         inputs: &mut Inputs<'_>,
-        session: &Session<'_>,
+        noise: DeclaredNoise,
     ) -> Result<Self, Stop> {
         let mass = inputs.positive("mass", &plan.mass, Dimension::MASS)?;
+        inputs.also_uncertain(plan.mass_uncertainty);
         let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
         let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));
         let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
@@ -91,7 +102,6 @@ impl Setting {
             });
         }
         stable(plan, time_step, stiffness / mass)?;
-        let noise = session.guard.declared_noise();
         let input = ImpactInput {
             mass,
             damping,
@@ -113,6 +123,12 @@ impl Setting {
         let steps = steps as u64;
         Ok(Self { input, critical_time_step, steps, pause })
     }
+
+    /// With more mass of the structure, kg.
+    pub(super) fn heavier(&mut self, mass: f64) {
+        self.input.mass += mass;
+        self.critical_time_step = critical_time_step(self.input.mass, self.input.stiffness);
+    }
 }
 
 /// `K_I`: the high end of the interval in which the stiffness lies (two standard uncertainties), for α-OS is stable only
@@ -131,7 +147,7 @@ fn stable(plan: &Impact, time_step: f64, highest: f64) -> Result<(), Stop> {
     Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
 }
 
-fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
+pub(super) fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
     Ok(match contact {
         Contact::Rigid => ContactLaw::Rigid,
         Contact::Limit { force } => ContactLaw::Limit { force: inputs.positive("force_limit", force, Dimension::FORCE)? },
@@ -161,7 +177,7 @@ const SECONDS_PER_METRE: Dimension = Dimension {
 };
 
 /// What a reader of the results must know of how the run ended.
-fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
+pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
     if until == Until::StrikerStop && summary.stop_time.is_none() {
         session.event(EventKind::Remark, "the striker did not stop within the duration".to_owned());
     }
@@ -176,7 +192,7 @@ fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
 }
 
 /// In the order of the reference, `worst` the largest share of the input that tracking made of the energy; every number is missing if not even the start was read.
-fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &ImpactHistory) -> Vec<NamedResult> {
+pub(super) fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &ImpactHistory) -> Vec<NamedResult> {
     let of = |name, dimension, value: fn(&ImpactSummary) -> f64| result(name, dimension, summary.map(value));
     let ended = |name, dimension, value: fn(&ImpactStep) -> f64| result(name, dimension, history.steps.last().map(value));
     let known = |value: f64| (value > 0.0).then_some(value);

@@ -2,18 +2,32 @@
 //! numbers in SI, inside their domain, and the list of them for the record.
 
 use super::stop::Stop;
-use crate::formula::{Estimate, Formula, Results};
+use crate::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::quantity::Dimension;
 
 /// Evaluates, and remembers what came out.
 pub(super) struct Inputs<'record> {
     results: &'record dyn Results,
+    procedure: ProcedureId,
     recorded: Vec<(&'static str, Estimate, Dimension)>,
 }
 
 impl<'record> Inputs<'record> {
-    pub(super) fn new(results: &'record dyn Results) -> Self {
-        Self { results, recorded: Vec::new() }
+    /// Of the procedure at this place of the plan.
+    pub(super) fn new(results: &'record dyn Results, procedure: ProcedureId) -> Self {
+        Self { results, procedure, recorded: Vec::new() }
+    }
+
+    /// Whose inputs they are.
+    pub(super) const fn procedure(&self) -> ProcedureId {
+        self.procedure
+    }
+
+    /// A stated uncertainty, of the field evaluated last, beside what its formula brings.
+    pub(super) fn also_uncertain(&mut self, stated: f64) {
+        if let Some((_, estimate, _)) = self.recorded.last_mut().filter(|_| stated > 0.0) {
+            estimate.uncertainty = Some(estimate.uncertainty.unwrap_or(0.0).hypot(stated));
+        }
     }
 
     /// Where its formulas find results.

@@ -1,5 +1,7 @@
 //! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
 
+mod attribution;
+mod axes;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -14,12 +16,19 @@ mod escalate;
 mod escalate_tests;
 mod gate;
 mod gliding;
+mod hold;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
 mod inputs;
 mod inspect;
 mod move_to;
+pub mod need;
+#[cfg(test)]
+mod need_tests;
+mod propagation;
+#[cfg(test)]
+mod propagation_tests;
 pub mod rehearsal;
 mod request;
 mod results;
@@ -34,6 +43,8 @@ mod shake_results;
 mod shaking;
 mod stiffness_ramp;
 mod stop;
+mod storey_impact;
+mod storey_summary;
 mod strike;
 pub mod tape;
 #[cfg(test)]
@@ -49,6 +60,7 @@ pub use request::{Parting, Request};
 
 use serde::{Deserialize, Serialize};
 
+use crate::formula::ProcedureId;
 use crate::mechanics::monitor::Tracking;
 use crate::plan::{Plan, Procedure, ProcedureKind, SafeState};
 use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
@@ -211,8 +223,9 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     }
     for procedure in &plan.procedures {
         session.enter(procedure, plan);
-        let mut inputs = Inputs::new(&record);
-        let Performed { history, results, stop } = perform(procedure, plan, &mut inputs, &mut session);
+        let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
+        let Performed { history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
+        attribution::attribute(&procedure.kind, &history, &plan.rig.calibration, &inputs, &mut results);
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),
@@ -242,6 +255,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
+        ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),
         ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),

@@ -103,7 +103,8 @@ fn curve_of(history: &History) -> Option<Behaviour> {
 /// A specimen of the measured stiffness (N/m): the expected one with every force in that proportion, so that it yields and
 /// breaks at the displacements of the plan.
 fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
-    let expected = specimen.behaviour.as_ref().map(|behaviour| (behaviour, behaviour.initial_stiffness()));
+    // A pause lets relax what relaxes before the reading.
+    let expected = specimen.behaviour.as_ref().map(|behaviour| (behaviour, behaviour.relaxed_stiffness()));
     match expected {
         // Exactly as measured, which a quotient would not be.
         None | Some((Behaviour::Elastic { .. } | Behaviour::Beam(_), _)) => Behaviour::Elastic { stiffness },

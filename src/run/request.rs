@@ -19,6 +19,11 @@ pub enum Request {
     ProposeAll {
         targets: Vec<f64>,
     },
+    /// Targets of every axis, m, and how fast, m/s.
+    ProposeAt {
+        targets: Vec<f64>,
+        speed: f64,
+    },
     /// A target that is no number and that no line of the record can hold: `NaN`, `inf`. Refused as any other. Of several axes
     /// every target, with blanks between.
     ProposeNoNumber {
@@ -69,14 +74,25 @@ impl Request {
         }
     }
 
-    /// The targets that are proposed, m, one an axis; none where something else is asked.
+    /// [`Self::targets`] at a speed, m/s.
     #[must_use]
-    pub fn proposed(&self) -> Option<Vec<f64>> {
-        match self {
+    pub fn targets_at(targets: &[f64], speed: Option<f64>) -> Self {
+        match speed.filter(|_| targets.iter().all(|target| target.is_finite())) {
+            Some(speed) => Self::ProposeAt { targets: targets.to_vec(), speed },
+            None => Self::targets(targets),
+        }
+    }
+
+    /// The targets that are proposed, m, one an axis, and how fast, m/s; none where something else is asked.
+    #[must_use]
+    pub fn proposed(&self) -> Option<(Vec<f64>, Option<f64>)> {
+        let targets = match self {
             Self::Propose { target } => Some(vec![*target]),
-            Self::ProposeAll { targets } => Some(targets.clone()),
+            Self::ProposeAll { targets } | Self::ProposeAt { targets, .. } => Some(targets.clone()),
             Self::ProposeNoNumber { said } => Some(said.split(' ').map(|word| word.parse().unwrap_or(f64::NAN)).collect()),
             _ => None,
-        }
+        }?;
+        let speed = if let Self::ProposeAt { speed, .. } = self { Some(*speed) } else { None };
+        Some((targets, speed))
     }
 }

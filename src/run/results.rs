@@ -13,7 +13,8 @@ pub(super) fn result(name: &'static str, dimension: Dimension, value: Option<f64
 pub(super) fn measured(name: &'static str, dimension: Dimension, value: Option<(f64, Option<f64>)>) -> NamedResult {
     let value = value.filter(|(value, _)| value.is_finite());
     let uncertainty = value.and_then(|(_, uncertainty)| uncertainty).filter(|uncertainty| uncertainty.is_finite());
-    NamedResult { name, value: ResultValue::Number { value: value.map(|(value, _)| value), uncertainty }, dimension }
+    let value = ResultValue::Number { value: value.map(|(value, _)| value), uncertainty };
+    NamedResult { name, value, dimension, contributions: Vec::new() }
 }
 
 /// The largest of some sizes; None of nothing.

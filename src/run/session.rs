@@ -4,6 +4,7 @@
 use super::escalate::most_moves;
 use super::shake;
 use super::stop::Stop;
+use super::storey_impact;
 use super::{Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
@@ -237,6 +238,7 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
             let blow = steps_of_blow(&escalate.blow)?.saturating_add(most_moves(escalate.between));
             Some(blow.saturating_mul(escalate.velocities.len() as u64))
         }
+        ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan),
         ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),

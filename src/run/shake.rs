@@ -68,7 +68,7 @@ pub(super) fn steps(shake: &Shake, plan: &Plan) -> Option<u64> {
 }
 
 /// 0.5 s of 0.01 s are 50 steps, whatever rounding says of the ratio.
-fn steps_in(duration: f64, time_step: f64) -> f64 {
+pub(super) fn steps_in(duration: f64, time_step: f64) -> f64 {
     (duration / time_step * (1.0 - 1e-12)).ceil()
 }
 
@@ -131,7 +131,7 @@ impl Setting {
 }
 
 /// The damping, and a ratio of it for a message.
-fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
+pub(super) fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
     let known = |ratio: f64| match ratio {
         ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
         value => Err(Stop::BadInput { field: "damping_ratio", value, wanted: "between 0 and 1".into() }),

@@ -59,7 +59,7 @@ impl ShakeSummary {
 /// In the order of the reference; what was not reached is missing.
 pub(super) fn results(modes: Option<&Modes>, summary: Option<&ShakeSummary>) -> Vec<NamedResult> {
     let list = |name, dimension, values: Option<&Vec<f64>>| match values {
-        Some(values) => NamedResult { name, dimension, value: ResultValue::List(values.clone()) },
+        Some(values) => NamedResult { name, dimension, value: ResultValue::List(values.clone()), contributions: Vec::new() },
         None => result(name, dimension, None),
     };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]

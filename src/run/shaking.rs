@@ -3,6 +3,7 @@
 //! what is known before the first step, the rig behind its guard. Out: every step as it ended. The equations are
 //! `mechanics`'; this file only lets them meet the rig.
 
+use super::axes::{Monitors, Told, report, together};
 use super::gliding::{Gliding, Passing};
 use super::session::Session;
 use super::shake::Setting;
@@ -10,13 +11,11 @@ use super::shake_results::ShakeSummary;
 use super::stop::Stop;
 use super::triggers::Triggers;
 use super::watch::Watch;
-use super::{AxisReport, StepReport};
 use crate::mechanics::frame::{FrameInput, FrameSolver, FrameState};
 use crate::mechanics::ground::acceleration_at;
-use crate::mechanics::monitor::{Monitor, Tracking};
+use crate::mechanics::monitor::Tracking;
 use crate::plan::{Ground, Mode, Shake};
 use crate::record::{ShakeHistory, ShakeStep};
-use crate::rig::Reading;
 
 pub(super) struct Shaking<'a> {
     pub(super) setting: &'a Setting,
@@ -76,7 +75,7 @@ impl Shaking<'_> {
             };
             solver.complete(&reading.displacement, &reading.force);
             let state = solver.state();
-            let tracking = monitors.take(&state.target, &reading, solver.taken(&reading.force));
+            let tracking = together(&monitors.take(&state.target, &reading, solver.taken(&reading.force)));
             let told = self.take(state, acceleration, tracking, session);
             self.watch.judge(told.tracking_energy_error, session);
             session.guard.check_energy_error(told.energy_error)?;
@@ -124,58 +123,4 @@ fn foretold(solver: &mut FrameSolver, load: &[f64]) -> Vec<Passing> {
     solver.predicted_velocity(&mut velocities);
     let passing = |(place, velocity)| Passing { place, velocity, struck: false };
     places.into_iter().zip(velocities).map(passing).collect()
-}
-
-/// The errors of a step.
-struct Told {
-    energy_error: f64,
-    tracking: Tracking,
-    tracking_energy_error: Option<f64>,
-}
-
-/// The monitors of every axis, told as one: energies add, of the others the largest counts.
-struct Monitors(Vec<Monitor>);
-
-impl Monitors {
-    fn new(commanded: &[f64], reading: &Reading) -> Self {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
-    }
-
-    /// `taken`: what the recursion takes for the forces at the commands, N.
-    fn take(&mut self, commanded: &[f64], reading: &Reading, taken: &[f64]) -> Tracking {
-        let read = reading.displacement.iter().zip(&reading.force).zip(taken);
-        let axes = self.0.iter_mut().zip(commanded).zip(read);
-        let each = axes.map(|((monitor, to), ((measured, force), taken))| monitor.take_as(*to, *measured, *force, *taken));
-        each.fold(Tracking::default(), |all, axis| Tracking {
-            energy_error: all.energy_error + axis.energy_error,
-            indicator: all.indicator + axis.indicator,
-            nrms_error: all.nrms_error.max(axis.nrms_error),
-            peak_error: all.peak_error.max(axis.peak_error),
-        })
-    }
-}
-
-fn report(state: &FrameState, told: &Told) -> StepReport {
-    let axis = |floor: usize| AxisReport {
-        command: state.target[floor],
-        displacement: state.measured_displacement[floor],
-        velocity: state.velocity[floor],
-        acceleration: state.acceleration[floor],
-        force: state.restoring_force[floor],
-    };
-    let first = axis(0);
-    StepReport {
-        step: state.step,
-        time: state.time,
-        command: first.command,
-        displacement: first.displacement,
-        velocity: Some(first.velocity),
-        acceleration: Some(first.acceleration),
-        force: first.force,
-        energy_error: Some(told.energy_error),
-        tracking: Some(told.tracking),
-        tracking_energy_error: told.tracking_energy_error,
-        others: (1..state.target.len()).map(axis).collect(),
-    }
 }

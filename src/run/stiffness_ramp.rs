@@ -3,28 +3,39 @@
 //! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
 
 use super::Performed;
-use super::curve;
 use super::inputs::Inputs;
 use super::results::{largest, measured, result};
 use super::samples::{mean, scatter};
-use super::session::Session;
+use super::session::{Session, first};
 use super::stop::Stop;
+use super::{curve, hold};
 use crate::mechanics::backbone::fit_bilinear;
 use crate::mechanics::identification::{fit_line, loop_energy};
-use crate::plan::{RampFit, StiffnessRamp};
+use crate::plan::{RampFit, StiffnessRamp, WatchedHold};
 use crate::quantity::Dimension;
-use crate::record::{BilinearFit, EventKind, History, LineFit, MultilinearFit, NamedResult, RampHistory, RampStep};
+use crate::record::{BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory, RampStep};
 
 pub(super) fn perform(plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
-    let mut ramp = Ramp { steps: Vec::new(), start: None, loops: Vec::new() };
+    let mut ramp = Ramp { steps: Vec::new(), start: None, loops: Vec::new(), holds: Vec::new(), last_reading: 0.0 };
     let stop = ramp.run(plan, inputs, session).err();
     let fits = ramp.fits(plan);
     for text in fits.remarks.iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text.clone());
     }
-    let results = ramp.results(&fits);
+    let noise = session.guard.declared_noise().force;
+    let accuracy = plan.relaxation.and_then(|asked| asked.accuracy.or((noise > 0.0).then_some(noise)));
+    let start = ramp.start.map(|(displacement, _)| displacement);
+    let (relaxation, remarks) =
+        plan.relaxation.map(|asked| hold::fitted(&ramp.holds, start, asked, accuracy)).unwrap_or_default();
+    for text in remarks.into_iter().filter(|_| stop.is_none()) {
+        session.event(EventKind::Remark, text);
+    }
+    let mut results = ramp.results(&fits);
+    results.extend(hold::results(relaxation.as_ref(), accuracy));
     let Fits { line: fit, bilinear, multilinear, .. } = fits;
-    Performed { history: History::Ramp(RampHistory { steps: ramp.steps, fit, bilinear, multilinear }), results, stop }
+    let (multilinear, relaxation) = (multilinear.map(Box::new), relaxation.map(Box::new));
+    let history = RampHistory { steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation };
+    Performed { history: History::Ramp(history), results, stop }
 }
 
 /// What was fitted, one at most, and what to know of it.
@@ -45,6 +56,10 @@ struct Ramp {
     start: Option<Point>,
     /// ∮ R dX of each repeat that came back to where it began, J.
     loops: Vec<f64>,
+    /// Pauses of the first repeat, where they are watched.
+    holds: Vec<Hold>,
+    /// Rig time of the last reading before a move, s.
+    last_reading: f64,
 }
 
 impl Ramp {
@@ -53,18 +68,20 @@ impl Ramp {
         let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
         let speed = inputs.speed(plan.speed.as_ref())?;
         let home = session.commanded();
-        for _ in 0..plan.repeats {
+        for repeat in 0..plan.repeats {
             let start = session.read()?;
+            self.last_reading = session.guard.time();
+            let asked = plan.relaxation.filter(|_| repeat == 0);
             self.start.get_or_insert(start);
             let from = self.steps.len();
             let mut before = None;
             for command in &displacements {
-                before = Some(self.step(*command, false, before, plan, pause, speed, session)?);
+                before = Some(self.step(*command, false, before, plan.samples, (pause, asked), speed, session)?);
             }
             if plan.return_path {
                 let way_back = displacements.iter().rev().skip(1).copied().chain(std::iter::once(home));
                 for command in way_back {
-                    before = Some(self.step(command, true, before, plan, pause, speed, session)?);
+                    before = Some(self.step(command, true, before, plan.samples, (pause, asked), speed, session)?);
                 }
                 let path = std::iter::once(start).chain(self.steps[from..].iter().map(point));
                 let (x, r): (Vec<f64>, Vec<f64>) = path.unzip();
@@ -83,19 +100,27 @@ impl Ramp {
         command: f64,
         returning: bool,
         before: Option<Point>,
-        plan: &StiffnessRamp,
-        pause: f64,
+        samples: u32,
+        (pause, asked): (f64, Option<WatchedHold>),
         speed: Option<f64>,
         session: &mut Session<'_>,
     ) -> Result<Point, Stop> {
         session.guard.move_to(&[command], speed)?;
-        let (_, settled_force) = session.read()?;
-        session.guard.pause(pause)?;
-        let readings = (0..plan.samples.max(1)).map(|_| session.read()).collect::<Result<Vec<_>, _>>()?;
+        let settled = session.guard.read()?;
+        let (_, settled_force) = first(&settled);
+        let watched = match asked {
+            Some(asked) => Some(hold::watched(&settled, pause, asked.readings, session)?),
+            None => session.guard.pause(pause).map(|()| None)?,
+        };
+        let readings = (0..samples.max(1)).map(|_| session.read()).collect::<Result<Vec<_>, _>>()?;
         let displacement = mean(readings.iter().map(|(x, _)| *x));
         let restoring_force = mean(readings.iter().map(|(_, r)| *r));
         let step = self.steps.len() as u64 + 1;
         let wall_time = session.guard.time();
+        if let Some((readings, last)) = watched {
+            self.holds.push(Hold { step, displacement, moved_for: settled.time - self.last_reading, readings });
+            self.last_reading = last;
+        }
         self.steps.push(RampStep {
             step,
             wall_time,

@@ -11,7 +11,7 @@ use super::watch::Watch;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::mechanics::summary::SummaryBuilder;
-use crate::plan::{Impact, Mode, Until};
+use crate::plan::{Impact, Mode};
 use crate::record::ImpactStep;
 
 pub(super) struct Strike {
@@ -57,7 +57,7 @@ impl Strike {
             let tracking = monitor.take_as(target, measured, restoring_force, taken);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;
-            if over(plan.until, &solver) {
+            if solver.over(plan.until) {
                 break;
             }
             if let Some(reason) = triggers.after(state.step, state.time, restoring_force) {
@@ -111,15 +111,6 @@ impl Strike {
             energies: state.energies,
             tracking,
         });
-    }
-}
-
-/// Whether the run has come to its end before its duration.
-pub(super) fn over(until: Until, solver: &ImpactSolver) -> bool {
-    match until {
-        Until::StrikerStop => solver.finished(),
-        Until::Rebound => solver.rebounded(),
-        Until::Duration => false,
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, DecisionRule, Impact, Integrator, Limits, Link, Mode, Plan, Procedure, ProcedureKind,
-    RampFit, Report, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Until, VirtualLink,
+    Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, Integrator, Limits, Link, Mode, Plan, Procedure, ProcedureKind,
+    RampFit, Report, RigPlan, Settle, ShakeDamping, Specimen, StiffnessRamp, Storey, StoreyImpact, Striker, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -42,15 +42,59 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
         specimens: vec![Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
+            mass_from: None,
+            mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness }),
             damping: 0.0,
             coulomb: 0.0,
         }],
-        strikers: vec![Striker { name: "pendulum".to_owned(), mass: 10.0, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
+        strikers: vec![Striker {
+            name: "pendulum".to_owned(),
+            mass: 10.0,
+            mass_uncertainty: 0.0,
+            velocity: 1.0,
+            velocity_uncertainty: 0.0,
+            gap: 0.0,
+            gravity: 0.0,
+        }],
         procedures: procedures.into_iter().enumerate().map(named).collect(),
         ..empty_plan()
     }
+}
+
+/// A frame of two storeys of 1 kg, the upper of which is struck by 10 kg at 1 m/s: steps of 10 ms.
+pub(crate) fn struck_frame() -> Plan {
+    let storey = |stiffness, yield_force| Storey {
+        mass: 1.0,
+        stiffness,
+        height: None,
+        behaviour: Behaviour::Bilinear { stiffness, yield_force, hardening: 0.05 },
+        damping: 0.0,
+        coulomb: 0.0,
+    };
+    let frame = Frame::of_storeys(vec![storey(500.0, 20.0), storey(300.0, 15.0)]);
+    let blow = StoreyImpact {
+        specimen: 0,
+        striker: 0,
+        struck: 1,
+        damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
+        contact: Contact::Restitution { coefficient: Formula::Constant(0.5) },
+        integrator: Integrator::Tangent,
+        allow_unstable: false,
+        i_modification: false,
+        time_step: Formula::Constant(0.01),
+        duration: Formula::Constant(0.25),
+        until: Until::Duration,
+        pause: Formula::Constant(0.0),
+        max_tangent_ratio: Formula::Constant(2.0),
+        inspect: Vec::new(),
+    };
+    let mut plan = elastic_plan(1.0, vec![ProcedureKind::StoreyImpact(blow)]);
+    plan.specimens[0].frame = Some(frame);
+    plan.specimens[0].behaviour = None;
+    plan.specimens[0].mass = 2.0;
+    plan
 }
 
 /// Ten outward steps of `step` (m), one sample each, no pause.
@@ -63,6 +107,7 @@ pub(crate) fn ramp(step: f64) -> StiffnessRamp {
         repeats: 1,
         return_path: false,
         fit: RampFit::Linear,
+        relaxation: None,
         speed: None,
     }
 }
@@ -73,6 +118,7 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         specimen: 0,
         striker: 0,
         mass: Formula::Constant(1.0),
+        mass_uncertainty: 0.0,
         stiffness,
         damping: Formula::Constant(0.0),
         contact: Contact::Rigid,

@@ -81,7 +81,8 @@ fn results_stand_in_the_order_of_the_reference() {
     let record = run_unwatched(&ramp_then_sweep());
     let names = |procedure: usize| -> Vec<_> { record.procedures[procedure].results.iter().map(|result| result.name).collect() };
     let ramp = "stiffness, secant_stiffness, intercept_force, r_squared, max_force, max_displacement, loop_energy, relaxation, \
-                tangent_stiffness, yield_force, yield_displacement, hardened_stiffness, hardening";
+                tangent_stiffness, yield_force, yield_displacement, hardened_stiffness, hardening, breaks, break_uncertainties, \
+                break_forces, break_force_uncertainties, curve_stiffnesses, curve_stiffness_uncertainties";
     assert_eq!(names(0).join(", "), ramp);
     assert_eq!(names(1).join(", "), "damping, coulomb_force, r_squared, damping_ratio, max_velocity");
 }

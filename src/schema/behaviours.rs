@@ -171,6 +171,17 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
         "the load cell reads R (1 + (v/v₀)^exponent) while the actuator moves; stands outermost",
     ),
     Variant::with(
+        "maxwell",
+        &[
+            Field::inner("of", "what stands beside it; may be another `maxwell`").required("of: elastic(stiffness: 300 kN/m)"),
+            STIFFNESS,
+            Field::quantity("time_constant", Dimension::TIME, "τ in which its force falls to 1/e at rest")
+                .required("time_constant: 2 s")
+                .above_zero(),
+        ],
+        "a spring and a dashpot one behind the other, beside the rest: force that relaxes; stands outermost",
+    ),
+    Variant::with(
         "beam",
         &[
             Field::quantity("length", Dimension::LENGTH, "span").required("length: 1.4 m").above_zero(),

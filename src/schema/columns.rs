@@ -33,6 +33,7 @@ const RAMP: &[Column] = &[
     column("force_scatter_n", Dimension::FORCE),
     column("relaxation_n", Dimension::FORCE),
     TANGENT_STIFFNESS,
+    TIME,
 ];
 
 const SWEEP: &[Column] = &[STEP, WALL_TIME, VELOCITY, DISPLACEMENT, RESTORING_FORCE, column("damping_force_n", Dimension::FORCE)];
@@ -85,6 +86,14 @@ const CYCLE: &[Column] = &[
     column("min_force_n", Dimension::FORCE),
 ];
 
+/// What an impact on a storey has besides: one row a step and storey.
+const STOREY: &[Column] = &[
+    column("storey", Dimension::NUMBER),
+    column("drift_m", Dimension::LENGTH),
+    column("storey_shear_n", Dimension::FORCE),
+    column("storey_energy_j", Dimension::ENERGY),
+];
+
 /// One row a step and storey; the energies are those of the whole frame.
 const SHAKE: &[Column] = &[
     STEP,
@@ -130,7 +139,7 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
     let (own, more): (&[Column], &[Column]) = match kind {
         Kind::StiffnessRamp | Kind::Move | Kind::Unload => (RAMP, &[]),
         Kind::DampingSweep => (SWEEP, &[]),
-        Kind::Impact => (IMPACT, &[]),
+        Kind::Impact => (IMPACT, STOREY),
         Kind::Cycle => (CYCLE, &[]),
         Kind::Shake => (SHAKE, &[]),
         Kind::Escalate => (ESCALATE, IMPACT),

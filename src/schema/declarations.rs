@@ -14,6 +14,7 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
         Field::quantity("mass", Dimension::MASS, "equivalent mass at the struck section")
             .above_zero()
             .or_said("density * area * length / 2"),
+        Field::quantity("mass_uncertainty", Dimension::MASS, "standard uncertainty of the mass").or(0.0, "kg").at_least_zero(),
         Field::quantity("length", Dimension::LENGTH, "length of the beam").above_zero(),
         Field::quantity("area", Dimension::AREA, "area of the cross-section").above_zero(),
         Field::quantity("density", Dimension::DENSITY, "density of the material").above_zero(),
@@ -50,6 +51,7 @@ pub(super) const STRIKER: BlockKind = BlockKind {
     procedure: false,
     fields: &[
         Field::quantity("mass", Dimension::MASS, "mass of the striker").required("mass = 20 kg").above_zero(),
+        Field::quantity("mass_uncertainty", Dimension::MASS, "standard uncertainty of the mass").or(0.0, "kg").at_least_zero(),
         Field::quantity(
             "velocity",
             Dimension::VELOCITY,
@@ -57,6 +59,9 @@ pub(super) const STRIKER: BlockKind = BlockKind {
         )
         .above_zero()
         .or_said("sqrt(2 gn * drop_height), or sqrt(2 gn * arm * (1 - cos(angle)))"),
+        Field::quantity("velocity_uncertainty", Dimension::VELOCITY, "standard uncertainty of the velocity, however it is given")
+            .or(0.0, "m/s")
+            .at_least_zero(),
         Field::quantity("drop_height", Dimension::LENGTH, "height of fall that gives the velocity").above_zero(),
         Field::quantity("arm", Dimension::LENGTH, "length of a pendulum, to its centre of mass").above_zero(),
         Field::quantity("angle", Dimension::NUMBER, "from which a pendulum is let go, measured from where it hangs")

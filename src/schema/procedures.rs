@@ -9,6 +9,13 @@ pub(super) const SPECIMEN: Field =
 
 const SPEED: Field = Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own");
 
+const WATCHED: &[Field] = &[
+    Field::count("readings", 3.0, 10_000.0, "in each pause, closer at first").or(20.0, ""),
+    Field::quantity("accuracy", Dimension::FORCE, "to which the force is to be known: how long a pause must be")
+        .above_zero()
+        .or_said("the declared noise of the load cell"),
+];
+
 pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
     kind: Kind::StiffnessRamp,
     keyword: &["stiffness", "ramp"],
@@ -32,6 +39,19 @@ pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
             "what is fitted to force on displacement",
         )
         .or_said("linear"),
+        Field::choice(
+            "relaxation",
+            &[
+                Variant::with("exponential", WATCHED, "R∞ + A e^(−t/τ) in every pause, one τ for all"),
+                Variant::with(
+                    "standard_linear_solid",
+                    WATCHED,
+                    "a spring beside a spring and a dashpot, through all moves and pauses; a move is taken as even",
+                ),
+            ],
+            "what is fitted to the force while it is held, in the pauses of the first repeat",
+        )
+        .or_said("nothing"),
         SPEED,
     ],
     exports: &[],
@@ -124,6 +144,7 @@ pub(super) const IMPACT: BlockKind = BlockKind {
     fields: &[
         Field::reference("striker", Kind::Striker, "what strikes").required("striker = pendulum"),
         SPECIMEN,
+        Field::count("storey", 1.0, 64.0, "the floor of a frame that is struck, from the ground up; a frame needs it"),
         Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5").above_zero().or_said("the specimen's"),
         Field::quantity("stiffness", Dimension::STIFFNESS, "K0, before the first tangent").above_zero().required_on(
             RigKind::Real,
@@ -131,6 +152,13 @@ pub(super) const IMPACT: BlockKind = BlockKind {
             "the behaviour's initial stiffness",
         ),
         Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5").or(0.0, "N*s/m").at_least_zero(),
+        Field::quantities(
+            "damping_ratio",
+            Dimension::NUMBER,
+            "of a frame, one: Rayleigh damping with this ratio in the first two modes; a list: each mode its own",
+        )
+        .within(0.0, 1.0)
+        .or(0.0, ""),
         Field::choice("contact", CONTACTS, "contact law").or_said("rigid"),
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,

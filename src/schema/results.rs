@@ -36,6 +36,11 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     curves::RESULTS[3],
     curves::RESULTS[4],
     curves::RESULTS[5],
+    ResultKind::measured("time_constant", Dimension::TIME, "τ of the relaxation, with `relaxation`"),
+    ResultKind::measured("relaxed_stiffness", Dimension::STIFFNESS, "slope of the forces when all has relaxed"),
+    ResultKind::measured("branch_stiffness", Dimension::STIFFNESS, "what relaxes of a standard linear solid"),
+    ResultKind::measured("remaining_relaxation", Dimension::FORCE, "largest force that a pause left to relax"),
+    ResultKind::measured("needed_pause", Dimension::TIME, "pause that leaves no more to relax than the accuracy asked for"),
 ];
 
 pub(super) const DAMPING_SWEEP: &[ResultKind] = &[
@@ -47,25 +52,29 @@ pub(super) const DAMPING_SWEEP: &[ResultKind] = &[
 ];
 
 pub(super) const IMPACT: &[ResultKind] = &[
-    ResultKind::new("max_displacement", Dimension::LENGTH, "largest displacement of the structure over the run"),
-    ResultKind::new("time_of_max_displacement", Dimension::TIME, "virtual time of the largest displacement"),
-    ResultKind::new("stop_time", Dimension::TIME, "virtual time at which the striker first stood still"),
-    ResultKind::new("residual_displacement", Dimension::LENGTH, "displacement at the end of the run"),
-    ResultKind::new("max_velocity", Dimension::VELOCITY, "largest size of the structure's velocity"),
-    ResultKind::new("max_contact_force", Dimension::FORCE, "largest mean contact force of a step; grows as 1/Δt under `rigid`"),
-    ResultKind::new("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
+    ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement of the structure over the run"),
+    ResultKind::measured("time_of_max_displacement", Dimension::TIME, "virtual time of the largest displacement"),
+    ResultKind::measured("stop_time", Dimension::TIME, "virtual time at which the striker first stood still"),
+    ResultKind::measured("residual_displacement", Dimension::LENGTH, "displacement at the end of the run"),
+    ResultKind::measured("max_velocity", Dimension::VELOCITY, "largest size of the structure's velocity"),
+    ResultKind::measured(
+        "max_contact_force",
+        Dimension::FORCE,
+        "largest mean contact force of a step; grows as 1/Δt under `rigid`",
+    ),
+    ResultKind::measured("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
     ResultKind::count("contacts", "number of blows"),
-    ResultKind::new("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
-    ResultKind::new("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
-    ResultKind::new("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
-    ResultKind::new("absorbed_energy", Dimension::ENERGY, "restoring force integrated up to the largest displacement"),
-    ResultKind::new(
+    ResultKind::measured("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
+    ResultKind::measured("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
+    ResultKind::measured("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
+    ResultKind::measured("absorbed_energy", Dimension::ENERGY, "restoring force integrated up to the largest displacement"),
+    ResultKind::measured(
         "restoring_energy",
         Dimension::ENERGY,
         "restoring force integrated over the run, with what a damper adds to it in continuous mode",
     ),
-    ResultKind::new("damping_energy", Dimension::ENERGY, "energy that the computed `damping` took over the run"),
-    ResultKind::new("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
+    ResultKind::measured("damping_energy", Dimension::ENERGY, "energy that the computed `damping` took over the run"),
+    ResultKind::measured("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
     ResultKind::new(
         "tracking_energy_error",
@@ -80,8 +89,18 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("nrms_error", Dimension::NUMBER, "tracking error over command, root mean squares"),
     ResultKind::new("peak_error", Dimension::LENGTH, "largest measured less commanded displacement, by size"),
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
-    ResultKind::new("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
+    ResultKind::measured("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
     ResultKind::count("steps", "number of steps"),
+    ResultKind::new("contact_duration", Dimension::TIME, "virtual time of the first blow, in whole steps").of_storey(),
+    ResultKind::new("rebound_velocity", Dimension::VELOCITY, "speed of the striker on its way back at the end of the run")
+        .of_storey(),
+    ResultKind::list("floor_displacement", Dimension::LENGTH, "largest size of each floor's displacement").of_storey(),
+    ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift").of_storey(),
+    ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run").of_storey(),
+    ResultKind::list("storey_energy", Dimension::ENERGY, "shear of each storey integrated over its drift, over the run")
+        .of_storey(),
+    ResultKind::new("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey").of_storey(),
+    ResultKind::list("periods", Dimension::TIME, "natural periods, longest first").of_storey(),
 ];
 
 pub(super) const SHAKE: &[ResultKind] = &[

@@ -140,8 +140,25 @@ pub(super) const RIG: BlockKind = BlockKind {
         Field::quantity("zero_count", Dimension::NUMBER, "count at no force, of a load cell that gives raw counts")
             .or(0.0, "")
             .of_real_rigs(),
-        Field::text("calibration", "reference of the calibration"),
+        Field::quantity("force_uncertainty", Dimension::NUMBER, "standard uncertainty of the force calibration, of the force")
+            .or(0.0, "%")
+            .within(0.0, 0.2),
+        Field::quantity(
+            "displacement_uncertainty",
+            Dimension::NUMBER,
+            "standard uncertainty of the displacement calibration, of the displacement",
+        )
+        .or(0.0, "%")
+        .within(0.0, 0.2),
+        Field::quantity("zero_uncertainty", Dimension::FORCE, "standard uncertainty of the load cell's reading of no force")
+            .or(0.0, "N")
+            .at_least_zero(),
+        Field::text("calibration", "reference of the calibration; of the force alone, where `displacement_calibration` is given"),
         Field::text("calibration_due", "last day on which the calibration holds, `YYYY-MM-DD`"),
+        Field::text("force_class", "class of the force measurement, such as one of ISO 7500-1"),
+        Field::text("displacement_calibration", "reference of the calibration of the displacement, where it has one of its own"),
+        Field::text("displacement_calibration_due", "last day on which that calibration holds, `YYYY-MM-DD`"),
+        Field::text("displacement_class", "class of the displacement measurement, such as one of ISO 9513"),
     ],
     exports: &[],
     results: &[],

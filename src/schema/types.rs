@@ -177,6 +177,7 @@ impl Range {
 }
 
 /// A value that can be read from outside a block.
+#[expect(clippy::struct_excessive_bools, reason = "each says one thing of a result, and none follows from another")]
 #[derive(Clone, Copy, Debug)]
 pub struct ResultKind {
     pub name: &'static str,
@@ -187,6 +188,8 @@ pub struct ResultKind {
     pub count: bool,
     /// Whether it is several numbers of one dimension, read as a list: `max(fatigue.energies)`.
     pub list: bool,
+    /// Whether an impact has it only on a storey of a frame.
+    pub of_storey: bool,
     pub doc: &'static str,
 }
 
@@ -392,7 +395,12 @@ impl Variant {
 
 impl ResultKind {
     pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: false, count: false, list: false, doc }
+        Self { name, dimension, measured: false, count: false, list: false, of_storey: false, doc }
+    }
+
+    /// Of an impact on a storey only.
+    pub(super) const fn of_storey(self) -> Self {
+        Self { of_storey: true, ..self }
     }
 
     pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {

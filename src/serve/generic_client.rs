@@ -48,23 +48,31 @@ const SILENCE: Duration = Duration::from_secs(1);
 
 /// Serves a client until one of the two has enough.
 pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, stiffness: &[f64]) -> Ended {
-    let mut words = 0;
-    let ended = talk(connection, specimen, stiffness, &mut words).unwrap_or_else(|ended| ended);
+    let (mut words, mut begun) = (0, Vec::new());
+    let ended = talk(connection, specimen, stiffness, &mut words, &mut begun).unwrap_or_else(|ended| ended);
     if words > 0 && matches!(ended, Ended::Limit(_) | Ended::Rig(_) | Ended::Stopped) {
         specimen.hold();
         // Whatever stops this too has nothing to add to why the session ended.
-        let _ = bid_farewell(connection, specimen, words);
+        let _ = bid_farewell(connection, specimen, words, &begun);
     }
     ended
 }
 
-/// Answers every question with NaN until the client has seen enough. Nothing moves.
-fn bid_farewell(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, words: usize) -> Result<(), Broken> {
+/// Answers every question with NaN until the client has seen enough. Nothing moves. `begun` has come of the first of them.
+fn bid_farewell(
+    connection: &mut Connection<'_>,
+    specimen: &mut Specimen<'_, '_>,
+    words: usize,
+    begun: &[u8],
+) -> Result<(), Broken> {
     let answer: Vec<u8> = std::iter::repeat_n(f64::NAN, words).flat_map(f64::to_le_bytes).collect();
     let mut message = vec![0; 8 * words];
+    message[..begun.len()].copy_from_slice(begun);
+    let mut filled = begun.len();
     let over = Instant::now() + FAREWELL;
     while Instant::now() < over {
-        connection.read_soon(&mut message, specimen, SILENCE)?;
+        connection.read_soon(&mut message[filled..], specimen, SILENCE)?;
+        filled = 0;
         match word(&message, 0) {
             action::SET_TRIAL | action::COMMIT => {}
             action::SHUT_DOWN | action::DIE => return Ok(()),
@@ -79,6 +87,7 @@ fn talk(
     specimen: &mut Specimen<'_, '_>,
     stiffness: &[f64],
     words: &mut usize,
+    begun: &mut Vec<u8>,
 ) -> Result<Ended, Ended> {
     let mut header = [0; HEADER];
     connection.read_all(&mut header, specimen)?;
@@ -89,6 +98,7 @@ fn talk(
     let mut answer = message.clone();
     let (mut settings, mut longest) = (0_u64, 0);
     loop {
+        begun.clear();
         let first = connection.read(&mut message[..1], specimen)?;
         if message[0] == SETTING {
             // The rest of it goes past; the action of any other message begins with a zero.
@@ -100,7 +110,13 @@ fn talk(
             settings += 1;
             continue;
         }
-        connection.read_all(&mut message[first..], specimen)?;
+        // Kept as it comes: where it is broken off here, its end comes all the same.
+        begun.extend_from_slice(&message[..first]);
+        while begun.len() < message.len() {
+            let came = connection.read(&mut message[begun.len()..], specimen)?;
+            begun.extend_from_slice(&message[begun.len()..begun.len() + came]);
+        }
+        begun.clear();
         let asked = word(&message, 0);
         let still = || vec![0.0; axes];
         let values = match asked {

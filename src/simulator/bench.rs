@@ -1,17 +1,11 @@
-//! The bench a simulated controller stands on: an axis that moves at constant speed, a specimen that resists, sensors
-//! with noise and quanta. In: targets, time. Out: where it stands and what it feels, in SI. It speaks no dialect.
+//! The bench a simulated controller stands on: rams that move at constant speed, a structure that resists, sensors with
+//! noise and quanta. In: targets, time. Out: where each ram stands and what it feels, in SI. It speaks no dialect. Most
+//! benches have one ram; what is said without a place is said of the first.
 
-use rand_distr::{Distribution as _, Normal};
-use rand_pcg::Pcg64;
-use rand_pcg::rand_core::SeedableRng as _;
-
-use super::bench_fault::{BenchFault, BenchFaults};
-use crate::mechanics::damping::CellDamping;
-use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::{Behaviour, Interval};
-
-/// A target may lie this far beyond a limit and still be on it, m: the last bits of a turn from mm to m.
-const ROUNDING: f64 = 1e-12;
+use super::bench_fault::BenchFault;
+use super::ram::{Ram, RamSettings};
+use super::structure::Structure;
+use crate::plan::{Behaviour, Frame, Interval};
 
 /// What a bench is made of.
 #[derive(Clone, Debug)]
@@ -35,15 +29,15 @@ pub struct BenchSettings {
 }
 
 /// A move the bench was sent on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SentMove {
     /// s since power-up.
     pub time: f64,
     /// Number of the move, where the dialect has one.
     pub id: Option<u64>,
-    /// m
-    pub target: f64,
-    /// m/s
+    /// One a ram, m.
+    pub targets: Vec<f64>,
+    /// Of the ram with the farthest way, m/s.
     pub speed: f64,
 }
 
@@ -51,25 +45,13 @@ pub struct SentMove {
 #[derive(Debug)]
 pub struct Bench {
     settings: BenchSettings,
-    specimen: SpecimenModel,
-    generator: Pcg64,
+    structure: Structure,
+    rams: Vec<Ram>,
     /// s since power-up.
     time: f64,
-    /// Where the ram is commanded to be now, m.
-    position: f64,
-    /// Where a ram without lag would be, m.
-    reached: f64,
-    /// Where the ram is, m.
-    ram: f64,
-    target: f64,
-    /// m/s
-    speed: f64,
-    /// N, without noise.
-    restoring_force: f64,
-    /// What the cell feels beside it.
-    damping: CellDamping,
-    faults: BenchFaults,
-    /// Force readings so far.
+    /// One a ram, as the specimen has it: N, without noise.
+    restoring_force: Vec<f64>,
+    /// Force readings so far; of several rams those of the first.
     readings: u64,
     /// Targets that lay outside the limits, m.
     violations: Vec<f64>,
@@ -78,54 +60,81 @@ pub struct Bench {
     moves: Vec<SentMove>,
 }
 
+/// The seed of one ram: the bench's own for the first.
+const fn seed_of(seed: u64, ram: u64) -> u64 {
+    seed.wrapping_add(ram.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+}
+
 impl Bench {
+    /// One ram on a specimen of one degree of freedom.
     #[must_use]
     pub fn new(settings: BenchSettings) -> Self {
-        let mut specimen = SpecimenModel::new(&settings.behaviour);
-        let restoring_force = specimen.move_to(0.0);
-        let generator = Pcg64::seed_from_u64(settings.seed);
-        let faults = BenchFaults::none(settings.seed);
-        let damping = CellDamping::new(settings.damping, 0.0).with_rate_of(&settings.behaviour);
-        Self {
+        let BenchSettings { noise, resolution, limits, .. } = settings;
+        let structure = Structure::of_one(&settings.behaviour, settings.damping);
+        // Such a specimen is bent in the rig's own directions.
+        Self::standing(settings, structure, &[RamSettings { sign: 1.0, noise, resolution, limits }])
+    }
+
+    /// A ram at every floor of a frame, the lowest first. Of the settings only those for all rams count.
+    #[must_use]
+    pub fn of_frame(settings: BenchSettings, frame: &Frame, rams: &[RamSettings]) -> Self {
+        Self::standing(settings, Structure::of_frame(frame), rams)
+    }
+
+    fn standing(settings: BenchSettings, structure: Structure, rams: &[RamSettings]) -> Self {
+        let ram = |(number, ram): (u64, &RamSettings)| Ram::new(*ram, seed_of(settings.seed, number));
+        let mut bench = Self {
+            structure,
+            rams: (0..).zip(rams).map(ram).collect(),
             settings,
-            specimen,
-            generator,
             time: 0.0,
-            position: 0.0,
-            reached: 0.0,
-            ram: 0.0,
-            target: 0.0,
-            speed: 0.0,
-            restoring_force,
-            damping,
-            faults,
+            restoring_force: Vec::new(),
             readings: 0,
             violations: Vec::new(),
             targets: Vec::new(),
             moves: Vec::new(),
-        }
+        };
+        bench.restoring_force = bench.structure.bend(&vec![0.0; rams.len()]);
+        bench
     }
 
     /// The same bench with friction on its cell, N: against the last motion, also through a pause, as a virtual rig has it.
     #[must_use]
     pub const fn with_friction(mut self, friction: f64) -> Self {
-        self.damping.coulomb = friction;
+        self.structure.set_friction(friction);
         self
     }
 
-    /// Something goes wrong now.
-    pub fn strike(&mut self, fault: BenchFault) {
-        self.faults.strike(fault, self.time);
+    /// Something goes wrong now with the ram at this place, its specimen or its sensors.
+    pub fn strike(&mut self, ram: usize, fault: BenchFault) {
+        let time = self.time;
+        if let Some(ram) = self.rams.get_mut(ram) {
+            ram.faults.strike(fault, time);
+        }
     }
 
-    /// Something goes wrong at any force reading, with a probability.
-    pub fn strike_by_chance(&mut self, fault: BenchFault, probability: f64) {
-        self.faults.strike_by_chance(fault, probability);
+    /// Something goes wrong at any force reading of the ram at this place, with a probability.
+    pub fn strike_by_chance(&mut self, ram: usize, fault: BenchFault, probability: f64) {
+        if let Some(ram) = self.rams.get_mut(ram) {
+            ram.faults.strike_by_chance(fault, probability);
+        }
     }
 
     #[must_use]
     pub const fn settings(&self) -> &BenchSettings {
         &self.settings
+    }
+
+    /// How many rams it has.
+    #[must_use]
+    pub const fn rams(&self) -> usize {
+        self.rams.len()
+    }
+
+    /// Where targets of the ram at this place may lie, m.
+    #[must_use]
+    pub fn limits_of(&self, ram: usize) -> Interval {
+        self.rams[ram].settings.limits
     }
 
     /// s since power-up.
@@ -141,81 +150,115 @@ impl Bench {
             return;
         }
         self.time = to;
-        let left = self.target - self.position;
-        let before = self.position;
-        if left != 0.0 {
-            self.damping.last_direction = left.signum();
-            let way = self.speed * seconds;
-            self.position = if left.abs() <= way { self.target } else { self.position + way.copysign(left) };
+        if self.moving() {
+            let velocities = self.velocities();
+            self.structure.goes(&velocities);
         }
-        // A sound ram is at its command to the last bit, which a sum of ways would not be.
-        let sound = self.faults.reach == 1.0 && self.reached == before;
-        self.reached = if sound { self.position } else { self.reached + self.faults.reach * (self.position - before) };
-        let follows = if self.faults.lag > 0.0 { -(-seconds / self.faults.lag).exp_m1() } else { 1.0 };
-        let ram = if follows == 1.0 { self.reached } else { self.ram + follows * (self.reached - self.ram) };
-        if ram != self.ram {
-            self.ram = ram;
-            self.restoring_force = self.faults.specimen_force(ram, self.specimen.move_to(ram));
+        // All arrive together; a ram that lags goes all the time.
+        let going = self.rams.iter().map(|ram| ram.arrives_in(seconds)).fold(0.0, f64::max);
+        let before: Vec<f64> = self.rams.iter().map(|ram| ram.at).collect();
+        for ram in &mut self.rams {
+            ram.advance(seconds);
+        }
+        let moved: Vec<f64> = self.rams.iter().zip(before).map(|(ram, before)| ram.settings.sign * (ram.at - before)).collect();
+        self.structure.relax(&moved, going, seconds);
+        if moved.iter().any(|moved| *moved != 0.0) {
+            let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.at).collect();
+            let forces = self.structure.bend(&places);
+            let felt = self.rams.iter_mut().zip(forces).map(|(ram, force)| ram.faults.specimen_force(ram.at, force));
+            self.restoring_force = felt.collect();
         }
     }
 
     /// Sets off to `target` (m) at `speed` (m/s).
     pub fn go(&mut self, target: f64, speed: f64) {
-        self.go_as(None, target, speed);
+        self.go_as(None, &[target], speed);
     }
 
-    /// Sets off to `target` (m) at `speed` (m/s) for a move that has a number.
-    pub fn go_as(&mut self, id: Option<u64>, target: f64, speed: f64) {
-        self.judge(target);
-        self.targets.push(target);
-        self.target = target;
-        self.speed = speed.abs().min(self.settings.top_speed);
-        self.moves.push(SentMove { time: self.time, id, target, speed: self.speed });
+    /// Sets off to a target a ram (m) for a move that may have a number: all arrive together, the one with the farthest way
+    /// at `speed` (m/s).
+    pub fn go_as(&mut self, id: Option<u64>, targets: &[f64], speed: f64) {
+        let speed = speed.abs().min(self.settings.top_speed);
+        let farthest = self.rams.iter().zip(targets).map(|(ram, to)| (to - ram.position).abs()).fold(0.0, f64::max);
+        for (ram, target) in (0..self.rams.len()).zip(targets) {
+            self.judge(ram, *target);
+            self.targets.push(*target);
+            let ram = &mut self.rams[ram];
+            let way = (target - ram.position).abs();
+            ram.speed = if way == farthest { speed } else { speed * (way / farthest) };
+            ram.target = *target;
+        }
+        self.moves.push(SentMove { time: self.time, id, targets: targets.to_vec(), speed });
     }
 
     /// The controller refused a target (m): it goes nowhere, but was asked to.
     pub fn refuse(&mut self, target: f64) {
-        self.judge(target);
+        self.judge(0, target);
     }
 
-    fn judge(&mut self, target: f64) {
-        let Interval { low, high } = self.settings.limits;
-        let within = low - ROUNDING <= target && target <= high + ROUNDING;
-        if !within {
+    /// The same of targets, one a ram.
+    pub fn refuse_all(&mut self, targets: &[f64]) {
+        for (ram, target) in (0..self.rams.len()).zip(targets) {
+            self.judge(ram, *target);
+        }
+    }
+
+    fn judge(&mut self, ram: usize, target: f64) {
+        if !self.rams[ram].allows(target) {
             self.violations.push(target);
         }
     }
 
     /// Stops where it stands.
-    pub const fn hold(&mut self) {
-        self.target = self.position;
+    pub fn hold(&mut self) {
+        for ram in &mut self.rams {
+            ram.target = ram.position;
+        }
     }
 
+    /// Whether any ram does.
     #[must_use]
     pub fn moving(&self) -> bool {
-        self.position != self.target
+        self.rams.iter().any(Ram::moving)
     }
 
     /// Where it is commanded to be now, m: what a controller knows that counts its own steps.
     #[must_use]
-    pub const fn commanded(&self) -> f64 {
-        self.position
+    pub fn commanded(&self) -> f64 {
+        self.commanded_of(0)
+    }
+
+    #[must_use]
+    pub fn commanded_of(&self, ram: usize) -> f64 {
+        self.rams[ram].position
     }
 
     /// m, as its transducer reads it.
     pub fn displacement(&mut self) -> f64 {
-        let quantum = self.settings.resolution;
-        let read = self.faults.read_displacement(self.ram);
-        if quantum > 0.0 { (read / quantum).round() * quantum } else { read }
+        self.displacement_of(0)
+    }
+
+    pub fn displacement_of(&mut self, ram: usize) -> f64 {
+        self.rams[ram].displacement()
     }
 
     /// N, as its cell feels it, with noise.
     pub fn force(&mut self) -> f64 {
-        self.readings += 1;
-        let way = if self.moving() { (self.target - self.position).signum() } else { 0.0 };
-        let noise = Normal::new(0.0, self.settings.noise).map_or(0.0, |normal| normal.sample(&mut self.generator));
-        let felt = self.damping.felt(self.restoring_force, self.speed * way) + noise;
-        self.faults.read_force(felt, self.time)
+        self.force_of(0)
+    }
+
+    pub fn force_of(&mut self, ram: usize) -> f64 {
+        self.readings += u64::from(ram == 0);
+        let velocities = self.velocities();
+        let felt = self.structure.felt(&self.restoring_force, &velocities)[ram];
+        let ram = &mut self.rams[ram];
+        let at_the_cell = ram.settings.sign * felt;
+        ram.force(at_the_cell, self.time)
+    }
+
+    /// Of each ram, as the specimen has it, m/s.
+    fn velocities(&self) -> Vec<f64> {
+        self.rams.iter().map(|ram| ram.settings.sign * ram.velocity()).collect()
     }
 
     /// The force as a raw converter of 24 bits gives it.
@@ -233,13 +276,13 @@ impl Bench {
         count
     }
 
-    /// What the controller puts where a force stands: `ordinary`, unless a fault has something else for it. To be asked
-    /// once for each number sent.
-    pub fn shown_force(&mut self, ordinary: String) -> String {
-        self.faults.take_number().unwrap_or(ordinary)
+    /// What the controller puts where a force of the ram at this place stands: `ordinary`, unless a fault has something else
+    /// for it. To be asked once for each number sent.
+    pub fn shown_force(&mut self, ram: usize, ordinary: String) -> String {
+        self.rams[ram].faults.take_number().unwrap_or(ordinary)
     }
 
-    /// Force readings so far.
+    /// Force readings so far; of several rams those of the first.
     #[must_use]
     pub const fn readings(&self) -> u64 {
         self.readings
@@ -257,7 +300,7 @@ impl Bench {
         &self.violations
     }
 
-    /// Every target it was sent to, m, in order.
+    /// Every target it was sent to, m, in order; of several rams one after the other.
     #[must_use]
     pub fn targets(&self) -> &[f64] {
         &self.targets
@@ -268,6 +311,7 @@ impl Bench {
 mod tests {
     use super::super::testing::bench;
     use super::*;
+    use crate::plan::Storey;
 
     #[test]
     fn it_moves_evenly_and_stops_at_its_target() {
@@ -285,7 +329,7 @@ mod tests {
         bench.advance(20.0);
         assert!((bench.displacement() - 0.006).abs() < 1e-12, "no faster than it can");
         assert_eq!((bench.violations(), bench.targets().len()), (&[0.02][..], 2));
-        assert_eq!(bench.moves()[1], SentMove { time: 10.0, id: None, target: 0.02, speed: 0.01 });
+        assert_eq!(bench.moves()[1], SentMove { time: 10.0, id: None, targets: vec![0.02], speed: 0.01 });
         bench.refuse(f64::NAN);
         assert_eq!(bench.violations().len(), 2, "what is no number is outside");
     }
@@ -305,7 +349,7 @@ mod tests {
     /// The bench sent to 5 mm, a second after `fault` struck: displacement in mm, force in N.
     fn after(fault: BenchFault) -> (f64, f64) {
         let mut bench = bench();
-        bench.strike(fault);
+        bench.strike(0, fault);
         bench.go(0.005, 0.01);
         for tick in 1..=100 {
             bench.advance(f64::from(tick) * 0.01);
@@ -336,22 +380,87 @@ mod tests {
     #[test]
     fn a_frozen_sensor_stays_and_a_spike_passes() {
         let mut bench = bench();
-        bench.strike(BenchFault::FreezeForce);
-        bench.strike(BenchFault::Spike(7.0));
+        bench.strike(0, BenchFault::FreezeForce);
+        bench.strike(0, BenchFault::Spike(7.0));
         assert_eq!(bench.force(), 7.0);
         bench.go(0.005, 0.01);
         bench.advance(1.0);
         assert_eq!((bench.force(), bench.readings()), (7.0, 2));
-        bench.strike(BenchFault::Number("OVL".to_owned()));
-        assert_eq!(bench.shown_force("1.0".to_owned()), "OVL");
-        assert_eq!(bench.shown_force("1.0".to_owned()), "1.0");
+        bench.strike(0, BenchFault::Number("OVL".to_owned()));
+        assert_eq!(bench.shown_force(0, "1.0".to_owned()), "OVL");
+        assert_eq!(bench.shown_force(0, "1.0".to_owned()), "1.0");
     }
 
     #[test]
     fn a_fault_by_chance_comes_about_as_often_as_said() {
         let mut bench = bench();
-        bench.strike_by_chance(BenchFault::Spike(100.0), 0.1);
+        bench.strike_by_chance(0, BenchFault::Spike(100.0), 0.1);
         let spikes = (0..10_000).filter(|_| bench.force() == 100.0).count();
         assert!((850..1150).contains(&spikes), "{spikes} of 10 000, expected 1000 with a deviation of 30");
+    }
+
+    const RAM: RamSettings = RamSettings { sign: 1.0, noise: 0.0, resolution: 0.0, limits: Interval { low: -0.01, high: 0.01 } };
+
+    fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
+        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
+    }
+
+    /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
+    fn frame() -> Frame {
+        Frame::of_storeys(vec![
+            storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
+            storey(2000.0, Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 }),
+        ])
+    }
+
+    #[test]
+    fn rams_of_a_frame_arrive_together_and_feel_differences_of_storey_shears() {
+        let settings = bench().settings().clone();
+        let mut bench = Bench::of_frame(settings.clone(), &frame(), &[RAM, RAM]);
+        bench.go_as(Some(1), &[0.001, 0.002], 0.01);
+        bench.advance(0.1);
+        // Half the way: drifts of half a millimetre, shears 1.5 N and 1 N.
+        assert!((bench.commanded_of(0) - 0.0005).abs() < 1e-15 && (bench.commanded_of(1) - 0.001).abs() < 1e-15);
+        assert!((bench.force_of(0) - 0.5).abs() < 1e-12 && (bench.force_of(1) - 1.0).abs() < 1e-12);
+        bench.advance(0.21);
+        assert!(!bench.moving());
+        // A drift of 4 mm yields at 4 N.
+        bench.go_as(Some(2), &[0.001, 0.005], 0.01);
+        bench.advance(1.0);
+        assert!((bench.force_of(0) + 1.0).abs() < 1e-12 && (bench.force_of(1) - 4.0).abs() < 1e-12);
+        assert_eq!((bench.readings(), bench.targets().len()), (2, 4), "readings of the first ram");
+        bench.go_as(Some(3), &[0.0, 0.02], 0.01);
+        assert_eq!(bench.violations(), [0.02]);
+        let turned = RamSettings { sign: -1.0, ..RAM };
+        let matrix = Frame { storeys: Vec::new(), ..frame() };
+        let mut bench = Bench::of_frame(settings, &matrix, &[RAM, turned]);
+        bench.go_as(None, &[0.001, -0.005], 0.01);
+        bench.advance(1.0);
+        // K = [5, −2; −2, 2] kN/m at (1, 5) mm; the second ram counts the other way round.
+        assert!((bench.force_of(0) + 5.0).abs() < 1e-12 && (bench.force_of(1) + 8.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn each_ram_has_faults_and_a_noise_of_its_own() {
+        let noisy = RamSettings { noise: 1.0, ..RAM };
+        let mut bench = Bench::of_frame(bench().settings().clone(), &frame(), &[noisy, noisy]);
+        assert_ne!(bench.force_of(0), bench.force_of(1));
+        bench.strike(1, BenchFault::FreezeForce);
+        let frozen = bench.force_of(1);
+        assert!(bench.force_of(1) == frozen && bench.force_of(0) != bench.force_of(0));
+    }
+
+    /// 100 kN/m at 1 mm, beside it 50 kN/m of 2 s, after 0.1 s on the way at 10 mm/s: as a virtual rig has it, whatever the ticks.
+    #[test]
+    fn what_relaxes_beside_a_specimen_is_felt_also_at_rest() {
+        let of = Box::new(Behaviour::Elastic { stiffness: 1e5 });
+        let behaviour = Behaviour::Maxwell { of, stiffness: 5e4, time_constant: 2.0 };
+        let mut relaxing = Bench::new(BenchSettings { behaviour, noise: 0.0, damping: 0.0, ..bench().settings().clone() });
+        relaxing.go(0.001, 0.01);
+        for tick in 1..=40 {
+            relaxing.advance(f64::from(tick) * 0.025);
+        }
+        let held = 5e4 * 0.01 * 2.0 * (1.0 - f64::exp(-0.05)) * f64::exp(-0.45);
+        assert!((relaxing.force() - 100.0 - held).abs() < 1e-9, "{} N", relaxing.force());
     }
 }

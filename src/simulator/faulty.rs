@@ -149,9 +149,10 @@ impl Faulty {
             !strikes
         });
         for fault in due {
+            let ram = fault.ram;
             match (fault.what, fault.when) {
-                (What::Bench(fault), When::EachReading(probability)) => bench.strike_by_chance(fault, probability),
-                (What::Bench(fault), _) => bench.strike(fault),
+                (What::Bench(fault), When::EachReading(probability)) => bench.strike_by_chance(ram, fault, probability),
+                (What::Bench(fault), _) => bench.strike(ram, fault),
                 (What::Line(LineFault::HangUp), _) => self.hang_up(),
                 (What::Line(LineFault::StopReading), _) => self.deaf = true,
                 (What::Line(LineFault::FreezeFirmware(seconds)), _) => self.frozen_until = bench.time() + seconds,

@@ -5,6 +5,7 @@
 //! 0.012000 actuator > >MOVE 41 17 1.250000 0.500000*6858\n          bytes from the host
 //! 0.012000 actuator < <ACK 41 7F3A MOVING*1F01\n                    bytes to the host
 //! 0.012000 bench move 17 to 0.00125 m at 0.0005 m/s                 or `move -` where the dialect has no numbers
+//! 0.012000 bench move 17 to 0.00125 m, -0.002 m at 0.0005 m/s       of several rams
 //! 9.000000 bench outside 0.0300000 m                                a target outside the limits
 //! 9.500000 actuator (hung up)
 //! 9.600000 end: 1 target outside the limits: FAILED                 or `end: 12 moves, all within the limits: ok`
@@ -55,7 +56,8 @@ impl Log {
     pub fn follow(&mut self, bench: &Bench) {
         for sent in &bench.moves()[self.moves..] {
             let id = sent.id.map_or_else(|| "-".to_owned(), |id| id.to_string());
-            self.event(sent.time, format_args!("bench move {id} to {} m at {} m/s", sent.target, sent.speed));
+            let targets: Vec<String> = sent.targets.iter().map(|target| format!("{target} m")).collect();
+            self.event(sent.time, format_args!("bench move {id} to {} at {} m/s", targets.join(", "), sent.speed));
         }
         for target in &bench.violations()[self.violations..] {
             self.event(bench.time(), format_args!("bench outside {target} m"));
@@ -106,7 +108,7 @@ mod tests {
         log.from_host(0.5, "actuator", b">HELLO 1*\xff\n");
         log.to_host(0.5, "actuator", b"<\0");
         bench.advance(1.25);
-        bench.go_as(Some(17), 0.005, 0.002);
+        bench.go_as(Some(17), &[0.005], 0.002);
         bench.go(0.006, 1.0);
         log.follow(&bench);
         log.happened(2.0, "load cell", "hung up");

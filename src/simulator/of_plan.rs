@@ -3,8 +3,8 @@
 
 use super::firmware::{Grbl, Hx711, Indicator, Instron, Mark10, Mark10Gauge, Modbus, Native, NativeSettings, Nees, Scpi};
 use super::script::Script;
-use super::{Bench, BenchSettings, Firmware, Log, Stand};
-use crate::plan::{DeviceLink, Dialect, Interval, Plan, RealLink, Specimen};
+use super::{Bench, BenchSettings, Firmware, Log, RamSettings, Stand};
+use crate::plan::{Behaviour, DeviceLink, Dialect, Interval, Plan, RealLink, Specimen};
 
 /// How a simulated controller says that it is one.
 const SIMULATED: &str = "PSD-SIM";
@@ -24,6 +24,8 @@ pub enum NoStandIn {
     Virtual,
     #[error("the specimen has no `behaviour`, so that there is nothing to bend")]
     NoBehaviour,
+    #[error("the script names axis {named}, and the rig has {axes}")]
+    NoSuchAxis { named: usize, axes: usize },
 }
 
 /// The stand in place of the plan's rig; its lines are the actuator's and, where it has one of its own, the load cell's.
@@ -34,6 +36,10 @@ pub enum NoStandIn {
 pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u16>) -> Result<Stand, NoStandIn> {
     let link = plan.rig.link.as_real().ok_or(NoStandIn::Virtual)?;
     let bench = bench(plan, link, seed)?;
+    let axes = bench.rams();
+    if let Some(named) = script.faults.iter().map(|fault| fault.ram + 1).find(|named| *named > axes) {
+        return Err(NoStandIn::NoSuchAxis { named, axes });
+    }
     let mut controllers = vec![("actuator", controller(plan, link, &link.actuator, &bench, boot))];
     if let Some(load_cell) = &link.load_cell {
         controllers.push(("load cell", controller(plan, link, load_cell, &bench, boot)));
@@ -43,8 +49,7 @@ pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u
 
 fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
     let specimen = specimen(plan).ok_or(NoStandIn::NoBehaviour)?;
-    let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
-    let settings = BenchSettings {
+    let settings = |behaviour| BenchSettings {
         behaviour,
         damping: specimen.damping,
         noise: link.readings.noise,
@@ -52,10 +57,24 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
         newtons_per_count: plan.rig.calibration.newtons_per_count.unwrap_or_else(|| capacity(link) / COUNTS),
         zero_count: plan.rig.calibration.zero_count,
         seed,
-        limits: at_rig(plan, plan.limits.displacement),
+        limits: at_rig(plan.rig.sign, plan.limits.displacement),
         top_speed: plan.limits.speed.high,
     };
-    Ok(Bench::new(settings).with_friction(specimen.coulomb))
+    if let Some(frame) = &specimen.frame {
+        // The storeys stand in place of it.
+        let nothing = Behaviour::Elastic { stiffness: 0.0 };
+        let rams: Vec<RamSettings> = (0..frame.degrees_of_freedom()).map(|axis| ram(plan, link, axis)).collect();
+        return Ok(Bench::of_frame(settings(nothing), frame, &rams));
+    }
+    let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
+    Ok(Bench::new(settings(behaviour)).with_friction(specimen.coulomb))
+}
+
+/// The ram of a frame's floor.
+fn ram(plan: &Plan, link: &RealLink, axis: usize) -> RamSettings {
+    let (sign, readings) = (plan.rig.sign_of(axis), link.readings_of(axis));
+    let limits = at_rig(sign, plan.rig.limits_of(axis, &plan.limits).displacement);
+    RamSettings { sign, noise: readings.noise, resolution: readings.resolution, limits }
 }
 
 /// The specimen that the first procedure names.
@@ -65,21 +84,25 @@ fn specimen(plan: &Plan) -> Option<&Specimen> {
 
 /// What the cell carries, N.
 fn capacity(link: &RealLink) -> f64 {
-    let Interval { low, high } = link.readings.force_range;
-    let capacity = low.abs().max(high.abs());
+    let of_axis = |axis| {
+        let Interval { low, high } = link.readings_of(axis).force_range;
+        low.abs().max(high.abs())
+    };
+    let capacity = (0..link.axes.len().max(1)).map(of_axis).fold(0.0, f64::max);
     if capacity.is_finite() && capacity > 0.0 { capacity } else { CAPACITY }
 }
 
 /// The rig's own directions may be the other way round than the plan's.
-fn at_rig(plan: &Plan, interval: Interval) -> Interval {
-    if plan.rig.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
+fn at_rig(sign: f64, interval: Interval) -> Interval {
+    if sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
 }
 
 fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench, boot: Option<u16>) -> Box<dyn Firmware> {
     let serial_number = device.serial_number.clone().unwrap_or_else(|| "0042".to_owned());
     match &device.dialect {
         Dialect::Native => {
-            let force_limits = at_rig(plan, plan.limits.force);
+            let of_axis = |axis| at_rig(plan.rig.sign_of(axis), plan.rig.limits_of(axis, &plan.limits).force);
+            let force_limits = (0..bench.rams()).map(of_axis).collect();
             let settings = NativeSettings { serial_number, force_limits, watchdog: link.watchdog, boot };
             Box::new(Native::new(settings, bench))
         }

@@ -3,7 +3,8 @@
 //!
 //! A line is `WHEN: WHAT`; `#` begins a comment. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3
 //! replies`, `each reply` or `each reading`; the last two may end with a probability, `with 0.01`. WHAT may begin with
-//! `load cell`, which is then the line it befalls. WHAT is one of
+//! `load cell`, which is then the line it befalls, or with `axis 2`, which is then the ram, of what befalls one. WHAT is
+//! one of
 //!
 //! ```text
 //! drop REPLIES                     split REPLIES at 5 bytes        split REPLIES every 1 bytes
@@ -35,6 +36,8 @@ pub struct Script {
 pub struct Fault {
     /// On the line of the load cell rather than of the actuator.
     pub on_load_cell: bool,
+    /// Place of the ram it befalls, where it befalls one; 0: the first.
+    pub ram: usize,
     pub when: When,
     pub what: What,
 }
@@ -135,8 +138,12 @@ fn fault(line: &str) -> Result<Fault, String> {
     let probability = words.probability()?;
     let when = self::when(when, probability)?;
     let on_load_cell = words.take(&["load", "cell"]);
+    let ram = if words.take(&["axis"]) { words.axis()? } else { 0 };
     let what = self::what(&mut words)?;
     words.end()?;
+    if ram > 0 && !matches!(what, What::Bench(_)) {
+        return Err("only what befalls a ram, its specimen or its sensors has an axis".to_owned());
+    }
     match (&when, &what) {
         (When::EachReading(_), What::Bench(BenchFault::Spike(_) | BenchFault::Number(_)))
         | (When::EachReply(_), What::Replies(..)) => {}
@@ -144,7 +151,7 @@ fn fault(line: &str) -> Result<Fault, String> {
         (When::EachReply(_), _) => return Err("each reply can have only what befalls a reply".to_owned()),
         _ => {}
     }
-    Ok(Fault { on_load_cell, when, what })
+    Ok(Fault { on_load_cell, ram, when, what })
 }
 
 fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
@@ -325,6 +332,15 @@ impl<'a> Words<'a> {
         word.parse().map_err(|_| format!("`{word}` is no count"))
     }
 
+    /// The place of an axis, which is counted from 1.
+    fn axis(&mut self) -> Result<usize, String> {
+        let word = self.next()?;
+        word.parse::<usize>()
+            .ok()
+            .and_then(|axis| axis.checked_sub(1))
+            .ok_or_else(|| format!("`{word}` is no axis: the first is 1"))
+    }
+
     fn size(&mut self) -> Result<usize, String> {
         let word = self.next()?;
         word.parse().map_err(|_| format!("`{word}` is no count"))
@@ -387,11 +403,12 @@ mod tests {
         let fault = one("after 12 moves: drop replies 3  # and why");
         assert_eq!(
             fault,
-            Fault { on_load_cell: false, when: When::AfterMoves(12), what: What::Replies(ReplyFault::Drop, Some(3)) }
+            Fault { on_load_cell: false, ram: 0, when: When::AfterMoves(12), what: What::Replies(ReplyFault::Drop, Some(3)) }
         );
         assert_eq!(one("at 4.5 s: hang up").when, When::At(4.5));
         assert_eq!(one("after 20 readings: spike 500 N").what, What::Bench(BenchFault::Spike(500.0)));
         assert_eq!(one("each reply: flip a bit with 0.01").when, When::EachReply(0.01));
+        assert_eq!((one("at 0 s: axis 2 stick").ram, one("at 0 s: stick").ram), (1, 0));
         assert!(one("at 0 s: load cell split replies for ever every 1 bytes").on_load_cell);
         assert_eq!(one("at 1 s: number \"\"").what, What::Bench(BenchFault::Number(String::new())));
         let fill = ReplyFault::Garbage { count: 3, byte: Some(255), place: Place::Inside };

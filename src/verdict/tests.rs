@@ -10,6 +10,7 @@ fn record(outcome: Outcome) -> Record {
         name,
         value: ResultValue::Number { value, uncertainty },
         dimension: Dimension::LENGTH,
+        contributions: Vec::new(),
     };
     Record {
         rig: Identity {

@@ -1,6 +1,7 @@
 //! The paper's beam over real pseudo-terminals and TCP: each dialect's stand-in and `psd run` as two processes. In: the
 //! rigs of `rigs`. Out: the virtual run's results, within what the rig resolves. No time is measured.
 
+mod probe;
 mod rigs;
 
 use std::fs::{self, File};
@@ -82,14 +83,19 @@ fn ready(folder: &Path) -> bool {
     false
 }
 
-/// Runs a case on both rigs; the error says what was wrong, with what both processes said.
-fn run(case: &Case) -> Result<(), String> {
-    let folder = tempfile::tempdir().expect("a folder");
-    let folder = folder.path();
+/// The plan of a case and what it uses, with ports of its own.
+fn write_plan(case: &Case, folder: &Path) {
     let beam = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/lib/gfrp_beam.psd");
     fs::copy(beam, folder.join("gfrp_beam.psd")).expect("the beam");
     let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a free port");
     fs::write(folder.join("plan.psd"), case.plan(folder, &free.to_string())).expect("the plan");
+}
+
+/// Runs a case on both rigs; the error says what was wrong, with what both processes said.
+fn run(case: &Case) -> Result<(), String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    write_plan(case, folder);
     let said = |what: &str| {
         let log = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_default();
         let bytes = log("bytes.txt");

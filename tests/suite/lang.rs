@@ -20,7 +20,10 @@ const STAGES: &[(&str, u8)] =
     &[("ok", 0), ("syntax_error", 2), ("check_error", 2), ("run_error", 3), ("aborted", 4), ("fail", 1)];
 
 /// Codes without a case of their own, and why.
-const WITHOUT_CASE: &[(Code, &str)] = &[(Code::TooManyFiles, "needs 64 files; the page of `psd explain` has the plan")];
+const WITHOUT_CASE: &[(Code, &str)] = &[
+    (Code::TooManyFiles, "needs 64 files; the page of `psd explain` has the plan"),
+    (Code::NoRoom, "is of the machine; tests/system/disk.rs has a disk that is too small"),
+];
 
 struct Case {
     stage: String,
@@ -52,14 +55,19 @@ impl Case {
     fn options(&self) -> Options {
         let mut options = Options::default();
         let given = self.text.lines().next().and_then(|line| line.strip_prefix("# options: --")).unwrap_or_default();
-        match given.split_once(' ').map(|(option, value)| (option, value.trim().trim_matches('"'))) {
-            Some(("set", value)) => {
-                let (name, value) = value.split_once('=').expect("`--set` has a name and a value");
-                options.settings.push((name.to_owned(), value.to_owned()));
+        for given in given.split(" --").filter(|given| !given.is_empty()) {
+            let (option, value) = given.split_once(' ').unwrap_or((given, ""));
+            let value = value.trim().trim_matches('"');
+            match option {
+                "set" => {
+                    let (name, value) = value.split_once('=').expect("`--set` has a name and a value");
+                    options.settings.push((name.to_owned(), value.to_owned()));
+                }
+                "rig" => options.rig = Some(value.to_owned()),
+                // A run that nobody attends: `--yes`, and no `--operator`.
+                "unattended" => options.unattended = true,
+                other => panic!("{}: unknown option `{other}`", self.name),
             }
-            Some(("rig", value)) => options.rig = Some(value.to_owned()),
-            Some((other, _)) => panic!("{}: unknown option `{other}`", self.name),
-            None => {}
         }
         options
     }

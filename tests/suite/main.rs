@@ -21,4 +21,5 @@ mod serve;
 mod shake;
 mod shake_continuous;
 mod specimens_page;
+mod storey;
 mod sweep;

@@ -246,7 +246,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
     let plain = console::verdict_text(&finished.run(), false).replace('\u{a0}', " ");
     insta::assert_snapshot!(plain, @r"
     PASS  Simply supported beam, midspan impact  (simulated rig: rehearsal)
-      pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 12.6 mm
+      pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 0.0126 m
       pass  energy closes    1.599 × 10⁻¹⁵        ≤ 0.01    margin 0.0100
       decision rule: simple; ± is U = 2u, the value alone decides
       note: Parameter impact_speed was set to 1 m/s for this run.
@@ -281,8 +281,14 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     history.steps.truncate(1);
     finished.record.procedures[2].complete = false;
     finished.record.procedures[2].results.clear();
-    finished.record.procedures[0].history =
-        History::Ramp(RampHistory { steps: Vec::new(), fit: None, bilinear: None, multilinear: None });
+    finished.record.procedures[0].history = History::Ramp(RampHistory {
+        steps: Vec::new(),
+        fit: None,
+        bilinear: None,
+        multilinear: None,
+        holds: Vec::new(),
+        relaxation: None,
+    });
     finished.record.outcome = Outcome::Aborted { reason: "force 12.1 kN is outside its limit".into() };
     finished.assessment.verdict = Verdict::Aborted;
     finished.assessment.requirements[0].verdict = Verdict::Inconclusive;

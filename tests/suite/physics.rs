@@ -7,6 +7,7 @@ mod identification;
 mod methods;
 mod portal;
 mod reference;
+mod relaxation;
 mod specimens;
 mod support;
 mod tracking;

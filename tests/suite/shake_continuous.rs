@@ -6,7 +6,7 @@ use std::path::Path;
 
 use psd::check::{LoadFault, Loader, Options, check};
 use psd::plan::Plan;
-use psd::record::{History, Outcome, Record, ShakeStep};
+use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 

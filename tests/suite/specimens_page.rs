@@ -48,14 +48,8 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
     let record = run(&plan, &mut rig, &mut Unwatched);
     let assessment = assess(&plan, &record);
     assert_eq!(assessment.verdict, Verdict::Pass, "{name}: {:?}", assessment.requirements);
-    let provenance = Provenance {
-        run_id: name.to_owned(),
-        psd_version: String::new(),
-        plan_sha256: String::new(),
-        date: None,
-        real: None,
-        amends: None,
-    };
+    let provenance =
+        Provenance { run_id: name.to_owned(), psd_version: String::new(), plan_sha256: String::new(), ..Provenance::default() };
     let files = vectors(&Run { plan: &plan, record: &record, assessment: &assessment, provenance: &provenance })
         .expect("the outputs can be made");
     let is_loop = |path: &str| path.starts_with("figures/") && path.ends_with("_force_displacement.svg");

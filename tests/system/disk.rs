@@ -113,9 +113,9 @@ fn a_disk_that_fills_up_holds_the_rig_and_the_run_goes_on_when_there_is_room() {
     let stage = Stage::new();
     fs::create_dir(stage.path("run")).unwrap();
     fs::create_dir(stage.path("kept")).unwrap();
-    // Room for the reserve, the first records and little more; a file beside takes the rest once the run moves.
+    // Room for the whole run, as it is reckoned; a file beside takes it once the run moves.
     let script = r#"set -e
-mount -t tmpfs -o size=1200k tmpfs "$1/run"
+mount -t tmpfs -o size=12m tmpfs "$1/run"
 "$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out "$1/run" & ran=$!
 for wait in $(seq 2000); do
   if grep -q "bench move 5 " "$1/simulator-1.log"; then break; fi
@@ -136,4 +136,29 @@ exit $status
     let journal = fs::read_to_string(stage.journal()).unwrap();
     assert!(journal.contains(" FAULT "), "the reserve leaves room for the last words: {journal}");
     stage.goes_on(&[]);
+}
+
+#[test]
+fn a_disk_that_is_too_small_for_the_whole_run_is_found_before_anything_moves() {
+    if !needs::own_mounts() {
+        return;
+    }
+    let stage = Stage::new();
+    fs::create_dir(stage.path("small")).unwrap();
+    // Room for the reserve and the whole record, and not for the results.
+    let script = r#"set -e
+mount -t tmpfs -o size=2m tmpfs "$1/small"
+status=0; "$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out "$1/small/run" || status=$?
+ls -A "$1/small"
+exit $status
+"#;
+    let ran = wait(Command::new("unshare").args(["-rm", "bash", "-c", script, "bash"]).arg(stage.path("")).arg(PSD));
+    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert!(ran.told.contains("error[E629]") && ran.told.contains("1.0 MB left; nothing has moved"), "{}", ran.told);
+    assert!(
+        ran.told.contains("`--out`") && ran.told.trim_end().ends_with("says what is reckoned"),
+        "no folder is left: {}",
+        ran.told
+    );
+    assert!(stage.moves().is_empty(), "{:?}", stage.moves());
 }

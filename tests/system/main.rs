@@ -4,11 +4,15 @@
 mod amended;
 mod certificate;
 mod disk;
+mod faults;
 mod golden;
+mod hand;
 mod killed;
 mod lost;
+mod named;
 mod needs;
 mod person;
+mod served;
 mod signed;
 mod stage;
 mod terminal;

@@ -188,8 +188,29 @@ impl Stage {
         command
     }
 
+    /// `psd rig TOOL` of the stage's plan and rig, with more arguments.
+    pub fn tool(&self, tool: &str, more: &[&str]) -> Command {
+        let mut command = Command::new(PSD);
+        command.args(["rig", tool]).arg(self.path("plan.psd")).args(["--rig", "bench"]).args(more);
+        command
+    }
+
+    /// [`Self::tool`] with a name and a run folder.
+    pub fn recorded_tool(&self, tool: &str, more: &[&str]) -> Command {
+        let mut command = self.tool(tool, &["--operator", "A. Tester", "--out"]);
+        command.arg(self.path("run")).args(more);
+        command
+    }
+
     pub fn verify(&self) -> Ended {
         wait(Command::new(PSD).arg("verify").arg(self.path("run")))
+    }
+
+    /// The record is whole as far as it goes, and everything in the folder came out of it.
+    pub fn proven(&self) -> String {
+        let verified = self.verify();
+        assert_eq!(verified.code, Some(0), "{}", verified.told);
+        verified.told
     }
 
     /// Goes on with the run to its end, whose record is then proven.

@@ -15,7 +15,11 @@ fn on_one_port() {
     signal(&first, Signal::STOP);
     let greetings = stage.greetings();
     let mut second = Command::new(PSD);
-    second.arg("run").arg(stage.path("plan.psd")).args(["--rig", "bench", "--yes", "--out"]).arg(stage.path("second"));
+    second
+        .arg("run")
+        .arg(stage.path("plan.psd"))
+        .args(["--rig", "bench", "--yes", "--operator", "A. Tester", "--out"])
+        .arg(stage.path("second"));
     let second = wait(&mut second);
     assert_eq!(second.code, Some(3), "{}", second.told);
     assert!(second.told.contains("error:") && second.told.contains("rig"), "{}", second.told);

@@ -84,7 +84,50 @@ pub fn one_degree_of_freedom(keyword: &str, specimen: &str, axes: usize, span: S
         Some(declared) => fault.at(declared, format!("{axes} storeys")),
         None => fault,
     };
-    fault.help("test the storeys by `shake`, or a specimen of one degree of freedom in a plan of its own")
+    fault.help("test the storeys by `shake` or `impact`, or a specimen of one degree of freedom in a plan of its own")
+}
+
+/// A frame, and no word of which floor the striker hits.
+pub fn which_storey(specimen: &str, storeys: usize, at: Span, declared: Span) -> Diagnostic {
+    Diagnostic::new(Code::WhichStorey, format!("the frame `{specimen}` has {storeys} storeys: which of them is struck?"))
+        .at(at, "strikes it")
+        .at(declared, format!("{storeys} storeys"))
+        .help(format!("add a line `storey = {storeys}`; the lowest is 1"))
+}
+
+pub fn no_such_storey(specimen: &str, storeys: usize, at: Span, declared: Span) -> Diagnostic {
+    let has = if storeys == 1 { "one storey".to_owned() } else { format!("{storeys} storeys") };
+    Diagnostic::new(Code::WhichStorey, format!("the frame `{specimen}` has {has}, counted from the ground up"))
+        .at(at, "no such storey")
+        .at(declared, has)
+        .help(format!("the top one is `storey = {storeys}`"))
+}
+
+pub fn storey_of_none(specimen: &str, at: Span, declared: Span) -> Diagnostic {
+    Diagnostic::new(Code::WhichStorey, format!("specimen `{specimen}` has no storeys, so that none of them is struck"))
+        .at(at, "which storey?")
+        .at(declared, "one degree of freedom, without storeys")
+        .help("remove `storey`, or give the specimen `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]`")
+}
+
+/// A field of the other kind of impact.
+pub fn no_use_on_a_frame(field: &str, at: Span, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::NoUseOnAFrame, format!("`{field}` says nothing of an impact on a storey"))
+        .at(at, "has no use here")
+        .help(help)
+}
+
+pub fn of_a_frame_only(field: &str, at: Span, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::NoUseOnAFrame, format!("`{field}` says something of frames only, and this impact strikes none"))
+        .at(at, "has no use here")
+        .help(help)
+}
+
+pub fn result_of_a_storey(result: &str, at: Span, head: Span) -> Diagnostic {
+    Diagnostic::new(Code::NoUseOnAFrame, format!("only an impact on a storey of a frame has `{result}`"))
+        .at(at, "not of this impact")
+        .at(head, "strikes one degree of freedom")
+        .help("strike a frame: its specimen has `storeys`, and the impact says `storey = 1`")
 }
 
 pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {

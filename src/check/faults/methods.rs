@@ -66,10 +66,10 @@ pub struct Stops<'a> {
 
 pub fn tracking_stops(stops: &Stops, head: Span, link: Span) -> Diagnostic {
     let percent = |share: f64| format!("{} %", significant(100.0 * share.abs(), 2));
-    let does = if stops.share < 0.0 { "put into" } else { "take out of" };
+    let does = if stops.share < 0.0 { "into" } else { "out of" };
     let Stops { name, share, bound, missed, time, shorter } = stops;
     let message = format!(
-        "tracking would stop `{name}`: what the actuator misses is to {does} the test {} of its energy, and it is held at {}",
+        "tracking would stop `{name}`: what the actuator misses would bring {} of its energy {does} the test, and a run is held at {}",
         percent(*share),
         percent(*bound)
     );

@@ -1,4 +1,4 @@
-//! Faults and warnings of real rigs: E606 to E614, W707, W708, W711. In: what was found and where. Out: diagnostics.
+//! Faults and warnings of real rigs: E606 to E614, E619, W707, W708, W711. In: what was found and where. Out: diagnostics.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -35,6 +35,12 @@ pub fn incomplete(name: Option<&Ident>, head: Span, missing: &[&Field], unbounde
     Diagnostic::new(Code::RealRigIncomplete, format!("rig `{name}` moves a real specimen and lacks {}", lacks.join(", and ")))
         .at(head, "a real rig")
         .help(help.join("\n"))
+}
+
+pub fn nobody_named(rig: Span) -> Diagnostic {
+    Diagnostic::new(Code::NobodyNamed, "a real rig moves for somebody with a name, and nobody is named")
+        .at(rig, "moves a real specimen")
+        .help("who runs the test is named by `--operator \"A. Tester\"`, or by `operator` in the `plan` block")
 }
 
 fn example_of_limit(field: &str) -> &'static str {
@@ -111,6 +117,21 @@ pub fn nothing_counts(key: &Ident, dialect: &Dialect) -> Diagnostic {
     Diagnostic::new(Code::FieldWithoutUse, format!("`{field}` has no use: `{name}` gives the force in newtons"))
         .at(key.span, "not read")
         .help(format!("remove `{field}`"))
+}
+
+pub fn day_of_no_calibration(key: &Ident) -> Diagnostic {
+    Diagnostic::new(Code::FieldWithoutUse, format!("`{}` has no use: no calibration of the displacement is named", key.node))
+        .at(key.span, "of which calibration?")
+        .help("add `displacement_calibration = \"UKAS 4712\"`, or remove the day: `calibration_due` holds for both")
+}
+
+pub fn displacement_without_day(rig: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::CalibrationWithoutDay,
+        format!("rig `{rig}` does not say `displacement_calibration_due`: its certificate will not be certifiable"),
+    )
+    .at(at, "calibrated until when?")
+    .help("add to the rig\ndisplacement_calibration_due = \"2027-03-01\"")
 }
 
 pub fn field_of_real_rigs(key: &Ident) -> Diagnostic {

@@ -1,4 +1,4 @@
-//! Faults of specimens: E630 to E634, E649, and W715.
+//! Faults of specimens: E630 to E634, E649, E650, and W715.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -34,6 +34,12 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
         .help("remove `most`, or remove `breaks` and let the criterion choose")
 }
 
+pub fn relaxation_without_hold(relaxation: Span) -> Diagnostic {
+    Diagnostic::new(Code::RelaxationWithoutHold, "relaxation is read while the actuator holds, and this ramp has no `pause`")
+        .at(relaxation, "nothing to read")
+        .help("add `pause = 5 s`, for instance")
+}
+
 /// Two arguments of which one means nothing without the other.
 pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::BehaviourIncomplete, format!("`{given}` means nothing without `{missing}`"))
@@ -63,10 +69,14 @@ pub fn too_many_parts(most: usize, what: &str, span: Span) -> Diagnostic {
         .help("put springs that stand together into one")
 }
 
-pub fn rate_inside(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::UnfitInside, "`rate` acts on the load cell, and there is one: it cannot stand inside another behaviour")
-        .at(span, "inside")
-        .help("write it around the whole: `rate(of: series(…), reference_velocity: …)`")
+/// `variant` is `rate` or `maxwell`.
+pub fn felt_inside(variant: &str, span: Span) -> Diagnostic {
+    let message = format!("`{variant}` acts on the load cell, and there is one: it cannot stand inside another behaviour");
+    let help = match variant {
+        "rate" => "write it around the whole: `rate(of: series(…), reference_velocity: …)`",
+        _ => "write it around the whole: `maxwell(of: series(…), stiffness: …, time_constant: …)`",
+    };
+    Diagnostic::new(Code::UnfitInside, message).at(span, "inside").help(help)
 }
 
 pub fn falls_in_series(span: Span, series: Span) -> Diagnostic {

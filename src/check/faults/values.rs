@@ -30,6 +30,24 @@ pub fn out_of_range(field: &Field, dimension: Dimension, value: f64, text: &str,
     Diagnostic::new(Code::OutOfRange, format!("`{}` must be {allowed}", field.name)).at(span, label).help(help)
 }
 
+/// `dimension` is that of the value, whose name the field begins with.
+pub fn too_uncertain(field: &str, uncertainty: f64, value: f64, dimension: Dimension, span: Span) -> Diagnostic {
+    let (uncertainty, value) = (shown(uncertainty, dimension), shown(value, dimension));
+    let of = field.trim_end_matches("_uncertainty");
+    Diagnostic::new(Code::TooUncertain, format!("`{field}` is more than a fifth of the `{of}`, {value}"))
+        .at(span, format!("{uncertainty} is one standard uncertainty"))
+        .help(
+            "write the standard uncertainty: half of a bound that holds in 95 of 100 cases, or the half-width of a range over √3",
+        )
+}
+
+/// A mass whose uncertainty nobody asks for.
+pub fn uncertainty_unused(specimen: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UncertaintyUnused, format!("the uncertainty of the mass of `{specimen}` reaches no result"))
+        .at(span, "no impact takes the mass of this specimen")
+        .help("leave `mass` out of the impact, so that it is the specimen's with its uncertainty; or remove `mass_uncertainty`")
+}
+
 pub fn zero(field: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::OutOfRange, format!("`{field}` must not be 0"))
         .at(span, "gives no force or length for any reading")

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::cli::provenance::sha256;
+use crate::digest::sha256;
 use crate::inert::{self, one_line};
 use crate::output::{Amendment, Amends, Change, Provenance};
 use crate::plan::Plan;

@@ -12,8 +12,8 @@ use sha2::{Digest as _, Sha256};
 
 use crate::cli::exit::Failure;
 use crate::cli::loader::plain;
-use crate::cli::provenance::hex;
 use crate::cli::record_file::JOURNAL;
+use crate::digest::{hex, sha256};
 
 use super::amending::AMENDMENT;
 use super::signature;
@@ -47,7 +47,7 @@ pub struct Held {
 impl Held {
     /// A file of these bytes.
     pub fn of(name: &str, bytes: Vec<u8>) -> Self {
-        Self { digest: hex(&Sha256::digest(&bytes)), bytes: is_read(name).then_some(bytes) }
+        Self { digest: sha256(&bytes), bytes: is_read(name).then_some(bytes) }
     }
 }
 

@@ -4,6 +4,8 @@
 mod amending;
 mod check;
 mod folder;
+#[cfg(test)]
+mod header_tests;
 pub mod keys;
 mod rebuilt;
 mod signature;

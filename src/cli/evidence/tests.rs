@@ -48,10 +48,10 @@ fn psd(arguments: &[&str]) -> Exit {
     crate::cli::main(["psd"].iter().chain(arguments).map(Into::into))
 }
 
-type Bytes = BTreeMap<String, Vec<u8>>;
+pub(super) type Bytes = BTreeMap<String, Vec<u8>>;
 
 /// The files of one run, made once.
-fn run() -> &'static Bytes {
+pub(super) fn run() -> &'static Bytes {
     static RUN: OnceLock<Bytes> = OnceLock::new();
     RUN.get_or_init(|| {
         let root = tempfile::tempdir().unwrap();
@@ -67,13 +67,13 @@ fn files_of(run: &Path) -> Bytes {
     Folder::read(run).unwrap().files.keys().map(read).collect()
 }
 
-fn folder(files: &Bytes) -> Folder {
+pub(super) fn folder(files: &Bytes) -> Folder {
     let held = files.iter().map(|(name, bytes)| (name.clone(), Held::of(name, bytes.clone())));
     Folder { files: held.collect(), odd: Vec::new() }
 }
 
 /// The same folder with one file of other bytes; None: without it.
-fn with(folder: &Folder, name: &str, bytes: Option<Vec<u8>>) -> Folder {
+pub(super) fn with(folder: &Folder, name: &str, bytes: Option<Vec<u8>>) -> Folder {
     let mut changed = folder.clone();
     match bytes {
         Some(bytes) => changed.files.insert(name.to_owned(), Held::of(name, bytes)),
@@ -113,7 +113,7 @@ fn signed() -> Signed {
     Signed { folder, rebuilt, keys: keys.to_vec() }
 }
 
-fn faults(findings: &[Finding]) -> Vec<&'static str> {
+pub(super) fn faults(findings: &[Finding]) -> Vec<&'static str> {
     findings.iter().filter(|finding| !finding.sound).map(|finding| finding.part).collect()
 }
 

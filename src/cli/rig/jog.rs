@@ -1,68 +1,237 @@
 //! `psd rig jog`: moves the rig by hand, inside the plan's limits, through the guard and never without a yes. In: places as
-//! the language writes them. Out: where the rig went.
+//! the language writes them. Out: where the rig went; of a real rig also a run folder with the record.
 
 use std::sync::mpsc::Receiver;
 
+use super::typed::{number, places};
+use crate::cli::args::JogArguments;
+use crate::cli::conclude::write_results;
+use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
+use crate::cli::record_file::{self, Circumstances};
+use crate::cli::run_folder::RunFolder;
 use crate::cli::settings::Settings;
-use crate::cli::watch::{Signals, next_line, typed_lines};
-use crate::plan::Plan;
+use crate::cli::watch::{Attendance, Signals, next_line, typed_lines};
+use crate::cli::{plan_file, provenance, real_rig};
+use crate::output;
+use crate::plan::{Interval, Link, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
-use crate::quantity::unit;
-use crate::rig::{Guard, Rig, RigFault, Wish};
-
-/// How long the rig stays where it is between two looks at what is typed, s of rig time.
-const BREATH: f64 = 0.01;
-
-/// What the command line asks for.
-pub struct Asked<'a> {
-    /// Where to; none: places are typed, one a line.
-    pub to: Option<&'a str>,
-    pub speed: Option<&'a str>,
-    pub yes: bool,
-}
+use crate::record::Outcome;
+use crate::rig::{LimitedQuantity, Rig, RigFault, Wish, connect, virtual_rig};
+use crate::run::driven::{Driver, Specimen};
+use crate::run::tape::{self, BY_HAND};
+use crate::run::{Parting, Unwatched};
 
 /// Moves, asking first on every move.
-pub fn jog(rig: &mut dyn Rig, plan: &Plan, asked: &Asked<'_>, wish: &Wish, settings: Settings) -> Result<Exit, Failure> {
-    let simulated = rig.identity().simulated;
-    if !settings.can_ask && (!asked.yes || !simulated || asked.to.is_none()) {
-        let message = if simulated {
-            "a move needs a yes, and nobody can be asked"
-        } else {
-            "a real rig is not moved without a person at a terminal"
-        };
-        return Err(Failure::command_line(message).help(if simulated {
-            "give `--to` and `--yes`"
-        } else {
-            "start it from a terminal"
-        }));
+pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure> {
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    let unattended = real_rig::unattended(&attendance, settings);
+    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
+    plan_file::show(&checked, &arguments.plan, settings);
+    let Some(plan) = &checked.plan else { return Ok(Exit::Wrong) };
+    if !settings.can_ask && (!arguments.yes || arguments.to.is_none()) {
+        return Err(Failure::command_line("a move needs a yes, and nobody can be asked")
+            .help("give `--to` and `--yes`, or start it from a terminal"));
     }
-    let to = asked.to.map(|to| number(to, Dimension::LENGTH, "--to", "1 mm")).transpose()?;
-    let speed = asked.speed.map(|speed| number(speed, Dimension::VELOCITY, "--speed", "0.5 mm/s")).transpose()?;
-    let _signals = Signals::caught(wish).map_err(Failure::Signals)?;
-    let mut guard = Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits)).map_err(Failure::Rig)?;
-    let mut person = Person { lines: None, wish, yes: asked.yes };
-    if let Some(to) = to {
-        return move_to(&mut guard, to, speed, &mut person);
-    }
-    loop {
-        tell(&format!("  at {}; where to? [a place such as 1 mm, or q] ", here(&guard)));
-        let Some(line) = person.line(&mut guard)? else { return Ok(if wish.wants_end() { Exit::Stopped } else { Exit::Met }) };
-        match line.trim() {
-            "" => {}
-            "q" | "quit" => return Ok(Exit::Met),
-            place => match number(place, Dimension::LENGTH, "the place", "1 mm") {
-                Ok(to) => {
-                    move_to(&mut guard, to, speed, &mut person)?;
-                }
-                Err(failure) => tell(&failure.report(settings)),
-            },
+    let wanted = Wanted {
+        to: arguments.to.as_deref().map(|to| places(to, plan.degrees_of_freedom(), "--to")).transpose()?,
+        speed: arguments.speed.as_deref().map(|speed| number(speed, Dimension::VELOCITY, "--speed", "0.5 mm/s")).transpose()?,
+    };
+    let attendance = real_rig::named(attendance, plan)?;
+    let wish = Wish::default();
+    let _signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+    let by = real_rig::operator(plan, &attendance).unwrap_or_else(|| "somebody".to_owned());
+    let person = Person { lines: None, wish: &wish, yes: arguments.yes, by };
+    match plan.rig.link {
+        Link::Virtual(_) => on_a_virtual_rig(arguments, plan, &wanted, person, settings),
+        Link::Real(_) => {
+            let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let place = |fault: &str| plan_file::place_of_link(&checked, &arguments.plan, fault);
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
+            if !settings.can_ask && !connected.rig.identity().simulated {
+                return Err(Failure::command_line("a real rig is not moved by hand without a person at a terminal")
+                    .help("start it from a terminal"));
+            }
+            on_a_real_rig(arguments, plan, &attendance, &mut connected.rig, &wanted, person, settings)
         }
-        if wish.wants_end() {
+    }
+}
+
+/// What the command line asks for, SI.
+struct Wanted {
+    /// None: places are typed.
+    to: Option<Vec<f64>>,
+    speed: Option<f64>,
+}
+
+/// Nothing real moves: nothing is kept.
+fn on_a_virtual_rig(
+    arguments: &JogArguments,
+    plan: &Plan,
+    wanted: &Wanted,
+    person: Person<'_>,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..Circumstances::default() };
+    let mut rig = virtual_rig(plan);
+    let device = record_file::device(rig.as_ref());
+    let header = record_file::header(plan, device, &arguments.plan_settings, &provenance::of(plan), circumstances);
+    let journal = record_file::begin_nowhere(plan, &header)?;
+    let mut hand = Hand { wanted, plan, person, settings, ended: None };
+    let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
+    let wall = Box::new(|| None);
+    let (recorded, _) = tape::record_driven(plan, rig.as_mut(), &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
+    hand.end(&recorded.record.outcome)
+}
+
+/// What was done to a specimen before its test is evidence too.
+fn on_a_real_rig(
+    arguments: &JogArguments,
+    plan: &Plan,
+    attendance: &Attendance,
+    rig: &mut dyn Rig,
+    wanted: &Wanted,
+    person: Person<'_>,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..real_rig::circumstances(plan, attendance) };
+    let provenance = provenance::of_real_run(plan, &circumstances);
+    let header = record_file::header(plan, record_file::device(rig), &arguments.plan_settings, &provenance, circumstances);
+    let journal = record_file::begin(folder.path(), plan, &header)?;
+    let mut hand = Hand { wanted, plan, person, settings, ended: None };
+    let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
+    let wall = real_rig::wall_clock();
+    let (recorded, steps) = tape::record_driven(plan, rig, &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
+    write_results(folder.path(), &[output::driven(&steps)?], &Folder::read(folder.path())?.kept())?;
+    tell(&format!("  on record: {}\n", folder.path().display()));
+    if let Some(fault) = &recorded.fault {
+        tell(&format!("  the record could not be kept to its end: {fault}\n"));
+    }
+    let exit = hand.end(&recorded.record.outcome)?;
+    Ok(if recorded.fault.is_some() { exit.max(Exit::Fault) } else { exit })
+}
+
+/// One sitting: who drives, and how it ended.
+struct Hand<'a> {
+    wanted: &'a Wanted,
+    plan: &'a Plan,
+    person: Person<'a>,
+    settings: Settings,
+    ended: Option<Result<Exit, Failure>>,
+}
+
+impl Hand<'_> {
+    fn drive(&mut self, specimen: &mut Specimen<'_, '_>) {
+        let ended =
+            specimen.come(format!("{}, by hand", self.person.by)).map_err(Failure::Rig).and_then(|()| self.moves(specimen));
+        let (parting, reason) = match &ended {
+            Ok(Exit::Met) => (Parting::Closed, "done".to_owned()),
+            Ok(_) => (Parting::Stopped, "a limit or a person stood in the way".to_owned()),
+            Err(failure) if failure.exit() == Exit::Stopped => (Parting::Stopped, failure.to_string()),
+            Err(failure) => (Parting::Failed, failure.to_string()),
+        };
+        specimen.leave(parting, reason);
+        specimen.close();
+        self.ended = Some(ended);
+    }
+
+    /// How it ended; where it did not begin, why the rig was not fit for it.
+    fn end(self, outcome: &Outcome) -> Result<Exit, Failure> {
+        self.ended.unwrap_or_else(|| {
+            let (exit, reason) = match outcome {
+                Outcome::Completed => (Exit::Met, ""),
+                Outcome::Aborted { reason } => (Exit::Stopped, reason.as_str()),
+                Outcome::Faulted { reason } => (Exit::Fault, reason.as_str()),
+            };
+            tell(&format!("  nothing moved: {reason}\n"));
+            Ok(exit)
+        })
+    }
+
+    fn moves(&mut self, specimen: &mut Specimen<'_, '_>) -> Result<Exit, Failure> {
+        if let Some(to) = &self.wanted.to {
+            return self.move_to(to, specimen);
+        }
+        let mut refused = false;
+        loop {
+            tell(&format!("  at {}; where to? [a place such as 1 mm, or q] ", told(specimen.commanded())));
+            let Some(line) = self.person.line(specimen)? else {
+                tell("\n");
+                return Ok(if refused || self.person.wish.wants_end() { Exit::Stopped } else { Exit::Met });
+            };
+            match line.trim() {
+                "" => {}
+                "q" | "quit" => return Ok(if refused { Exit::Stopped } else { Exit::Met }),
+                typed => match places(typed, specimen.degrees_of_freedom(), "the place") {
+                    Ok(to) => refused |= self.move_to(&to, specimen)? != Exit::Met,
+                    Err(failure) => tell(&failure.report(self.settings)),
+                },
+            }
+            if self.person.wish.wants_end() {
+                return Ok(Exit::Stopped);
+            }
+        }
+    }
+
+    /// One move, in increments where the plan limits them; Ctrl-C ends it after the increment.
+    fn move_to(&mut self, to: &[f64], specimen: &mut Specimen<'_, '_>) -> Result<Exit, Failure> {
+        let speed = self.wanted.speed;
+        let at = speed.map_or_else(String::new, |speed| format!(" at {}", plain(speed, Dimension::VELOCITY, 4)));
+        let question = format!("move from {} to {}{at}?", told(specimen.commanded()), told(to));
+        // What no answer allows is not asked, and no part of the way is gone.
+        if let Some(fault) = beyond(self.plan, to, speed) {
+            specimen.remark(format!("{question} refused: {fault}"));
+            tell(&format!("  refused: {fault}\n"));
             return Ok(Exit::Stopped);
         }
+        if !self.person.agrees(&question, specimen)? {
+            specimen.hold();
+            tell("  nothing moved\n");
+            return Ok(Exit::Stopped);
+        }
+        for target in specimen.way_to(to) {
+            if self.person.wish.wants_end() {
+                specimen.hold();
+                tell("  held\n");
+                return Ok(Exit::Stopped);
+            }
+            if let Err(fault) = specimen.propose_at(&target, speed).and_then(|()| specimen.execute()) {
+                return refused(fault);
+            }
+            specimen.commit();
+        }
+        let felt = specimen.felt();
+        let words = felt.displacement.iter().zip(&felt.force).map(|(displacement, force)| {
+            format!("X {}   R {}\n", readable(*displacement, Dimension::LENGTH), readable(*force, Dimension::FORCE))
+        });
+        give(&words.collect::<String>())?;
+        Ok(Exit::Met)
+    }
+}
+
+/// The limit of its axis that a place or the speed lies beyond.
+fn beyond(plan: &Plan, to: &[f64], speed: Option<f64>) -> Option<RigFault> {
+    let found = to.iter().enumerate().flat_map(|(axis, place)| {
+        let limits = plan.rig.limits_of(axis, &plan.limits);
+        let place = Some((axis, LimitedQuantity::TargetDisplacement, limits.displacement, *place));
+        [place, speed.map(|speed| (axis, LimitedQuantity::Speed, limits.speed, speed))]
+    });
+    let (axis, quantity, Interval { low, high }, value) = found.flatten().find(|(_, _, limit, value)| !limit.contains(*value))?;
+    let axis = (to.len() > 1).then_some(axis + 1);
+    Some(RigFault::LimitBreached { quantity, value, low, high, axis })
+}
+
+/// Nothing beyond a limit moves, and the person may name another place; whatever else it is ends the sitting.
+fn refused(fault: RigFault) -> Result<Exit, Failure> {
+    match fault {
+        RigFault::LimitBreached { .. } => {
+            tell(&format!("  held: {fault}\n"));
+            Ok(Exit::Stopped)
+        }
+        fault => Err(Failure::Rig(fault)),
     }
 }
 
@@ -71,83 +240,33 @@ struct Person<'a> {
     lines: Option<Receiver<String>>,
     wish: &'a Wish,
     yes: bool,
+    /// The name.
+    by: String,
 }
 
 impl Person<'_> {
     /// None at the end of the input and on Ctrl-C. The rig stays where it is meanwhile, and is heard from.
-    fn line(&mut self, guard: &mut Guard<'_>) -> Result<Option<String>, Failure> {
+    fn line(&mut self, specimen: &mut Specimen<'_, '_>) -> Result<Option<String>, Failure> {
         let lines = self.lines.get_or_insert_with(typed_lines);
-        next_line(lines, self.wish, || guard.pause(BREATH)).map_err(Failure::Rig)
+        next_line(lines, self.wish, || specimen.listen()).map_err(Failure::Rig)
     }
 
-    /// Only a clear yes is one.
-    fn agrees(&mut self, question: &str, guard: &mut Guard<'_>) -> Result<bool, Failure> {
-        if self.yes {
-            return Ok(true);
-        }
-        tell(question);
-        let line = self.line(guard)?;
-        Ok(line.is_some_and(|line| matches!(line.trim().to_ascii_lowercase().as_str(), "y" | "yes")))
+    /// Only a clear yes is one. Question and answer are on record.
+    fn agrees(&mut self, question: &str, specimen: &mut Specimen<'_, '_>) -> Result<bool, Failure> {
+        let (agreed, how) = if self.yes {
+            (true, "answered by --yes")
+        } else {
+            tell(&format!("  {question} [y or n] "));
+            let line = self.line(specimen)?;
+            let yes = line.is_some_and(|line| matches!(line.trim().to_ascii_lowercase().as_str(), "y" | "yes"));
+            (yes, if yes { "yes" } else { "no" })
+        };
+        specimen.remark(format!("{question} {how} ({})", self.by));
+        Ok(agreed)
     }
 }
 
-/// One move, in increments where the plan limits them; Ctrl-C ends it after the increment.
-fn move_to(guard: &mut Guard<'_>, to: f64, speed: Option<f64>, person: &mut Person<'_>) -> Result<Exit, Failure> {
-    let at = speed.map_or_else(String::new, |speed| format!(" at {}", plain(speed, Dimension::VELOCITY, 4)));
-    let question = format!("  move from {} to {}{at}? [y or n] ", here(guard), plain(to, Dimension::LENGTH, 6));
-    if !person.agrees(&question, guard)? {
-        tell("  nothing moved\n");
-        return Ok(Exit::Stopped);
-    }
-    for target in guard.way_to(&[to]) {
-        if person.wish.wants_end() {
-            guard.hold();
-            tell("  held\n");
-            return Ok(Exit::Stopped);
-        }
-        match guard.move_to(&target, speed) {
-            Ok(()) => {}
-            // Nothing beyond a limit moves: the person may name another place.
-            Err(fault @ RigFault::LimitBreached { .. }) => {
-                tell(&format!("  held: {fault}\n"));
-                return Ok(Exit::Stopped);
-            }
-            Err(fault) => return Err(Failure::Rig(fault)),
-        }
-    }
-    let reading = guard.read().map_err(Failure::Rig)?;
-    let words = reading.displacement.iter().zip(&reading.force).map(|(displacement, force)| {
-        format!("X {}   R {}\n", readable(*displacement, Dimension::LENGTH), readable(*force, Dimension::FORCE))
-    });
-    give(&words.collect::<String>())?;
-    Ok(Exit::Met)
-}
-
-fn here(guard: &Guard<'_>) -> String {
-    guard.commanded().iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect::<Vec<_>>().join(", ")
-}
-
-/// A number with its unit, as the language writes it: `1 mm`, `-2.5e-1 mm`. In SI.
-fn number(text: &str, dimension: Dimension, what: &str, example: &str) -> Result<f64, Failure> {
-    let wrong = || Failure::command_line(format!("{what} is not understood: {text}")).help(format!("write it as {example}"));
-    let (digits, symbol) = text.trim().split_once(char::is_whitespace).ok_or_else(wrong)?;
-    let digits_only = digits.chars().all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E'));
-    let value: f64 = digits.parse().ok().filter(|_| digits_only).ok_or_else(wrong)?;
-    let unit = unit::parse(symbol.trim()).ok().filter(|unit| unit.dimension == dimension).ok_or_else(wrong)?;
-    Some(value * unit.factor).filter(|value| value.is_finite()).ok_or_else(wrong)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_place_has_its_unit_and_is_a_number() {
-        let place = |text| number(text, Dimension::LENGTH, "--to", "1 mm").ok();
-        assert_eq!(place("1 mm"), Some(1e-3));
-        assert_eq!(place(" -2.5e1  um "), Some(-2.5e1 * 1e-6));
-        for wrong in ["1", "1 N", "mm", "nan mm", "inf mm", "1e400 m", "1 mm 2", "1,5 mm"] {
-            assert_eq!(place(wrong), None, "{wrong}");
-        }
-    }
+/// Places of all axes.
+fn told(places: &[f64]) -> String {
+    places.iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect::<Vec<_>>().join(", ")
 }

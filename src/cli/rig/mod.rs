@@ -6,6 +6,7 @@ mod monitor;
 mod probe;
 mod serve;
 mod simulate;
+mod typed;
 
 use std::path::Path;
 
@@ -19,17 +20,15 @@ use crate::rig::{Rig, Wish, connect, virtual_rig};
 /// Does one of the commands.
 pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
     match command {
-        RigCommand::List => list::list(),
+        RigCommand::List { format } => list::list(*format),
         RigCommand::Probe { plan, plan_settings } => {
             with_rig(plan, plan_settings, settings, |rig, plan, _| probe::probe(rig, plan))
         }
-        RigCommand::Monitor { plan, plan_settings, count } => {
-            with_rig(plan, plan_settings, settings, |rig, plan, wish| monitor::monitor(rig, plan, *count, wish, settings))
+        RigCommand::Monitor { plan, plan_settings, count, every } => {
+            let asked = monitor::Asked { every: typed::every(every)?, count: *count };
+            with_rig(plan, plan_settings, settings, |rig, plan, wish| monitor::monitor(rig, plan, &asked, wish, settings))
         }
-        RigCommand::Jog { plan, plan_settings, to, speed, yes } => {
-            let asked = jog::Asked { to: to.as_deref(), speed: speed.as_deref(), yes: *yes };
-            with_rig(plan, plan_settings, settings, |rig, plan, wish| jog::jog(rig, plan, &asked, wish, settings))
-        }
+        RigCommand::Jog(arguments) => jog::jog(arguments, settings),
         RigCommand::Simulate(arguments) => simulate::simulate(arguments, settings),
         RigCommand::Serve(arguments) => serve::serve(arguments, settings),
     }
@@ -49,7 +48,9 @@ fn with_rig(
     match &plan.rig.link {
         Link::Virtual(_) => what(virtual_rig(plan).as_mut(), plan, &wish),
         Link::Real(_) => {
-            let mut connected = connect(&plan.rig, &plan.limits, &wish)?;
+            let place = |fault: &str| plan_file::place_of_link(&checked, path, fault);
+            let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
             what(&mut connected.rig, plan, &wish)
         }
     }

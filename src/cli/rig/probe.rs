@@ -44,8 +44,9 @@ struct Channel {
     mean: f64,
     /// Standard deviation about the drift.
     noise: f64,
-    /// Change a second.
+    /// Change a second, and its standard error: noise looks like a little drift.
     drift: f64,
+    drift_error: f64,
 }
 
 impl Axis {
@@ -65,11 +66,40 @@ impl Channel {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let middle = times.iter().sum::<f64>() / count;
-        let drift = fit_line(times, values).map_or(0.0, |fit| fit.slope);
+        let (drift, drift_error) = fit_line(times, values).map_or((0.0, 0.0), |fit| (fit.slope, fit.slope_error));
         let square = |(time, value): (&f64, &f64)| (value - mean - drift * (time - middle)).powi(2);
         let squares: f64 = times.iter().zip(values).map(square).sum();
-        Self { mean, noise: (squares / (count - 2.0).max(1.0)).sqrt(), drift }
+        Self { mean, noise: (squares / (count - 2.0).max(1.0)).sqrt(), drift, drift_error }
     }
+}
+
+impl Channel {
+    /// Two digits are all that ten readings have.
+    fn noise_told(&self, dimension: Dimension) -> String {
+        if self.noise > 0.0 { format!("noise {}", plain(self.noise, dimension, 2)) } else { "no noise".to_owned() }
+    }
+
+    /// A drift that noise may have made is only bounded.
+    fn drift_told(&self, rate: Dimension) -> String {
+        let per_second = if rate == Dimension::VELOCITY { "" } else { "/s" };
+        let rounded = |drift| format!("{}{per_second}", plain(drift, rate, 2));
+        if self.drift == 0.0 && self.drift_error == 0.0 {
+            "no drift".to_owned()
+        } else if self.drift.abs() > 3.0 * self.drift_error {
+            format!("drift {}", rounded(self.drift))
+        } else {
+            format!("drift below {}", rounded(self.drift.abs() + 2.0 * self.drift_error))
+        }
+    }
+}
+
+/// What the rig block says too little of, to be copied into it.
+fn advice(axes: &[Axis], plan: &Plan) -> Option<String> {
+    let said = plan.rig.link.as_real()?.readings.noise;
+    let noise = axes.iter().map(|axis| axis.force.noise).fold(0.0, f64::max);
+    // Ten readings show a noise to a quarter of it.
+    let more = noise > 1.5 * said;
+    more.then(|| format!("  the rig block says too little: noise = {}\n", plain(noise, Dimension::FORCE, 2)))
 }
 
 fn report(identity: &Identity, axes: &[Axis], plan: &Plan) -> String {
@@ -87,14 +117,14 @@ fn report(identity: &Identity, axes: &[Axis], plan: &Plan) -> String {
         let (force, limit) = (&axis.force, plan.limits.force);
         channel(&mut text, "force", Dimension::FORCE, Dimension::FORCE, force, limit);
     }
+    text.push_str(&advice(axes, plan).unwrap_or_default());
     text
 }
 
 fn channel(text: &mut String, name: &str, dimension: Dimension, rate: Dimension, channel: &Channel, limit: Interval) {
-    let Channel { mean, noise, drift } = *channel;
-    let per_second = if rate == Dimension::VELOCITY { "" } else { "/s" };
-    let (noise, drift) = (readable(noise, dimension), readable(drift, rate));
-    let _ = writeln!(text, "  {name:<14}{}   noise {noise}   drift {drift}{per_second}", readable(mean, dimension));
+    let mean = channel.mean;
+    let (noise, drift) = (channel.noise_told(dimension), channel.drift_told(rate));
+    let _ = writeln!(text, "  {name:<14}{:<12}{noise:<16}{drift}", readable(mean, dimension));
     for (end, bound, margin) in [("low", limit.low, mean - limit.low), ("high", limit.high, limit.high - mean)] {
         if bound.is_finite() {
             let bound = plain(bound, dimension, 4);
@@ -114,9 +144,18 @@ mod tests {
         let drifting: Vec<f64> = times.iter().map(|time| 5.0 + 2.0 * time).collect();
         let channel = Channel::of(&times, &drifting);
         assert!((channel.drift - 2.0).abs() < 1e-9 && channel.noise < 1e-9 && (channel.mean - 5.9).abs() < 1e-9);
+        assert_eq!(channel.drift_told(Dimension::FORCE), "drift 2 N/s");
         // ±1 in turn: scatter of about 1 about its line, with two numbers fitted to ten readings.
         let noisy: Vec<f64> = (0..10).map(|index| if index % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let channel = Channel::of(&times, &noisy);
         assert!((1.0..1.2).contains(&channel.noise), "{}", channel.noise);
+        assert_eq!(channel.noise_told(Dimension::FORCE), "noise 1.1 N");
+        let told = channel.drift_told(Dimension::FORCE);
+        assert!(told.starts_with("drift below "), "noise is not taken for drift: {told}");
+        let still = Channel::of(&times, &[0.25; 10]);
+        assert_eq!(
+            (still.noise_told(Dimension::FORCE), still.drift_told(Dimension::FORCE)),
+            ("no noise".into(), "no drift".into())
+        );
     }
 }

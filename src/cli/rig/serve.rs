@@ -22,19 +22,22 @@ use crate::quantity::display::readable;
 use crate::quantity::unit;
 use crate::record::Outcome;
 use crate::rig::{Rig, VirtualRig, Wish, virtual_rig};
+use crate::run::driven::Driver;
 use crate::run::tape::{self, Wall};
 use crate::serve::{self, Ended, Event, Protocol, Session};
 
 /// Serves until a client or a person ends it.
 pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Failure> {
-    let checked = plan_file::open(&arguments.plan, &arguments.plan_settings)?;
+    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
+    let unattended = real_rig::unattended(&attendance, settings);
+    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else { return Ok(Exit::Wrong) };
     let protocol = protocol(arguments, plan)?;
     named(arguments, plan)?;
+    let attendance = real_rig::named(attendance, plan)?;
     let door = Door::open(arguments)?;
     let wish = Wish::default();
-    let attendance = Attendance { yes: arguments.yes, operator: arguments.operator.clone() };
     match plan.rig.link {
         Link::Virtual(_) => {
             let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, wish.clone()).map_err(Failure::Signals)?;
@@ -45,7 +48,8 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             on_record(arguments, stage, rig.as_mut(), &mut watcher, &door, &protocol, &wish, settings)
         }
         Link::Real(_) => {
-            let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)?;
+            let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)
+                .map_err(|failure| failure.in_the_plan(|fault| plan_file::place_of_link(&checked, &arguments.plan, fault)))?;
             let circumstances = real_rig::circumstances(plan, &attendance);
             let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..circumstances };
             let provenance = provenance::of_real_run(plan, &circumstances);
@@ -105,12 +109,12 @@ fn on_record(
 ) -> Result<Exit, Failure> {
     let Stage { plan, provenance, circumstances, wall } = stage;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
-    let header = record_file::header(plan, &arguments.plan_settings, &provenance, circumstances);
+    let header = record_file::header(plan, record_file::device(rig), &arguments.plan_settings, &provenance, circumstances);
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let mut exit = Exit::Met;
     let mut told = Ok(());
     let mut served = Ok(());
-    let (recorded, steps) = tape::record_driven(plan, rig, watcher, journal, wall, &mut |specimen| {
+    let (recorded, steps) = tape::record_driven(plan, rig, watcher, journal, wall, Driver::Client, &mut |specimen| {
         if !door.address.ip().is_loopback() {
             tell(&open_door(door.address, settings));
         }

@@ -39,7 +39,7 @@ pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failu
     if arguments.tap {
         give(&golden::tap(&report))?;
     } else if arguments.format == Format::Json {
-        give(&format!("{:#}\n", golden::json::document(&report)))?;
+        give(&golden::json::text(&report))?;
     }
     Ok(if report.good() == report.tested.len() { Exit::Met } else { Exit::Differs })
 }

@@ -12,7 +12,7 @@ use super::super::bless::truth_of;
 use super::super::exit::Failure;
 use super::super::output::tell;
 use super::super::settings::Settings;
-use super::super::trial;
+use super::super::trial::{self, Extent};
 use super::cases::Case;
 use super::failures;
 use crate::golden::{Outcome, Tested, compare, console};
@@ -66,10 +66,11 @@ impl Trials<'_> {
     }
 
     fn outcome(&self, case: &Case) -> Result<Outcome, Failure> {
-        let trial = trial::of(&case.plan)?;
         if self.arguments.bless {
+            let trial = trial::of(&case.plan, Extent::All)?;
             return Ok(Outcome::Blessed(case.golden.bless(&trial.files, &trial.tolerances, self.arguments.anew)?));
         }
+        let trial = trial::of(&case.plan, Extent::Compared)?;
         let blessed = case.golden.truth()?;
         failures::clear(&self.arguments.out, case)?;
         if blessed.is_empty() {
@@ -79,7 +80,9 @@ impl Trials<'_> {
         if found.is_empty() {
             return Ok(Outcome::Same { verdict: trial.verdict });
         }
-        failures::write(&self.arguments.out, case, &blessed, &trial.files, &found)?;
+        // Only what a person is to look at is drawn and set.
+        let files = trial::of(&case.plan, Extent::All)?.files;
+        failures::write(&self.arguments.out, case, &blessed, &files, &found)?;
         Ok(Outcome::Differs(found))
     }
 }

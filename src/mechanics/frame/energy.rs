@@ -31,20 +31,22 @@ pub(super) struct End<'a> {
 }
 
 impl FrameEnergies {
-    /// The balance one step on, of a frame that is damped or not. `scratch` is two vectors of the frame's order.
+    /// The balance one step on, of a frame that is damped or not; `damping_work` where the velocity has jumped on the way, J.
+    /// `scratch` is two vectors of the frame's order.
     pub(super) fn advance(
         &self,
         (matrices, damped): (&FrameMatrices, bool),
         time_step: f64,
         from: End,
         to: End,
+        damping_work: Option<f64>,
         scratch: (&mut [f64], &mut [f64]),
     ) -> Self {
         let (first, second) = scratch;
         let restoring = 0.5 * sums(from.restoring_force, to.restoring_force, from.displacement, to.displacement, -1.0);
         let input = 0.25 * sums(from.load, to.load, from.velocity, to.velocity, 1.0);
         let mut damping = 0.0;
-        if damped {
+        if damped && damping_work.is_none() {
             for ((mean, before), after) in first.iter_mut().zip(from.velocity).zip(to.velocity) {
                 *mean = 0.5 * (before + after);
             }
@@ -55,7 +57,7 @@ impl FrameEnergies {
         let mut next = Self {
             kinetic: 0.5 * dot(second, to.velocity),
             restoring: self.restoring + restoring,
-            damping: self.damping + time_step * damping,
+            damping: self.damping + damping_work.unwrap_or(time_step * damping),
             input: self.input + time_step * input,
             error: 0.0,
         };

@@ -60,6 +60,10 @@ pub(super) struct Moment<'a> {
 /// from w, how much a force adds to it (m/s/N).
 pub(super) type Decide<'a> = &'a mut dyn FnMut(f64, f64) -> f64;
 
+/// Takes a frame through a whole step on a law's own way, from where it is and under the loads at the step's end (N): the
+/// end goes into the course, what dampers took is told (J).
+pub(super) type Pass<'a> = &'a mut dyn FnMut(&Schemes, Moment, &[f64], &mut Course) -> f64;
+
 /// A degree of freedom that a body strikes.
 #[derive(Clone, Debug)]
 struct Struck {
@@ -203,27 +207,6 @@ impl Schemes {
         self.travel(from, to);
     }
 
-    /// The step of Moreau and Jean (θ = ½): an impulse p = FΔt is a jump of the velocity, M̂(Ẋ₁ − Ẋ) = Δt(½(f₀ + f₁) − R −
-    /// CẊ − ½ΔtK_tẊ) + p e_s. The acceleration at its end follows from the force read there.
-    pub fn jump(&mut self, from: Moment, load_end: &[f64], to: &mut Course, decide: Decide) {
-        let time_step = self.time_step;
-        let loads = from.load.iter().zip(load_end).zip(from.force);
-        for (to, ((load, after), force)) in to.velocity.iter_mut().zip(loads) {
-            *to = 0.5 * (load + after) - force;
-        }
-        self.matrices.damping.mul_add(-1.0, from.velocity, &mut to.velocity);
-        self.operator.mul_add(-0.5 * time_step, from.velocity, &mut to.velocity);
-        self.factor.solve_in_place(&mut to.velocity);
-        for (change, velocity) in to.velocity.iter_mut().zip(from.velocity) {
-            *change = velocity + time_step * *change;
-        }
-        if let Some(struck) = &mut self.struck {
-            struck.force = decide(to.velocity[struck.place], time_step * struck.response[struck.place]);
-            add(&mut to.velocity, struck.force * time_step, &struck.response);
-        }
-        self.travel(from, to);
-    }
-
     /// Eq. (2d).
     fn travel(&self, from: Moment, to: &mut Course) {
         let half = 0.5 * self.time_step;
@@ -290,13 +273,18 @@ impl Schemes {
         }
     }
 
-    /// M Ẍ = f − R − CẊ: the acceleration at the end of a jump, whose impulse is over.
-    pub fn settle_acceleration(&self, mass: &BandFactor, load: &[f64], to: &mut Course) {
-        for ((acceleration, load), force) in to.acceleration.iter_mut().zip(load).zip(&to.force) {
-            *acceleration = load - force;
-        }
-        self.matrices.damping.mul_add(-1.0, &to.velocity, &mut to.acceleration);
-        mass.solve_in_place(&mut to.acceleration);
+    /// `K_t`, N/m.
+    pub const fn operator(&self) -> &SymmetricBand {
+        &self.operator
+    }
+
+    /// M̂ of a whole step.
+    pub const fn effective(&self) -> &SymmetricBand {
+        &self.effective
+    }
+
+    pub const fn is_damped(&self) -> bool {
+        self.damped
     }
 
     /// The frame, whether it is damped, and two vectors of its order for whoever balances energies between steps.

@@ -7,7 +7,7 @@ use super::FrameMatrices;
 use super::band::SymmetricBand;
 use super::energy::{End, FrameEnergies};
 use super::factor::{BandFactor, NotPositiveDefinite};
-use super::schemes::{Course, Decide, Moment, Schemes};
+use super::schemes::{Course, Decide, Moment, Pass, Schemes};
 use super::storeys::storeys_of;
 use super::tangents::{StoreyTangents, Tangents};
 use crate::plan::Integrator;
@@ -95,8 +95,8 @@ pub struct FrameSolver {
     /// Under I-modification: the force the recursion takes, N, and how far the specimen is from the target, m.
     felt: Vec<f64>,
     away: Vec<f64>,
-    /// Of M, where steps are those of Moreau and Jean.
-    mass: Option<BandFactor>,
+    /// What dampers took in a step that a law found its own way through, J.
+    damping_work: Option<f64>,
 }
 
 impl FrameSolver {
@@ -148,15 +148,12 @@ impl FrameSolver {
             predicted: false,
             felt: zero(),
             away: zero(),
-            mass: None,
+            damping_work: None,
         })
     }
 
-    /// A body may strike the degree of freedom `place`: with impulses that jump (`tangent` only), or with forces.
-    pub(super) fn strike(&mut self, place: usize, jumps: bool) -> Result<(), FrameError> {
-        if jumps {
-            self.mass = Some(BandFactor::new(&self.schemes.matrices.mass).map_err(FrameError::Mass)?);
-        }
+    /// A body may strike the degree of freedom `place`.
+    pub(super) fn strike(&mut self, place: usize) -> Result<(), FrameError> {
         self.schemes.strike(place).map_err(FrameError::Mass)
     }
 
@@ -185,9 +182,8 @@ impl FrameSolver {
             self.predicted = true;
             self.load_end.copy_from_slice(load_end);
             let from = self.state.moment();
-            if self.mass.is_some() {
-                self.schemes.jump(from, &self.load_end, &mut self.next, decide);
-            } else if self.schemes.integrator == Integrator::Tangent {
+            self.damping_work = None;
+            if self.schemes.integrator == Integrator::Tangent {
                 self.schemes.foretell(from, &self.load_end, &mut self.next, decide);
             } else {
                 self.schemes.impose(from, &mut self.next);
@@ -195,6 +191,22 @@ impl FrameSolver {
             self.state.target.copy_from_slice(&self.next.displacement);
         }
         &self.state.target
+    }
+
+    /// The same in tangent form, with a law that finds its own way through the step and tells what dampers took on it, J.
+    pub(super) fn predict_by(&mut self, load_end: &[f64], pass: Pass) -> &[f64] {
+        if !self.predicted {
+            self.predicted = true;
+            self.load_end.copy_from_slice(load_end);
+            self.damping_work = Some(pass(&self.schemes, self.state.moment(), &self.load_end, &mut self.next));
+            self.state.target.copy_from_slice(&self.next.displacement);
+        }
+        &self.state.target
+    }
+
+    /// Whether the step under way has its targets.
+    pub(super) const fn is_predicted(&self) -> bool {
+        self.predicted
     }
 
     /// Ends the step with what was measured at the targets. Without a prediction before it, under the loads of its start.
@@ -226,9 +238,6 @@ impl FrameSolver {
         };
         if self.schemes.integrator == Integrator::Tangent {
             self.next.force.copy_from_slice(felt);
-            if let Some(mass) = &self.mass {
-                self.schemes.settle_acceleration(mass, &self.load_end, &mut self.next);
-            }
         } else {
             let (schemes, from) = (&mut self.schemes, self.state.moment());
             schemes.correct(from, &self.load_end, felt, &mut self.next, decide);
@@ -257,7 +266,7 @@ impl FrameSolver {
     }
 
     fn accept(&mut self, measured_displacement: &[f64], restoring_force: &[f64]) {
-        let Self { schemes, state, next, load_end, .. } = self;
+        let Self { schemes, state, next, load_end, damping_work, .. } = self;
         let time_step = schemes.time_step;
         let from = End {
             displacement: &state.displacement,
@@ -267,7 +276,7 @@ impl FrameSolver {
         };
         let to = End { displacement: &next.displacement, velocity: &next.velocity, restoring_force: &next.force, load: load_end };
         let (frame, first, second) = schemes.scratch();
-        state.energies = state.energies.advance(frame, time_step, from, to, (first, second));
+        state.energies = state.energies.advance(frame, time_step, from, to, *damping_work, (first, second));
         std::mem::swap(&mut state.displacement, &mut next.displacement);
         std::mem::swap(&mut state.velocity, &mut next.velocity);
         std::mem::swap(&mut state.acceleration, &mut next.acceleration);

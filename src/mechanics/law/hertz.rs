@@ -79,11 +79,37 @@ impl HertzContact {
         force
     }
 
+    /// Parts of a step in which the blow is followed.
+    pub(crate) fn parts(&self, time_step: f64) -> f64 {
+        (time_step / self.part).ceil().max(1.0)
+    }
+
+    /// Mean force of a part (as `solve` has it), N, and whether it is the limit that bounds it.
+    pub(crate) fn force(&self, from: f64, way: f64, yielding: f64, duration: f64) -> (f64, bool) {
+        let force = self.solve(from, way, yielding, duration);
+        if force > self.force_limit { (self.force_limit, true) } else { (force, false) }
+    }
+
+    /// The dent that the limit force leaves of an overlap, m: what the surface cannot hold elastically.
+    pub(crate) fn dent(&self, overlap: f64) -> f64 {
+        overlap - (self.force_limit / self.stiffness).powf(2.0 / 3.0)
+    }
+
+    /// Force of an instant, N.
+    pub(crate) fn instant(&self, depth: f64, rate: f64) -> f64 {
+        (self.elastic(depth) * (1.0 + self.loss * rate)).clamp(0.0, self.force_limit)
+    }
+
+    /// A mean of forces up to the limit is not above it by a rounding either, N.
+    pub(crate) const fn bounded(&self, mean: f64) -> f64 {
+        mean.min(self.force_limit)
+    }
+
     /// The midpoint rule over parts of the step: it keeps the energy balance to rounding whatever the force is.
     fn follow(&self, bodies: &Bodies, start: &Start) -> Advance {
         let Bodies { mass, damping, striker_mass, gravity, time_step } = *bodies;
         let tangent = start.tangent_stiffness;
-        let parts = (time_step / self.part).ceil().max(1.0);
+        let parts = self.parts(time_step);
         let duration = time_step / parts;
         let half = 0.5 * duration;
         let inertia = mass + half * (damping + half * tangent);
@@ -99,12 +125,8 @@ impl HertzContact {
             let unpushed = (mass * structure.velocity - half * structure.restoring_force) / inertia;
             let falling = vs + half * gravity;
             let way = duration * (falling - unpushed);
-            let mut force = self.solve(depth, way, yielding, duration);
-            let over = force > self.force_limit;
-            if over {
-                force = self.force_limit;
-                limited = true;
-            }
+            let (force, over) = self.force(depth, way, yielding, duration);
+            limited |= over;
             let mean_velocity = unpushed + half * force / inertia;
             let mean_striker = falling - half * force / striker_mass;
             let (moved, striker_moved) = (duration * mean_velocity, duration * mean_striker);
@@ -117,14 +139,12 @@ impl HertzContact {
             contact_loss += force * (striker_moved - moved);
             damping_work += damping * mean_velocity * moved;
             if over {
-                // What the surface cannot hold elastically at the limit force stays as a dent.
-                let held = (self.force_limit / self.stiffness).powf(2.0 / 3.0);
-                indentation = indentation.max(xs - structure.displacement - held);
+                indentation = indentation.max(self.dent(xs - structure.displacement));
             }
         }
         let depth = xs - structure.displacement - indentation;
         let rate = vs - structure.velocity;
-        let force = (self.elastic(depth) * (1.0 + self.loss * rate)).clamp(0.0, self.force_limit);
+        let force = self.instant(depth, rate);
         structure.acceleration = (force - damping * structure.velocity - structure.restoring_force) / mass;
         let state = match (limited, impulse > 0.0) {
             (true, _) => StepState::Limit,
@@ -136,8 +156,7 @@ impl HertzContact {
             striker_displacement: xs,
             striker_velocity: vs,
             state,
-            // A mean of forces up to the limit, and not above it by a rounding either.
-            contact_force: (impulse / time_step).min(self.force_limit),
+            contact_force: self.bounded(impulse / time_step),
             indentation,
             contact_loss,
             damping_work,

@@ -7,6 +7,7 @@ mod restitution;
 pub use hertz::HertzContact;
 pub use impulse::ImpulseContact;
 pub use restitution::RestitutionContact;
+pub(crate) use restitution::{MOST_BOUNCES, SHORTEST_FLIGHT, locate};
 
 use crate::mechanics::contact::{ContactLaw, StepState};
 use crate::mechanics::integrator::Motion;

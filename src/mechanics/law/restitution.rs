@@ -7,12 +7,12 @@ use crate::mechanics::integrator::Motion;
 
 /// Flights shorter than this part of Δt are not followed: the bodies stay together. Larger, and bouncing ends too
 /// early; smaller, and a step near e = 1 takes more bounces than it is worth. Its error shrinks with Δt.
-const SHORTEST_FLIGHT: f64 = 1e-3;
+pub(crate) const SHORTEST_FLIGHT: f64 = 1e-3;
 /// Halvings of an interval of time: past the resolution of a double.
 const HALVINGS: u32 = 60;
 /// Impacts of one step that bounce. `SHORTEST_FLIGHT` lets no more into a step whose structure slows down steadily; past
 /// them the next impact is taken as the one with which the bounces die out.
-const MOST_BOUNCES: u32 = 2000;
+pub(crate) const MOST_BOUNCES: u32 = 2000;
 
 /// Separation speed = `coefficient` × closing speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +66,7 @@ impl Course {
 }
 
 /// First instant in (0, end] at which `reached` holds, by halving; it holds at `end`.
-fn locate(end: f64, mut reached: impl FnMut(f64) -> bool) -> f64 {
+pub(crate) fn locate(end: f64, mut reached: impl FnMut(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, end);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);

@@ -67,7 +67,7 @@ pub enum SpecimenModel {
 }
 
 impl SpecimenModel {
-    /// A model of `behaviour`, at no displacement and untouched. What acts on the load cell by its speed is the rig's.
+    /// A model of `behaviour`, at no displacement and untouched. What acts on the load cell by its speed or in time is the rig's.
     #[must_use]
     pub fn new(behaviour: &Behaviour) -> Self {
         match behaviour {
@@ -90,7 +90,7 @@ impl SpecimenModel {
             Behaviour::Fracture { of, at } => Self::Fracture(Box::new(Fracture::new(Self::new(of), *at))),
             Behaviour::Series(parts) => Series::of(parts.iter().map(Self::new)),
             Behaviour::Parallel(parts) => Self::Parallel(parts.iter().map(Self::new).collect()),
-            Behaviour::Rate { of, .. } => Self::new(of),
+            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } => Self::new(of),
         }
     }
 }

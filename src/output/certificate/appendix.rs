@@ -1,14 +1,16 @@
 //! The end of the report: the plan as it was run, where the numbers come from, what may be done with them, signatures. In: a
 //! run. Out: blocks, and the plan's files to go with them.
 
-use super::super::document::{Attachment, Block, Text};
-use super::super::{RealRun, Run, plan_files};
-use super::pairs;
+use super::super::document::{Attachment, Block, Column, Style, Table, Text};
+use super::super::{OutputFile, RealRun, Run, number, plan_files};
+use super::{pairs, particulars};
+use crate::digest::sha256;
 use crate::inert;
+use crate::mechanics::self_test;
 use crate::plan::PlanFile;
 
 /// Plan, provenance, statements, signatures.
-pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
+pub(super) fn all(run: &Run<'_>, tables: &[OutputFile], body: &mut Vec<Block>) {
     body.push(Block::section("Plan as run"));
     for (file, kept) in run.plan.files.iter().zip(plan_files(run.plan)) {
         body.push(Block::part(file.name.as_str()));
@@ -16,6 +18,8 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     }
     body.push(Block::section("Provenance"));
     body.push(provenance(run));
+    body.push(Block::part("Files"));
+    body.push(files(run, tables));
     body.push(Block::note(if run.plan.rig.link.as_real().is_some() {
         Text::from(
             "The file manifest.sha256 beside this report holds the SHA-256 of every file of the run. The record journal.psdj holds \
@@ -29,6 +33,8 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
              plan, seed, settings and version give the same bytes.",
         )
     }));
+    body.push(Block::part("Validation of the program"));
+    validation(run, body);
     body.push(Block::section("Statements"));
     body.push(Block::paragraph(format!(
         "These results relate only to the items tested{}. This report is not to be reproduced except in full without the approval \
@@ -73,16 +79,64 @@ fn provenance(run: &Run<'_>) -> Block {
         ("Report", Text::new().id(run.provenance.report_id())),
         ("Run", Text::new().id(&run.provenance.run_id)),
         ("Program", format!("psd {}", run.provenance.psd_version).into()),
+        ("Its sources, SHA-256", id_or_unknown(&run.provenance.build.sources)),
+        ("Built for", known(&run.provenance.build.toolchain)),
         ("SHA-256 of the plan", Text::new().id(&run.provenance.plan_sha256)),
         ("Settings on the command line", settings.into()),
         ("Rig", format!("{}{simulated}", run.record.rig.name).into()),
+        ("Firmware of the rig", known(&run.record.rig.firmware)),
     ];
     match (&run.provenance.real, run.plan.rig.link.as_virtual()) {
         (Some(real), _) => rows.extend(record(real)),
-        (None, Some(link)) => rows.push(("Seed", link.seed.to_string().into())),
+        (None, Some(link)) => {
+            rows.push(("Seed", link.seed.to_string().into()));
+            rows.push(("Clocks", "none: virtual time, and the time a rig would have taken".into()));
+        }
         (None, None) => {}
     }
     pairs(rows)
+}
+
+fn known(text: &str) -> Text {
+    if text.is_empty() { Text::missing("not recorded") } else { text.into() }
+}
+
+fn id_or_unknown(digits: &str) -> Text {
+    if digits.is_empty() { Text::missing("not recorded") } else { Text::new().id(digits) }
+}
+
+/// Digests of what went in and of the numbers that came out: with this paper alone the files can be proven.
+fn files(run: &Run<'_>, tables: &[OutputFile]) -> Block {
+    let row = |file: &OutputFile| vec![Text::from(file.path.as_str()), Text::new().id(sha256(&file.bytes))];
+    let rows = plan_files(run.plan).iter().chain(tables).map(row).collect();
+    Block::Table(Table { columns: vec![Column::words("File in the folder of the run", 1), Column::short("SHA-256")], rows })
+}
+
+/// What the program reckons of cases whose answers are known, and where the laboratory's own validation is.
+fn validation(run: &Run<'_>, body: &mut Vec<Block>) {
+    let exact = |value: f64, dimension| number::stated(value, dimension);
+    let row = |case: &self_test::SelfTest| {
+        let verdict = if case.passed() { Text::new().with(Style::Pass, "pass") } else { Text::new().with(Style::Fail, "fail") };
+        vec![
+            Text::from(format!("{}: {}", case.case, case.result)),
+            exact(case.computed, case.dimension).into(),
+            exact(case.expected, case.dimension).into(),
+            verdict,
+        ]
+    };
+    let columns = vec![
+        Column::words("Self-test, after Melo et al. 2006", 1),
+        Column::numbers("Computed"),
+        Column::numbers("Reference"),
+        Column::short("Verdict"),
+    ];
+    body.push(Block::Table(Table { columns, rows: self_test::all().iter().map(row).collect() }));
+    body.push(Block::note(match particulars::stated(run, "validation") {
+        Some(text) => Text::from(format!("Validation by the laboratory: {text}")),
+        None => Text::from("The program that set this report passes or fails these cases by the code that reckoned the run. ")
+            .code("psd test")
+            .and(" holds whole plans against their blessed results."),
+    }));
 }
 
 /// Who, where and when, and the record that everything here is made from.
@@ -93,6 +147,11 @@ fn record(real: &RealRun) -> Vec<(&'static str, Text)> {
         ("Machine", Text::given(real.host.as_deref())),
         ("Began, UTC", Text::given(real.began.as_deref())),
         ("Last recorded, UTC", Text::given(real.ended.as_deref())),
+        (
+            "Clocks",
+            "UTC of the machine's clock, as it was set; time on the rig from a clock that only goes forward, begun with the run"
+                .into(),
+        ),
         ("Records", records.map_or_else(|| Text::given(None), |records| records.to_string().into())),
         ("Head of the record", head.map_or_else(|| Text::given(None), |head| Text::new().id(head))),
     ]

@@ -3,10 +3,11 @@
 
 use super::super::document::{Block, Text};
 use super::super::{Run, behaviour, number};
-use super::{described, frames, pairs, particulars};
-use crate::plan::{Interval, Limits, Settle, Specimen, Striker};
+use super::{described, frames, pairs, particulars, words};
+use crate::plan::{Interval, Settle, Specimen, Striker};
 use crate::quantity::Dimension;
 use crate::record::History;
+use crate::record::equipment::HeldLimit;
 
 /// Everything about how the test was set up.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
@@ -22,11 +23,11 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
         body.push(Block::part(stated(format!("Specimen {}", specimen.name))));
         match &specimen.frame {
             Some(frame) => frames::structure(frame, body),
-            None => body.push(specimen_table(specimen)),
+            None => body.push(specimen_table(specimen, run.plan.rig.link.as_real().is_none())),
         }
     }
     for ground in &run.plan.grounds {
-        body.push(Block::part(Text::from(format!("Motion of the ground {}", ground.name)).soft(" · from a file of the plan")));
+        body.push(Block::part(Text::from(format!("Ground {}", ground.name)).soft(" · from a file of the plan")));
         body.push(frames::ground(ground));
     }
     for striker in &run.plan.strikers {
@@ -34,7 +35,7 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
         body.push(striker_table(striker));
     }
     body.push(Block::part("Limits"));
-    body.push(limits(&run.plan.limits));
+    body.push(limits(run));
     if !run.plan.parameters.is_empty() {
         body.push(Block::part("Parameters"));
         body.push(parameters(run));
@@ -47,6 +48,10 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
         let (virtual_time, rig_time) = match &procedure.history {
             History::Impact(history) => {
                 let (first, last) = (history.steps.first()?, history.steps.last()?);
+                (last.time - first.time, last.wall_time - first.wall_time)
+            }
+            History::StoreyImpact(history) => {
+                let (first, last) = (history.blow.steps.first()?, history.blow.steps.last()?);
                 (last.time - first.time, last.wall_time - first.wall_time)
             }
             History::Shake(history) => {
@@ -74,24 +79,30 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
     }
 }
 
-fn specimen_table(specimen: &Specimen) -> Block {
-    let mut rows = vec![("equivalent mass", number::stated(specimen.mass, Dimension::MASS))];
-    if let Some(behaviour) = &specimen.behaviour {
-        rows.extend(behaviour::rows(behaviour, &number::stated));
+/// What a virtual specimen does is no property of a real one.
+fn specimen_table(specimen: &Specimen, is_virtual: bool) -> Block {
+    let mass = Text::from(doubtful(specimen.mass, specimen.mass_uncertainty, Dimension::MASS));
+    let mass = match &specimen.mass_from {
+        Some(formula) => mass.soft(" from ").code(formula),
+        None => mass,
+    };
+    let mut rows: Vec<(&str, Text)> = vec![("equivalent mass", mass)];
+    if let Some(behaviour) = specimen.behaviour.as_ref().filter(|_| is_virtual) {
+        rows.extend(behaviour::rows(behaviour, &number::stated).into_iter().map(|(name, text)| (name, text.into())));
     }
-    if specimen.damping != 0.0 {
-        rows.push(("damping on the load cell", number::stated(specimen.damping, Dimension::DAMPING)));
+    if is_virtual && specimen.damping != 0.0 {
+        rows.push(("damping on the load cell", number::stated(specimen.damping, Dimension::DAMPING).into()));
     }
-    if specimen.coulomb != 0.0 {
-        rows.push(("friction on the load cell", number::stated(specimen.coulomb, Dimension::FORCE)));
+    if is_virtual && specimen.coulomb != 0.0 {
+        rows.push(("friction on the load cell", number::stated(specimen.coulomb, Dimension::FORCE).into()));
     }
-    described(rows)
+    pairs(rows)
 }
 
 fn striker_table(striker: &Striker) -> Block {
     let mut rows = vec![
-        ("mass", number::stated(striker.mass, Dimension::MASS)),
-        ("velocity at the start", number::stated(striker.velocity, Dimension::VELOCITY)),
+        ("mass", doubtful(striker.mass, striker.mass_uncertainty, Dimension::MASS)),
+        ("velocity at the start", doubtful(striker.velocity, striker.velocity_uncertainty, Dimension::VELOCITY)),
         ("energy", number::stated(0.5 * striker.mass * striker.velocity * striker.velocity, Dimension::ENERGY)),
         ("gap at the start", number::stated(striker.gap, Dimension::LENGTH)),
     ];
@@ -99,6 +110,14 @@ fn striker_table(striker: &Striker) -> Block {
         rows.push(("acceleration along its way", number::stated(striker.gravity, Dimension::ACCELERATION)));
     }
     described(rows)
+}
+
+/// A stated value with its standard uncertainty, where one is stated.
+fn doubtful(value: f64, uncertainty: f64, dimension: Dimension) -> String {
+    if uncertainty == 0.0 {
+        return number::stated(value, dimension);
+    }
+    format!("{} (± u)", number::with_uncertainty(value, Some(uncertainty), dimension))
 }
 
 pub(super) fn settling(settle: Settle) -> String {
@@ -114,22 +133,16 @@ pub(super) fn settling(settle: Settle) -> String {
     )
 }
 
-fn limits(limits: &Limits) -> Block {
-    let rows: Vec<(&str, String)> = [
-        ("displacement", limits.displacement, Dimension::LENGTH),
-        ("force", limits.force, Dimension::FORCE),
-        ("speed", limits.speed, Dimension::VELOCITY),
-        ("increment", limits.increment, Dimension::LENGTH),
-        ("tracking error", limits.tracking_error, Dimension::LENGTH),
-        ("energy error", limits.energy_error, Dimension::NUMBER),
-        ("tracking energy error", limits.tracking_energy_error, Dimension::NUMBER),
-        ("NRMS tracking error", limits.nrms_error, Dimension::NUMBER),
-    ]
-    .into_iter()
-    .filter(|(_, interval, _)| interval.is_bounded())
-    .map(|(name, interval, dimension)| (name, range(interval, dimension)))
-    .collect();
-    if rows.is_empty() { Block::paragraph("The plan sets no limit.") } else { described(rows) }
+/// As the guard held them, also what holds by default.
+fn limits(run: &Run<'_>) -> Block {
+    let equipment = run.equipment();
+    let row = |limit: &HeldLimit| {
+        let name = if limit.quantity == "nrms_error" { "NRMS tracking error".to_owned() } else { words(&limit.quantity) };
+        let axis = limit.axis.map_or_else(String::new, |axis| format!(", axis {axis}"));
+        (Text::from(name + &axis), Text::from(range(limit.interval(), limit.dimension())))
+    };
+    let rows: Vec<(Text, Text)> = equipment.limits.iter().map(row).collect();
+    if rows.is_empty() { Block::paragraph("Nothing was limited.") } else { Block::Pairs { rows } }
 }
 
 pub(super) fn range(interval: Interval, dimension: Dimension) -> String {

@@ -4,65 +4,101 @@
 use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
-use super::pairs;
-use crate::plan::{DeviceLink, Gate, PortPlan, ReadingRules, RealLink, VirtualLink};
+use super::{pairs, particulars};
+use crate::plan::{Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
+use crate::quantity::display::significant;
 use crate::record::EventKind;
+use crate::record::equipment::{Channel, Device, GivenIn};
 
 /// The rig of the run.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Equipment and calibration"));
-    body.push(calibration(run));
-    body.push(match run.plan.rig.link.as_real() {
-        Some(link) => real(run, link),
-        None => simulated(run),
-    });
+    match run.plan.rig.link.as_real() {
+        Some(link) => {
+            body.push(calibration(run));
+            body.push(real(run, link));
+        }
+        None => body.push(simulated(run)),
+    }
 }
 
-/// What the rig's numbers are traced to, and whether that still held on the day of the test.
+/// What is measured, over which range and how well, what that is traced to, and whether it still held on the day of the
+/// test: a row a channel.
 fn calibration(run: &Run<'_>) -> Block {
-    let identity = &run.record.rig;
-    let calibration = &run.plan.rig.calibration;
-    let told: Vec<&str> =
-        [&identity.model, &identity.serial].into_iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
-    let state = match (calibration.due.as_deref(), standing::last_day(run)) {
+    let equipment = run.equipment();
+    let several = equipment.channels.iter().any(|channel| channel.axis > 1);
+    let row = |channel: &Channel| {
+        let axis = if several { format!(" {}", channel.axis) } else { String::new() };
+        let (certificate, due) = (channel.certificate.as_deref(), channel.due.as_deref());
+        vec![
+            format!("{}{axis}", channel.measures.name()).into(),
+            channel.range.map_or_else(
+                || Text::given(None),
+                |[low, high]| range(Interval { low, high }, channel.measures.dimension()).into(),
+            ),
+            Text::given(channel.class.as_deref()),
+            factor(channel).into(),
+            Text::given(certificate),
+            Text::given(due),
+            state(run, due),
+        ]
+    };
+    let columns = vec![
+        Column::short("Channel"),
+        Column::short("Range"),
+        Column::words("Class", 2),
+        Column::short("Factor"),
+        Column::words("Calibration certificate", 3),
+        Column::short("Holds until"),
+        Column::short("State"),
+    ];
+    Block::Table(Table { columns, rows: equipment.channels.iter().map(row).collect() })
+}
+
+/// Whether a calibration held on the last day of the test.
+fn state(run: &Run<'_>, due: Option<&str>) -> Text {
+    match (due, standing::last_day(run)) {
         (None, _) => Text::missing("no due date"),
         (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
         (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),
         (Some(_), None) => Text::missing("day of the test not known"),
-    };
-    let row = vec![
-        Text::from(run.plan.rig.name.as_str()),
-        if told.is_empty() { Text::given(None) } else { told.join(", ").into() },
-        Text::given(calibration.reference.as_deref()),
-        Text::given(calibration.due.as_deref()),
-        state,
-    ];
-    let columns = vec![
-        Column::short("Rig"),
-        Column::words("Model, serial number", 2),
-        Column::words("Calibration certificate", 2),
-        Column::short("Holds until"),
-        Column::short("State"),
-    ];
-    Block::Table(Table { columns, rows: vec![row] })
+    }
+}
+
+/// How the number of a channel becomes a quantity.
+fn factor(channel: &Channel) -> String {
+    match channel.given_in {
+        GivenIn::Units => number::stated(channel.factor, Dimension::NUMBER),
+        GivenIn::Counts => format!("{} a count", number::stated(channel.factor, channel.measures.dimension())),
+    }
 }
 
 fn real(run: &Run<'_>, link: &RealLink) -> Block {
-    let identity = &run.record.rig;
-    let calibration = &run.plan.rig.calibration;
+    let equipment = run.equipment();
+    let identity = &equipment.device.identity;
     let kind = if identity.simulated { "a simulated controller on a real line: nothing real moved" } else { "real" };
-    let mut rows = vec![("Kind", kind.into()), ("Firmware", Text::given(Some(&identity.firmware)))];
+    let stated = |text: &str| Text::given(Some(text));
+    let mut rows = vec![
+        ("Rig", run.plan.rig.name.as_str().into()),
+        ("Kind", kind.into()),
+        ("Model", stated(&identity.model)),
+        ("Serial number", stated(&identity.serial)),
+        ("Firmware", stated(&identity.firmware)),
+    ];
+    if let Some(text) = particulars::stated(run, "equipment") {
+        rows.push(("Other equipment", text.into()));
+    }
     if let Some(boot) = &identity.boot {
         rows.push(("Power-up of the controller", Text::new().id(boot)));
     }
     rows.push(("Actuator", device(&link.actuator)));
     rows.push(("Load cell", link.load_cell.as_ref().map_or_else(|| "read by the actuator's controller".into(), device)));
-    if let Some(factor) = calibration.newtons_per_count {
-        let zero = number::stated(calibration.zero_count, Dimension::NUMBER);
-        rows.push(("Force of a count", format!("{}, zero at {zero}", number::stated(factor, Dimension::FORCE)).into()));
+    for channel in equipment.channels.iter().filter(|channel| channel.zero != 0.0) {
+        rows.push(("Count at no force", number::stated(channel.zero, Dimension::NUMBER).into()));
     }
-    rows.push(("Declared of its readings", declared(&link.readings).into()));
+    rows.push(("Declared of its readings", declared(&equipment.device, &link.readings).into()));
+    rows.extend(uncertainty(&run.plan.rig.calibration));
     rows.push(("Taking a reading", taking(&link.readings).into()));
     rows.push(("Settling", settling(run.plan.rig.settle).into()));
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
@@ -75,12 +111,33 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
 
 fn simulated(run: &Run<'_>) -> Block {
     let link = run.plan.rig.link.as_virtual().copied().unwrap_or_default();
-    pairs(vec![
-        ("Kind", "simulated: nothing real moved".into()),
-        ("Firmware", Text::given(Some(&run.record.rig.firmware))),
+    let equipment = run.equipment();
+    let identity = &equipment.device.identity;
+    let mut rows = vec![
+        ("Rig", run.plan.rig.name.as_str().into()),
+        ("Kind", "simulated: nothing real moved, nothing was measured".into()),
+        ("Model, firmware", format!("{} {}", identity.model, identity.firmware).into()),
         ("Simulated errors", errors(&link).into()),
         ("Settling", settling(run.plan.rig.settle).into()),
-    ])
+    ];
+    if let Some(text) = particulars::stated(run, "equipment") {
+        rows.push(("Other equipment", text.into()));
+    }
+    rows.extend(uncertainty(&run.plan.rig.calibration));
+    pairs(rows)
+}
+
+/// What is stated of the calibration's uncertainty, where anything is.
+fn uncertainty(calibration: &Calibration) -> Option<(&'static str, Text)> {
+    let percent = |share: f64| format!("{}\u{a0}%", significant(100.0 * share, 2));
+    let terms = [
+        ("force", calibration.force_uncertainty, percent(calibration.force_uncertainty)),
+        ("displacement", calibration.displacement_uncertainty, percent(calibration.displacement_uncertainty)),
+        ("zero of the force", calibration.zero_uncertainty, number::stated(calibration.zero_uncertainty, Dimension::FORCE)),
+    ];
+    let stated = terms.into_iter().filter(|(_, size, _)| *size > 0.0).map(|(name, _, size)| format!("{name} {size}"));
+    let stated: Vec<String> = stated.collect();
+    (!stated.is_empty()).then(|| ("Standard uncertainty of its calibration", stated.join("; ").into()))
 }
 
 /// What a virtual rig adds to its specimen.
@@ -112,8 +169,8 @@ fn device(link: &DeviceLink) -> Text {
     }
 }
 
-fn declared(readings: &ReadingRules) -> String {
-    let ReadingRules { resolution, noise, force_range, .. } = *readings;
+fn declared(device: &Device, readings: &ReadingRules) -> String {
+    let (resolution, noise, force_range) = (device.resolution, device.noise, readings.force_range);
     let mut told = vec![
         format!("displacement to {}", number::stated(resolution, Dimension::LENGTH)),
         format!("noise of one force reading {}", number::stated(noise, Dimension::FORCE)),

@@ -8,7 +8,7 @@ use crate::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
-use crate::record::{Modes, ProcedureRecord, ShakeHistory, ShakeStep};
+use crate::record::{Floors, Modes, ProcedureRecord, ShakeHistory};
 
 /// Storeys from the ground up, or the files of the matrices.
 pub(super) fn structure(frame: &Frame, body: &mut Vec<Block>) {
@@ -87,27 +87,15 @@ pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, h
     body.push(mode_table(modes, &history.damping_ratios));
     if !history.steps.is_empty() {
         let frame = run.plan.specimens.get(shake.specimen).and_then(|specimen| specimen.frame.as_ref());
-        body.push(storey_table(procedure, history, frame));
+        body.push(storey_table(procedure, &history.steps, frame, "max_displacement"));
         body.push(energy_balance(history));
     }
 }
 
 fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
     let time = |value| number::text(value, Dimension::TIME);
-    let integrator = match shake.integrator {
-        Integrator::Tangent => "constant average acceleration with the measured tangent stiffness".to_owned(),
-        Integrator::Explicit => "explicit Newmark".to_owned(),
-        Integrator::AlphaOs { alpha } => {
-            format!("α-operator splitting with the initial stiffness, α = {}", number::stated(alpha, Dimension::NUMBER))
-        }
-    };
-    let damping = match (&shake.damping, history.damping_ratios.iter().any(|ratio| *ratio != 0.0)) {
-        (_, false) => "No damping is computed.",
-        (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
-        (ShakeDamping::Modal(_), true) => "Each mode has a damping ratio of its own.",
-    };
     let mut sentences = vec![
-        format!("Integrated by {integrator}. {damping}"),
+        integrated(shake.integrator, &shake.damping, &history.damping_ratios),
         format!("Time step {}; a tenth of the shortest period is {}.", time(history.time_step), time(history.critical_time_step)),
     ];
     sentences.extend(method::driven(shake.i_modification, shake.mode));
@@ -118,6 +106,23 @@ fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
         ));
     }
     sentences.join(" ")
+}
+
+/// How a frame was integrated, and how it was damped.
+pub(super) fn integrated(integrator: Integrator, damping: &ShakeDamping, ratios: &[f64]) -> String {
+    let integrator = match integrator {
+        Integrator::Tangent => "constant average acceleration with the measured tangent stiffness".to_owned(),
+        Integrator::Explicit => "explicit Newmark".to_owned(),
+        Integrator::AlphaOs { alpha } => {
+            format!("α-operator splitting with the initial stiffness, α = {}", number::stated(alpha, Dimension::NUMBER))
+        }
+    };
+    let damping = match (damping, ratios.iter().any(|ratio| *ratio != 0.0)) {
+        (_, false) => "No damping is computed.",
+        (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
+        (ShakeDamping::Modal(_), true) => "Each mode has a damping ratio of its own.",
+    };
+    format!("Integrated by {integrator}. {damping}")
 }
 
 /// Largest acceleration as applied beside that of the record over the same time and with the same factor.
@@ -131,7 +136,7 @@ fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
     )
 }
 
-fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
+pub(super) fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
     let columns = vec![
         Column::numbers("Mode"),
         Column::numbers("Period"),
@@ -153,14 +158,19 @@ fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
     Block::Table(Table { columns, rows: (0..modes.periods.len()).map(row).collect() })
 }
 
-/// One row a storey, from the ground up.
-fn storey_table(procedure: &ProcedureRecord, history: &ShakeHistory, frame: Option<&Frame>) -> Block {
+/// One row a storey, from the ground up; `displacement` names the result with the floors' largest.
+pub(super) fn storey_table<S: Floors>(
+    procedure: &ProcedureRecord,
+    steps: &[S],
+    frame: Option<&Frame>,
+    displacement: &str,
+) -> Block {
     let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
         Some(ResultValue::List(values)) => values.clone(),
         _ => Vec::new(),
     };
-    let (displacement, drift, residual) = (list("max_displacement"), list("max_drift"), list("residual_drift"));
-    let shear = largest(history, ShakeStep::shear);
+    let (displacement, drift, residual) = (list(displacement), list("max_drift"), list("residual_drift"));
+    let shear = largest(steps, S::shear);
     let whole = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     let cell = |values: &[f64], storey: usize, dimension| -> Text {
         values.get(storey).map_or_else(|| "—".to_owned(), |value| number::text_beside(*value, whole(values), dimension)).into()
@@ -188,9 +198,9 @@ fn storey_table(procedure: &ProcedureRecord, history: &ShakeHistory, frame: Opti
     Block::Table(Table { columns, rows: (0..shear.len()).map(row).collect() })
 }
 
-fn largest(history: &ShakeHistory, read: fn(&ShakeStep) -> Vec<f64>) -> Vec<f64> {
+fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
     let mut largest: Vec<f64> = Vec::new();
-    for step in &history.steps {
+    for step in steps {
         let values = read(step);
         largest.resize(values.len(), 0.0);
         for (largest, value) in largest.iter_mut().zip(values) {
@@ -211,9 +221,10 @@ fn energy_balance(history: &ShakeHistory) -> Block {
     ];
     let row = |(name, energy): (&str, f64)| -> Vec<Text> {
         let share = if e.input > 0.0 { results::percent(energy / e.input) } else { "—".to_owned() };
-        vec![name.into(), number::text_beside(energy, e.input, Dimension::ENERGY).into(), share.into()]
+        vec![name.into(), number::part_of(energy, e.input, 5, Dimension::ENERGY).into(), share.into()]
     };
-    let input = vec!["input, −∫Mι ü_g dX".into(), number::text(e.input, Dimension::ENERGY).into(), "100\u{a0}%".into()];
+    let input =
+        vec!["input, −∫Mι üg dX".into(), number::part_of(e.input, e.input, 5, Dimension::ENERGY).into(), "100\u{a0}%".into()];
     let columns = vec![
         Column::words("Energy balance at the end of the run", 1),
         Column::numbers("Energy"),

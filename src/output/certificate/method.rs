@@ -53,7 +53,7 @@ fn integrator(impact: &Impact) -> String {
 }
 
 /// What following wrongly did, where it did anything that can be told from rounding.
-fn tracking(history: &ImpactHistory) -> Option<String> {
+pub(super) fn tracking(history: &ImpactHistory) -> Option<String> {
     let (first, last) = (history.steps.first()?, history.steps.last()?);
     let found = last.tracking;
     if found.peak_error < 1e-12 {

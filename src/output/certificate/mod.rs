@@ -3,6 +3,7 @@
 
 mod appendix;
 mod blows;
+mod budget;
 mod conditions;
 mod contact_log;
 mod curve;
@@ -14,14 +15,15 @@ mod marks;
 mod method;
 mod particulars;
 mod results;
+mod storey;
 
-use super::Run;
 use super::document::{Block, Document, Figure, Text};
 use super::figures::Drawn;
+use super::{OutputFile, Run};
 use crate::inert;
 
-/// The whole report.
-pub(super) fn document(run: &Run<'_>, figures: &[Drawn]) -> Document {
+/// The whole report; `tables` are the files whose digests it prints.
+pub(super) fn document(run: &Run<'_>, figures: &[Drawn], tables: &[OutputFile]) -> Document {
     let mut body = Vec::new();
     head::amendments(run, &mut body);
     if head::deviations_come_first(run) {
@@ -39,9 +41,10 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn]) -> Document {
             Block::Figure(Figure { number: index + 1, caption: figure.caption.as_str().into(), svg: figure.svg.clone() })
         }));
     }
+    particulars::opinions(run, &mut body);
     equipment::all(run, &mut body);
     conditions::all(run, &mut body);
-    appendix::all(run, &mut body);
+    appendix::all(run, tables, &mut body);
     Document {
         kind: "Report of a pseudo-dynamic test",
         title: title(run).into(),
@@ -49,6 +52,7 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn]) -> Document {
         id: run.provenance.report_id().to_owned(),
         date: run.provenance.date.as_deref().map(inert::printed),
         front: particulars::front(run),
+        lacking: particulars::lacking(run),
         verdict: head::verdict(run),
         marks: marks::boxed(run),
         across: marks::across(run),

@@ -3,11 +3,11 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::{blows, contact_log, curve, cycles, frames, method, words};
+use super::{blows, budget, contact_log, curve, cycles, frames, method, storey, words};
 use crate::formula::ResultValue;
-use crate::plan::{Contact, Impact, ProcedureKind};
-use crate::quantity::{Dimension, display};
-use crate::record::{History, ImpactHistory, LineFit, NamedResult, ProcedureRecord};
+use crate::plan::{Contact, Impact, ProcedureKind, RelaxationModel};
+use crate::quantity::Dimension;
+use crate::record::{History, Hold, ImpactHistory, LineFit, NamedResult, ProcedureRecord, RelaxationFit};
 
 /// Every procedure that was run, in order.
 pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
@@ -19,14 +19,15 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
         let state = if procedure.complete { "" } else { " · not complete" };
         body.push(Block::part(Text::from(procedure.name.as_str()).soft(format!(" · {}{state}", procedure.kind))));
         inputs(procedure, body);
-        if !procedure.results.is_empty() {
-            body.push(table(procedure));
-        }
+        results(procedure, body);
         match &procedure.history {
             History::Ramp(history) => {
                 if let Some(fit) = &history.multilinear {
                     let reach = history.steps.iter().map(|step| step.displacement);
                     curve::table(fit, reach.fold(0.0, |most, x| if fit.way * x > fit.way * most { x } else { most }), body);
+                }
+                if let Some(fit) = &history.relaxation {
+                    body.push(relaxed(fit, &history.holds));
                 }
                 if let Some(fit) = history.fit {
                     body.push(fitted("R = K·X + R₀", ("K", Dimension::STIFFNESS), ("R₀", Dimension::FORCE), fit));
@@ -40,9 +41,11 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::Impact(history) => {
                 force_note(run, index, procedure, history, body);
                 method::note(run, index, history, body);
+                budget::table(run, index, procedure, body);
                 energy_balance(history, body);
                 contact_log::table(history, body);
             }
+            History::StoreyImpact(history) => storey::struck(run, index, procedure, history, body),
             History::Cycle(history) => cycles::table(history, body),
             History::Shake(history) => frames::shaken(run, index, procedure, history, body),
             History::Escalate(history) => blows::table(history, body),
@@ -66,14 +69,28 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     }
 }
 
-/// Lists whose numbers stand in a table of their own are not printed twice.
-fn table(procedure: &ProcedureRecord) -> Block {
+/// Lists whose numbers stand in a table of their own are not printed twice, and what the run did not give is named below.
+fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let tabled = match &procedure.history {
         History::Ramp(history) => history.multilinear.is_some(),
-        History::Cycle(_) | History::Escalate(_) | History::Shake(_) => true,
+        History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) => true,
         _ => false,
     };
-    let results = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
+    let printed = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
+    let (found, none): (Vec<&NamedResult>, Vec<&NamedResult>) =
+        printed.partition(|result| !matches!(result.value, ResultValue::Number { value: None, .. }));
+    if !found.is_empty() {
+        body.push(table(&found));
+    }
+    if !none.is_empty() {
+        let named = none.iter().enumerate().fold(Text::from("None in this run: "), |text, (index, result)| {
+            if index == 0 { text.code(result.name) } else { text.and(", ").code(result.name) }
+        });
+        body.push(Block::note(named.and(".")));
+    }
+}
+
+fn table(results: &[&NamedResult]) -> Block {
     let columns = vec![
         Column::words("Result", 1),
         Column::numbers("Value"),
@@ -82,7 +99,7 @@ fn table(procedure: &ProcedureRecord) -> Block {
         Column::short("Unit"),
         Column::short("In the plan"),
     ];
-    Block::Table(Table { columns, rows: results.map(row).collect() })
+    Block::Table(Table { columns, rows: results.iter().map(|result| row(result)).collect() })
 }
 
 fn row(result: &NamedResult) -> Vec<Text> {
@@ -121,6 +138,27 @@ fn fitted(line: &str, slope: (&str, Dimension), intercept: (&str, Dimension), fi
     ))
 }
 
+/// The relaxation of the holds: its model, how far the readings lie from it, and what the pauses left.
+fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
+    let with = |(value, error): (f64, f64), dimension| number::with_uncertainty(value, Some(error), dimension);
+    let model = match fit.model {
+        RelaxationModel::Exponential => "R = R∞ + A e^(−t/τ) in every pause".to_owned(),
+        RelaxationModel::StandardLinearSolid => {
+            let solid = fit.branch_stiffness.map(|stiffness| format!(", K₁ = {}", with(stiffness, Dimension::STIFFNESS)));
+            format!("R = R₀ + K∞X + q, q' = K₁X' − q/τ through all moves and pauses{}", solid.unwrap_or_default())
+        }
+    };
+    let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
+    Block::note(format!(
+        "Relaxation by least squares over {readings} readings in {} pauses: {model}, τ = {} (± standard error); the readings scatter \
+         by {} about it. The pauses left {} to relax, at most.",
+        holds.len(),
+        with(fit.time_constant, Dimension::TIME),
+        number::text(fit.scatter, Dimension::FORCE),
+        with(fit.remaining, Dimension::FORCE),
+    ))
+}
+
 /// What a reader of a peak contact force must know: the impulse, the step, and what the law makes of them.
 fn force_note(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history: &ImpactHistory, body: &mut Vec<Block>) {
     let Some(ProcedureKind::Impact(impact)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
@@ -151,7 +189,7 @@ fn force_note(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history:
     body.push(Block::paragraph(sentences.join(" ")));
 }
 
-fn scalar(procedure: &ProcedureRecord, name: &str) -> Option<f64> {
+pub(super) fn scalar(procedure: &ProcedureRecord, name: &str) -> Option<f64> {
     match procedure.result(name).map(|result| &result.value) {
         Some(ResultValue::Number { value, .. }) => *value,
         _ => None,
@@ -178,7 +216,7 @@ fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) ->
 }
 
 /// The law of contact as the plan chose it, in words.
-fn contact_law(contact: &Contact) -> &'static str {
+pub(super) fn contact_law(contact: &Contact) -> &'static str {
     match contact {
         Contact::Rigid => "rigid",
         Contact::Limit { .. } => "rigid up to a limit force",
@@ -200,7 +238,7 @@ fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impa
 }
 
 /// Where the striker's energy was at the end of the run.
-fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
+pub(super) fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
     let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else { return };
     let e = last.energies;
     let input = first.energies.striker + e.weight;
@@ -214,10 +252,10 @@ fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
     ];
     let row = |(name, energy): (&str, f64)| -> Vec<Text> {
         let share = if input > 0.0 { percent(energy / input) } else { "—".to_owned() };
-        vec![name.into(), number::text_beside(energy, input, Dimension::ENERGY).into(), share.into()]
+        vec![name.into(), number::part_of(energy, input, 5, Dimension::ENERGY).into(), share.into()]
     };
     let given = if e.weight == 0.0 { "input, ½MsV₀²" } else { "input, ½MsV₀² and the work of the weight" };
-    let input_row = vec![given.into(), number::text(input, Dimension::ENERGY).into(), "100\u{a0}%".into()];
+    let input_row = vec![given.into(), number::part_of(input, input, 5, Dimension::ENERGY).into(), "100\u{a0}%".into()];
     let columns = vec![
         Column::words("Energy balance at the end of the run", 1),
         Column::numbers("Energy"),
@@ -234,7 +272,5 @@ fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
 }
 
 pub(super) fn percent(share: f64) -> String {
-    let text =
-        if share != 0.0 && share.abs() < 1e-4 { format!("{:.1e}", 100.0 * share) } else { format!("{:.2}", 100.0 * share) };
-    display::minus(&text) + "\u{a0}%"
+    number::part_of(100.0 * share, 100.0, 5, Dimension::NUMBER) + "\u{a0}%"
 }

@@ -65,12 +65,13 @@ fn top(document: &Document) -> Markup {
             }
             div.run {
                 "Report " span.id { (document.id) } br;
-                @if let Some(date) = &document.date { (date) } @else { "date not given" }
+                @if let Some(date) = &document.date { "Tested " (date) } @else { "date of the test not given" }
             }
         }
         div.front {
             @for (name, value) in in_two_columns(&document.front) { div { span.name { (line(name)) } span { (line(value)) } } }
         }
+        @if !document.lacking.is_empty() { p.note.lacking { "Not given: " (document.lacking.join(", ")) "." } }
         div class={ "verdict " (document.verdict.name) } {
             strong { (document.verdict.name.to_uppercase()) }
             (line(&document.verdict.text))

@@ -25,6 +25,8 @@ pub(super) struct Document {
     pub date: Option<String>,
     /// Who and what, beside the title: short names and values.
     pub front: Vec<(Text, Text)>,
+    /// Names of what should stand there and is not known.
+    pub lacking: Vec<&'static str>,
     pub verdict: Verdict,
     pub marks: Vec<Mark>,
     /// Words across every page.

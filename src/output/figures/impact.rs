@@ -140,7 +140,7 @@ fn short(label: &str) -> String {
 }
 
 /// A chart over virtual time with the contact shaded, still without series.
-fn against_time(history: &ImpactHistory, y: Quantity) -> Chart {
+pub(super) fn against_time(history: &ImpactHistory, y: Quantity) -> Chart {
     let band = |label, state, colour| Band { label, intervals: periods(&history.steps, state), colour };
     Chart {
         x: Quantity::time(),
@@ -163,6 +163,6 @@ fn periods(steps: &[ImpactStep], state: StepState) -> Vec<(f64, f64)> {
     periods
 }
 
-fn series(history: &ImpactHistory, label: &str, read: fn(&ImpactStep) -> f64, style: Style) -> Series {
+pub(super) fn series(history: &ImpactHistory, label: &str, read: fn(&ImpactStep) -> f64, style: Style) -> Series {
     Series { label: label.to_owned(), points: history.steps.iter().map(|step| (step.time, read(step))).collect(), style }
 }

@@ -12,7 +12,9 @@ mod identification;
 mod impact;
 mod plain;
 mod raster;
+mod relaxation;
 mod shake;
+mod storey;
 mod together;
 mod vector;
 
@@ -114,6 +116,10 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares fit."),
         ),
+        (History::Ramp(history), FigureKind::Relaxation) => (
+            relaxation::left(history, history.relaxation.as_ref()?),
+            format!("{name}: force still to relax, the measured less the fitted one after long, against the time held."),
+        ),
         (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.history.steps.is_empty()) => return None,
         (History::Escalate(history), FigureKind::ForceDisplacement) => (
             blows::force_displacement(history),
@@ -147,6 +153,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
                 "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
             ),
         ),
+        (History::StoreyImpact(history), kind) => return storey::chart(run, name, history, figure, kind),
         (History::Shake(history), kind) => return shaken(run, name, history, figure, kind),
         _ => return None,
     })
@@ -158,7 +165,7 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: &Figure, ki
         return None;
     }
     let limits = |result| shake::of_size(impact::limits_on(run, figure.procedure, result));
-    let chosen = if shake::is_chosen(history) { "; not every one is drawn" } else { "" };
+    let chosen = if shake::is_chosen(&history.steps) { "; not every one is drawn" } else { "" };
     Some(match kind {
         FigureKind::Modes => (
             shake::modes(history.modes.as_ref()?),
@@ -168,20 +175,21 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: &Figure, ki
             (shake::ground(history), format!("{name}: acceleration of the ground, as it was applied, against virtual time."))
         }
         FigureKind::Displacement => (
-            shake::displacement(history),
+            shake::displacement(&history.steps),
             format!("{name}: displacement of each floor relative to the ground against virtual time{chosen}."),
         ),
-        FigureKind::Drift => {
-            (shake::drift(history, &limits("max_drift")), format!("{name}: drift of each storey against virtual time{chosen}."))
-        }
+        FigureKind::Drift => (
+            shake::drift(&history.steps, &limits("max_drift")),
+            format!("{name}: drift of each storey against virtual time{chosen}."),
+        ),
         FigureKind::Hysteresis => (
-            shake::hysteresis(history),
+            shake::hysteresis(&history.steps),
             format!(
                 "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
             ),
         ),
         FigureKind::BaseShear => (
-            shake::base_shear(history, &limits("max_base_shear")),
+            shake::base_shear(&history.steps, &limits("max_base_shear")),
             format!("{name}: base shear, the sum of the measured restoring forces, against virtual time."),
         ),
         FigureKind::Energy => {

@@ -1,9 +1,9 @@
-//! Charts of a frame on moving ground. In: the steps of one shake, its modes. Out: [`Chart`]s in SI. Floors and storeys are
-//! told apart by colour and dash, the lowest first.
+//! Charts of a frame on moving ground, and of floors and storeys whatever moved them. In: the steps, the modes. Out:
+//! [`Chart`]s in SI. Floors and storeys are told apart by colour and dash, the lowest first.
 
 use super::chart::{Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, Reference, SOLID, Series, Style, palette};
 use crate::quantity::Dimension;
-use crate::record::{Modes, ShakeHistory, ShakeStep};
+use crate::record::{Floors, Modes, ShakeHistory, ShakeStep};
 
 /// More than this many curves cannot be told apart in one picture.
 const MOST_CURVES: usize = 6;
@@ -13,20 +13,20 @@ const COLOURS: [Colour; MOST_CURVES] =
 const DASHES: [&[f64]; MOST_CURVES] = [SOLID, DASHED, LONG, DASH_DOT, SOLID, DOTTED];
 
 /// Displacement of each floor against the ground.
-pub(super) fn displacement(history: &ShakeHistory) -> Chart {
-    each_floor(history, Quantity::of("Displacement", Dimension::LENGTH), "floor", |step| step.computed.clone())
+pub(super) fn displacement<S: Floors>(steps: &[S]) -> Chart {
+    each_floor(steps, Quantity::of("Displacement", Dimension::LENGTH), "floor", |step| step.computed().to_vec())
 }
 
-pub(super) fn drift(history: &ShakeHistory, limits: &[Reference]) -> Chart {
-    let mut chart = each_floor(history, Quantity::of("Drift", Dimension::LENGTH), "storey", ShakeStep::drift);
+pub(super) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
+    let mut chart = each_floor(steps, Quantity::of("Drift", Dimension::LENGTH), "storey", S::drift);
     chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
     chart
 }
 
 /// Storey shear against drift: the area of a loop is the energy it took.
-pub(super) fn hysteresis(history: &ShakeHistory) -> Chart {
-    let paths: Vec<(Vec<f64>, Vec<f64>)> = history.steps.iter().map(|step| (step.drift(), step.shear())).collect();
-    let curves = shown(floors(history)).into_iter().enumerate().map(|(curve, storey)| Series {
+pub(super) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
+    let paths: Vec<(Vec<f64>, Vec<f64>)> = steps.iter().map(|step| (step.drift(), step.shear())).collect();
+    let curves = shown(floors(steps)).into_iter().enumerate().map(|(curve, storey)| Series {
         label: format!("storey {}", storey + 1),
         points: paths.iter().map(|(drift, shear)| (drift[storey], shear[storey])).collect(),
         style: style(curve, 1.4),
@@ -40,17 +40,18 @@ pub(super) fn hysteresis(history: &ShakeHistory) -> Chart {
     }
 }
 
-pub(super) fn base_shear(history: &ShakeHistory, limits: &[Reference]) -> Chart {
-    let read = |step: &ShakeStep| step.restoring_force.iter().sum();
+pub(super) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
+    let read = |step: &S| step.restoring_force().iter().sum();
     let mut chart = over_time(Quantity::of("Base shear", Dimension::FORCE));
-    chart.series = vec![one(history, "base shear", read, Style::line(palette::BLUE, 1.6, SOLID))];
+    chart.series = vec![one(steps, "base shear", read, Style::line(palette::BLUE, 1.6, SOLID))];
     chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
     chart
 }
 
 pub(super) fn ground(history: &ShakeHistory) -> Chart {
     let mut chart = over_time(Quantity::of("Acceleration of the ground", Dimension::ACCELERATION));
-    chart.series = vec![one(history, "as applied", |step| step.ground_acceleration, Style::line(palette::BLUE, 1.4, SOLID))];
+    chart.series =
+        vec![one(&history.steps, "as applied", |step| step.ground_acceleration, Style::line(palette::BLUE, 1.4, SOLID))];
     chart
 }
 
@@ -65,7 +66,7 @@ pub(super) fn energy(history: &ShakeHistory) -> Chart {
     ];
     let mut chart = over_time(Quantity::of("Energy", Dimension::ENERGY));
     let drawn = parts.into_iter().filter(|(_, read, _)| history.steps.iter().any(|step| read(step) != 0.0));
-    chart.series = drawn.map(|(label, read, style)| one(history, label, read, style)).collect();
+    chart.series = drawn.map(|(label, read, style)| one(&history.steps, label, read, style)).collect();
     chart
 }
 
@@ -96,12 +97,12 @@ pub(super) fn of_size(limits: Vec<Reference>) -> Vec<Reference> {
 }
 
 /// Whether not every floor is drawn, for the caption.
-pub(super) fn is_chosen(history: &ShakeHistory) -> bool {
-    floors(history) > MOST_CURVES
+pub(super) fn is_chosen<S: Floors>(steps: &[S]) -> bool {
+    floors(steps) > MOST_CURVES
 }
 
-fn floors(history: &ShakeHistory) -> usize {
-    history.steps.first().map_or(0, |step| step.command.len())
+fn floors<S: Floors>(steps: &[S]) -> usize {
+    steps.first().map_or(0, |step| step.computed().len())
 }
 
 /// The floors that are drawn: all, or as many as can be told apart, evenly from the lowest to the highest.
@@ -112,9 +113,9 @@ fn shown(floors: usize) -> Vec<usize> {
     (0..MOST_CURVES).map(|curve| curve * (floors - 1) / (MOST_CURVES - 1)).collect()
 }
 
-fn each_floor(history: &ShakeHistory, y: Quantity, what: &str, read: fn(&ShakeStep) -> Vec<f64>) -> Chart {
-    let values: Vec<(f64, Vec<f64>)> = history.steps.iter().map(|step| (step.time, read(step))).collect();
-    let curves = shown(floors(history)).into_iter().enumerate().map(|(curve, floor)| Series {
+fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> Vec<f64>) -> Chart {
+    let values: Vec<(f64, Vec<f64>)> = steps.iter().map(|step| (step.time(), read(step))).collect();
+    let curves = shown(floors(steps)).into_iter().enumerate().map(|(curve, floor)| Series {
         label: format!("{what} {}", floor + 1),
         points: values.iter().map(|(time, values)| (*time, values[floor])).collect(),
         style: style(curve, 1.6),
@@ -132,8 +133,8 @@ fn over_time(y: Quantity) -> Chart {
     Chart { x: Quantity::time(), y, bands: Vec::new(), series: Vec::new(), references: Vec::new() }
 }
 
-fn one(history: &ShakeHistory, label: &str, read: fn(&ShakeStep) -> f64, style: Style) -> Series {
-    Series { label: label.to_owned(), points: history.steps.iter().map(|step| (step.time, read(step))).collect(), style }
+fn one<S: Floors>(steps: &[S], label: &str, read: fn(&S) -> f64, style: Style) -> Series {
+    Series { label: label.to_owned(), points: steps.iter().map(|step| (step.time(), read(step))).collect(), style }
 }
 
 #[cfg(test)]

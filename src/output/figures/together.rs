@@ -5,7 +5,7 @@
 use super::chart::{Chart, Colour, DASH_DOT, DOTTED, LONG, Quantity, SOLID, SPARSE, Series, Style, palette};
 use crate::plan::{FigureKind, MOST_TOGETHER};
 use crate::quantity::Dimension;
-use crate::record::{History, ImpactHistory, ProcedureRecord, ShakeHistory, ShakeStep};
+use crate::record::{Floors, History, ImpactHistory, ProcedureRecord, ShakeHistory, ShakeStep};
 
 /// Those that may lie on each other are told apart all the same: a narrow line of gaps on a broad one shows both.
 const STYLES: [(Colour, f64, &[f64]); MOST_TOGETHER] = [

@@ -1,9 +1,11 @@
 //! Fills a [`Summary`] from a run. Knows the record; the format itself is one file up.
 
+use super::super::budget::{Budget, Line, budgets};
 use super::super::{Amends, Change, Run, deviations, standing};
 use super::{
-    AmendmentSummary, AmendsSummary, ChangeSummary, ConditionSummary, EventSummary, Ordered, OutcomeSummary, ParameterSummary,
-    PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary, Value,
+    AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, EventSummary, Ordered,
+    OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary,
+    SCHEMA, Summary, Value,
 };
 use crate::formula::{Estimate, ResultValue};
 use crate::quantity::Dimension;
@@ -50,7 +52,9 @@ impl Summary {
             standing: standing::of(run).name(),
             missing: standing::missing(run),
             outcome: OutcomeSummary { kind, reason },
-            procedures: Ordered(record.procedures.iter().map(|p| (p.name.clone(), procedure(p))).collect()),
+            procedures: Ordered(
+                record.procedures.iter().enumerate().map(|(index, p)| (p.name.clone(), procedure(run, index, p))).collect(),
+            ),
             requirements: assessment.requirements.iter().map(requirement).collect(),
             events: record
                 .events
@@ -109,7 +113,7 @@ pub(in crate::output) fn governing(requirement: &RequirementOutcome) -> Option<&
     requirement.conditions.iter().find(|condition| condition.verdict == worst)
 }
 
-fn procedure(procedure: &ProcedureRecord) -> ProcedureSummary {
+fn procedure(run: &Run<'_>, index: usize, procedure: &ProcedureRecord) -> ProcedureSummary {
     let input = |(name, estimate, dimension): &(&'static str, Estimate, Dimension)| {
         let value = ResultValue::Number { value: Some(estimate.value), uncertainty: estimate.uncertainty };
         ((*name).to_owned(), quantity(&value, *dimension))
@@ -119,6 +123,26 @@ fn procedure(procedure: &ProcedureRecord) -> ProcedureSummary {
         complete: procedure.complete,
         inputs: Ordered(procedure.inputs.iter().map(input).collect()),
         results: Ordered(procedure.results.iter().map(|r| (r.name.to_owned(), result(procedure.kind, r))).collect()),
+        uncertainty_budgets: budgets(run, index, procedure).iter().map(budget).collect(),
+    }
+}
+
+fn budget(budget: &Budget<'_>) -> BudgetSummary {
+    let contribution = |line: &Line| ContributionSummary {
+        input: line.input.clone(),
+        method: if line.draws.is_some() { "sampled" } else { "linearised" },
+        value: line.value.and_then(finite),
+        input_unit: si_unit(line.dimension),
+        input_u: line.uncertainty.map(f64::abs).and_then(finite),
+        sensitivity: line.sensitivity.and_then(finite),
+        contribution: finite(line.contribution),
+        smooth: line.smooth,
+    };
+    BudgetSummary {
+        result: budget.result.name,
+        unit: si_unit(budget.result.dimension),
+        u: finite(budget.uncertainty),
+        contributions: budget.lines.iter().map(contribution).collect(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is wrong with a journal that cannot be trusted. In: nothing. Out: the place and the reason, for people. It knows
 //! no remedy: there is none.
 
-use super::{FORMAT, LINE_BYTES};
+use super::{FORMAT, LINE_BYTES, OLDEST_FORMAT};
 
 /// The journal was altered, or is not one: nothing of it may be gone on with.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -37,7 +37,7 @@ pub enum Wrong {
     NoHeader,
     #[error("a second HEADER")]
     SecondHeader,
-    #[error("its format is version {found}; this psd reads version {FORMAT} only")]
+    #[error("its format is version {found}; this psd reads versions {OLDEST_FORMAT} to {FORMAT}")]
     Format { found: String },
     #[error("END counts {count} records with head {head}, and others stand before it")]
     EndOfAnother { count: String, head: String },

@@ -2,7 +2,7 @@
 //! of SHA-256). In: records as JSON. Out: lines; and back, with what of a damaged file can be trusted. It does not know
 //! what a record means.
 //!
-//! # The format, version 1
+//! # The format, version 2
 //!
 //! A journal is lines of printable ASCII (bytes 0x20 to 0x7e), each ended by one LF and at most 64 KiB long with it:
 //!
@@ -13,7 +13,7 @@
 //! - `SEQ`: the number of the line, decimal, from 1, without gaps: record 17 is line 17.
 //! - `TYPE`: one of the words of [`EntryKind`]. The first record and no other is `HEADER`; nothing follows `END`.
 //! - `JSON`: one object, without blanks between its parts. Everything outside 0x20 to 0x7e is a `\u` escape, also DEL.
-//!   Numbers are the shortest decimals that read back as the same 64-bit float. `HEADER` begins with `"format":1`, `END`
+//!   Numbers are the shortest decimals that read back as the same 64-bit float. `HEADER` begins with `"format":2`, `END`
 //!   with `"count"` (records before it) and `"head"` (`CHAIN` of the record before it).
 //! - `CHAIN`: 64 lower-case hexadecimal digits, the SHA-256 of these bytes, one after the other: the 64 digits of the
 //!   line before (64 times `0` at line 1), then `SEQ TYPE JSON` as written in this line, with the two blanks between.
@@ -54,5 +54,9 @@ pub use recovery::{Recovered, recover};
 pub use storage::Storage;
 pub use writer::{Durability, Journal};
 
-/// The version of the format that is written, and the only one read.
-pub const FORMAT: u64 = 1;
+/// The version of the format that is written. Version 1, which is read too, does not say in its first line what was measured
+/// with.
+pub const FORMAT: u64 = 2;
+
+/// The oldest version that is read.
+pub const OLDEST_FORMAT: u64 = 1;

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::chain::Chain;
 use super::line::{self, LINE_BYTES, Unsound};
-use super::{Damage, EntryKind, FORMAT, Line, Wrong};
+use super::{Damage, EntryKind, FORMAT, Line, OLDEST_FORMAT, Wrong};
 
 /// What of a journal can be trusted.
 #[derive(Clone, Debug)]
@@ -27,6 +27,12 @@ impl Recovered {
     #[must_use]
     pub fn head(&self) -> &str {
         self.chain.as_str()
+    }
+
+    /// The version of the format, as the first record says; 0 where there is none.
+    #[must_use]
+    pub fn format(&self) -> u64 {
+        self.lines.first().and_then(|line| line.body["format"].as_u64()).unwrap_or(0)
     }
 
     /// The last field `step` of a record.
@@ -125,7 +131,9 @@ fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> 
     match kind {
         _ if found.ended => Err(Wrong::AfterEnd),
         EntryKind::Header if !found.lines.is_empty() => Err(Wrong::SecondHeader),
-        EntryKind::Header if body["format"] != FORMAT => Err(Wrong::Format { found: said("format") }),
+        EntryKind::Header if !body["format"].as_u64().is_some_and(|format| (OLDEST_FORMAT..=FORMAT).contains(&format)) => {
+            Err(Wrong::Format { found: said("format") })
+        }
         EntryKind::Header => Ok(()),
         _ if found.lines.is_empty() => Err(Wrong::NoHeader),
         EntryKind::End if body["count"] != found.lines.len() as u64 || body["head"] != found.head() => {

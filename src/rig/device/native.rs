@@ -230,7 +230,11 @@ impl Device for NativeDevice {
         let Answered { reply, line } = self.request(&Request::Measure { readings: 1 }, Kind::Data)?;
         let data = native::data(&reply.words).filter(|data| data.axes.len() == self.axes());
         let Some(data) = data else {
-            return Err(DeviceFault::NoReading { raw: line, reason: "a field is missing, too many or no number".to_owned() });
+            let reason = match native::axis_without_number(&reply.words) {
+                Some(axis) => format!("axis {axis} has no number where one belongs"),
+                None => "a field is missing, too many or no number".to_owned(),
+            };
+            return Err(DeviceFault::NoReading { raw: line, reason });
         };
         let mut axes = data.axes.iter().map(|axis| Channel {
             displacement: Some(axis.displacement),

@@ -285,16 +285,26 @@ pub fn data(words: &[String]) -> Option<Data> {
     }
     #[expect(clippy::cast_precision_loss, reason = "ms since power-up")]
     let time = number::count(time.as_bytes())? as f64 / 1e3;
-    let axis = |words: &[String]| {
-        let [displacement, force, raw, flags] = words else { return None };
-        Some(AxisData {
-            displacement: millimetres(displacement)?,
-            force: number::fixed(force.as_bytes())?,
-            raw: number::whole(raw.as_bytes())?,
-            flags: self::flags(flags)?,
-        })
-    };
-    Some(Data { time, axes: axes.chunks_exact(4).map(axis).collect::<Option<_>>()?, state: self::state(state)? })
+    let axes = axes.chunks_exact(4).map(axis_data).collect::<Option<_>>()?;
+    Some(Data { time, axes, state: self::state(state)? })
+}
+
+/// The first axis (from 1) of a `DATA` reply of several that has no number where one belongs.
+#[must_use]
+pub fn axis_without_number(words: &[String]) -> Option<usize> {
+    let [_, axes @ .., _] = words else { return None };
+    let several = axes.len() > 4 && axes.len().is_multiple_of(4);
+    several.then(|| axes.chunks_exact(4).position(|words| axis_data(words).is_none())).flatten().map(|axis| axis + 1)
+}
+
+fn axis_data(words: &[String]) -> Option<AxisData> {
+    let [displacement, force, raw, flags] = words else { return None };
+    Some(AxisData {
+        displacement: millimetres(displacement)?,
+        force: number::fixed(force.as_bytes())?,
+        raw: number::whole(raw.as_bytes())?,
+        flags: self::flags(flags)?,
+    })
 }
 
 /// mm as m.

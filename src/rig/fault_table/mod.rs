@@ -4,6 +4,7 @@
 //!
 //! | Row | Fault | Shown by |
 //! |---|---|---|
+//! | 6 | a disk too small for the run | `room::no_rig_writes_more_than_was_reckoned` |
 //! | 10 | no reply | `line::a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held` |
 //! | 11 | parts of replies, two in one read | `line::a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply`, `line::a_reply_cut_anywhere_is_never_a_shorter_number` |
 //! | 12 | garbage, a megabyte without an end | `line::garbage_of_any_kind_is_counted_and_none_of_it_is_used` |
@@ -20,14 +21,18 @@
 //! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
 //! | 26 | targets beyond limits, no numbers | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
 //! | 27 | energy error | `motion::an_energy_error_beyond_its_limit_holds_the_rig` |
+//! | 18–22 | the same of one axis of two | `axes::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration` |
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
 
+mod axes;
 mod device;
 mod gate;
 mod line;
 mod long;
 mod motion;
+mod room;
 mod stage;
 mod targets;
+mod two_axes;
 mod unnumbered;

@@ -6,7 +6,7 @@ use crate::plan::{Dialect, Interval, ModbusMap, ModbusNumber, Plan};
 use crate::record::Outcome;
 use crate::rig::failpoint::Guarding;
 
-fn modbus() -> Plan {
+pub(super) fn modbus() -> Plan {
     let map = ModbusMap {
         unit: 1,
         number: ModbusNumber::Int32 { high_word_first: true },
@@ -28,7 +28,7 @@ fn modbus() -> Plan {
     plan
 }
 
-fn grbl() -> Plan {
+pub(super) fn grbl() -> Plan {
     let mut plan = plan();
     link(&mut plan).actuator = device_link(Dialect::Grbl);
     link(&mut plan).load_cell = Some(device_link(Dialect::Hx711));

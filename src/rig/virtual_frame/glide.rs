@@ -2,6 +2,7 @@
 //! the plan's directions. Out: readings. The pistons follow in closed form, so that the number of readings changes none of them.
 
 use super::VirtualFrame;
+use crate::mechanics::maxwell::Travel;
 use crate::mechanics::path::Path;
 use crate::rig::virtual_rig::glide::{Course, instants};
 use crate::rig::{EachReading, Rig as _, RigFault};
@@ -21,9 +22,9 @@ impl VirtualFrame {
         let courses: Vec<Course> = paths.iter().zip(&self.axes).map(course).collect();
         let began = self.time;
         for pair in instants.windows(2) {
-            for (course, axis) in courses.iter().zip(&mut self.axes) {
-                course.advance(&mut axis.actuator, pair[0], pair[1]);
-            }
+            let axes = courses.iter().zip(&mut self.axes);
+            let travels: Vec<Travel> = axes.map(|(course, axis)| course.advance(&mut axis.actuator, pair[0], pair[1])).collect();
+            self.structure.relax(&travels);
             self.time = began + pair[1];
             self.follow();
             let reading = self.reading();

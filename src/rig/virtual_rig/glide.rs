@@ -2,6 +2,7 @@
 //! readings. The piston follows in closed form, so that the number of readings changes none of them.
 
 use super::VirtualRig;
+use crate::mechanics::maxwell::Travel;
 use crate::mechanics::path::{Path, Rate};
 use crate::rig::actuator::Actuator;
 use crate::rig::{EachReading, Rig as _, RigFault};
@@ -25,10 +26,10 @@ impl Course {
         Self { path, sign, missed, drifts: (misses - missed) / path.seconds }
     }
 
-    /// The actuator goes on from one time on the path to another, s.
-    pub(in crate::rig) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) {
+    /// The actuator goes on from one time on the path to another, s. How the piston went.
+    pub(in crate::rig) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Travel {
         let place = self.sign * self.path.place(to) - (self.missed + self.drifts * to);
-        actuator.run(place, self.rate(from), self.rate(to), to - from);
+        actuator.run(place, self.rate(from), self.rate(to), to - from)
     }
 
     fn rate(&self, time: f64) -> Rate {
@@ -65,9 +66,9 @@ impl VirtualRig {
         let course = Course::of(*path, self.sign, &self.actuator);
         let began = self.time;
         for pair in instants.windows(2) {
-            course.advance(&mut self.actuator, pair[0], pair[1]);
+            let travel = course.advance(&mut self.actuator, pair[0], pair[1]);
             self.time = began + pair[1];
-            self.follow();
+            self.follow(&travel);
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();

@@ -6,7 +6,7 @@ use super::played::{Mismatch, Played, Unplayable, body};
 use crate::plan::RigPlan;
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
-use crate::rig::{Identity, Reading, named_axis, of_axis, who};
+use crate::rig::{DeclaredNoise, Identity, Reading, named_axis, of_axis, who};
 use crate::run::{Inspection, UNLOADING};
 
 /// How near the rig must stand to where the record left it.
@@ -42,6 +42,11 @@ pub enum Refusal {
     #[error("the rig started anew since ({recorded} became {found}): reference it, then say so with --re-referenced")]
     Rebooted { recorded: String, found: String },
     #[error(
+        "the rig's firmware is no longer the one of the record ({recorded} became {found}): see that it means the same, reference \
+         the rig, then say so with --re-referenced"
+    )]
+    OtherFirmware { recorded: String, found: String },
+    #[error(
         "{} stands at {found} m; the record left it at {recorded} m, {band} m is allowed: bring it back by hand, then resume",
         who(*.axis)
     )]
@@ -63,20 +68,34 @@ pub enum Refusal {
     Unplayable(#[from] Unplayable),
 }
 
-/// Whether the rig that answers is the one of the record, and has not started anew.
+/// Whether the rig that answers is the one of the record, and has neither started anew nor become another program.
 ///
 /// # Errors
-/// It is not; `re_referenced` accepts a new start.
+/// It is not; `re_referenced` accepts a new start and another firmware.
 pub fn same_rig(recorded: &Identity, found: &Identity, re_referenced: bool) -> Result<(), Refusal> {
     let named = |identity: &Identity| format!("{} {}", identity.model, identity.serial);
     if (&recorded.model, &recorded.serial) != (&found.model, &found.serial) {
         return Err(Refusal::OtherRig { recorded: named(recorded), found: named(found) });
+    }
+    if recorded.firmware != found.firmware && !re_referenced {
+        return Err(Refusal::OtherFirmware { recorded: recorded.firmware.clone(), found: found.firmware.clone() });
     }
     if recorded.boot != found.boot && !re_referenced {
         let boot = |identity: &Identity| identity.boot.clone().unwrap_or_else(|| "none".to_owned());
         return Err(Refusal::Rebooted { recorded: boot(recorded), found: boot(found) });
     }
     Ok(())
+}
+
+/// Whether a place is read as finely as before: the stiffness of the next step hangs on it.
+///
+/// # Errors
+/// It is not.
+pub fn same_resolution(recorded: DeclaredNoise, found: DeclaredNoise) -> Result<(), Refusal> {
+    if recorded.resolution.to_bits() == found.resolution.to_bits() {
+        return Ok(());
+    }
+    Err(Refusal::OtherMeasure { what: "resolution" })
 }
 
 /// Whether a number on record means the same place and the same force by another plan: no amendment may turn or scale them.

@@ -4,26 +4,36 @@
 use serde::{Deserialize, Serialize};
 
 use crate::mechanics::path::Path;
+use crate::record::equipment::Equipment;
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
+
+/// What stands in place of a protocol where a person drives.
+pub const BY_HAND: &str = "by hand";
 
 /// HEADER: all a run starts from. Enough to check the plan again, on any machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     pub run_id: String,
     pub psd: String,
-    /// Digest of the program's sources.
+    /// SHA-256 of the program's sources, hex.
     pub build: String,
+    /// Target, profile and compiler that it was built for and with; empty where they were not recorded.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub toolchain: String,
     /// The plan first, then what it used. Their texts follow in PLAN records.
     pub files: Vec<HeaderFile>,
     /// `--set` values as given.
     pub settings: Vec<(String, String)>,
     /// Name of the rig, as `--rig` would say it; None: the default of the plan.
     pub rig: Option<String>,
+    /// What is measured with, and held to; None in records of version 1, which do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub equipment: Option<Equipment>,
     /// Whether only the part that a rehearsal measures was to run.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rehearsal: bool,
-    /// Protocol of the clients that drive the rig; None: the plan's procedures do.
+    /// Protocol of the clients that drive the rig, or that a person does by hand; None: the plan's procedures do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub served: Option<String>,
     /// As `--date` gave it.

@@ -21,6 +21,11 @@ pub(super) fn measured(record: &Record) -> String {
                         .unwrap();
                 }
             }
+            History::StoreyImpact(history) => {
+                for (step, floors) in history.blow.steps.iter().zip(&history.floors) {
+                    writeln!(told, "{:?} {:?} {:?}", step.striker_velocity, step.energies, floors).unwrap();
+                }
+            }
             History::Sweep(history) => {
                 for step in &history.steps {
                     writeln!(told, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();

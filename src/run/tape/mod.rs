@@ -20,8 +20,8 @@ mod state;
 pub(crate) mod tests;
 mod way;
 
-pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_rig};
-pub use entry::{AmendBody, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody, StrokeBody};
+pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_resolution, same_rig};
+pub use entry::{AmendBody, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody, StrokeBody};
 pub use observer::TapedObserver;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;
@@ -37,7 +37,7 @@ use crate::rig::Rig;
 use entry::PlanBody;
 use state::State;
 
-use super::driven::{self, DrivenRecord, DrivenStep, Specimen};
+use super::driven::{self, DrivenRecord, DrivenStep, Driver, Specimen};
 use super::{Observer, Unwatched, run};
 
 /// Gives the wall clock, as text; a virtual run has none.
@@ -59,11 +59,12 @@ pub fn record_driven(
     observer: &mut dyn Observer,
     journal: Journal,
     wall: Wall,
+    driver: Driver,
     client: &mut dyn FnMut(&mut Specimen<'_, '_>),
 ) -> (Recorded, Vec<DrivenStep>) {
     let mut done = Vec::new();
     let recorded = perform(Some(rig), observer, State::recording(journal, wall), |rig, observer, _| {
-        let DrivenRecord { record, steps } = driven::drive(plan, rig, observer, client);
+        let DrivenRecord { record, steps } = driven::drive(plan, rig, observer, driver, client);
         done = steps;
         record
     });
@@ -73,12 +74,12 @@ pub fn record_driven(
 /// Plays a record back: no rig, nobody asked. What the journal holds is all that is known.
 #[must_use]
 pub fn replay(plan: &Plan, played: Played) -> Replayed {
-    let served = played.header.served.is_some();
+    let driver = played.header.served.as_deref().map(|by| if by == BY_HAND { Driver::ByHand } else { Driver::Client });
     let state = State::replaying(played);
     let mut steps = None;
-    let Recorded { record, mismatch, .. } = if served {
+    let Recorded { record, mismatch, .. } = if let Some(driver) = driver {
         perform(None, &mut Unwatched, state, |rig, observer, state| {
-            let driven = driven::drive(plan, rig, observer, &mut |specimen| state::ask_again(state, specimen));
+            let driven = driven::drive(plan, rig, observer, driver, &mut |specimen| state::ask_again(state, specimen));
             steps = Some(driven.steps);
             driven.record
         })

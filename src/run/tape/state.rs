@@ -320,7 +320,12 @@ pub(super) fn ask_again(state: &RefCell<State>, specimen: &mut Specimen<'_, '_>)
             continue;
         }
         let Some(request) = state.borrow_mut().next_request() else { return };
+        let last = request == Request::Close;
         specimen.carry_out(request);
+        // What stands behind it the session says by itself: what was mended on the line.
+        if last {
+            return;
+        }
     }
 }
 

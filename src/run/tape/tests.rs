@@ -2,18 +2,18 @@
 //! same end with no target carried out twice.
 
 use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
 
 use super::measured::measured;
 use super::*;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
-use crate::record::journal::testing::{PowerLoss, SickDisk, Sickness};
+use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
-use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, VirtualRig};
-use crate::run::testing::{elastic_plan, impact, ramp, result_of};
+use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, virtual_rig};
+use crate::run::testing::{elastic_plan, impact, ramp, result_of, struck_frame};
 use crate::run::{Inspection, StepReport};
 
 /// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
@@ -21,17 +21,18 @@ use crate::run::{Inspection, StepReport};
 struct Standing(Rc<RefCell<Stand>>, u64);
 
 struct Stand {
-    rig: VirtualRig,
-    offered: Option<f64>,
+    rig: Box<dyn Rig>,
+    offered: Option<Vec<f64>>,
     last: LastMove,
     /// Every target that was carried out, m.
-    carried_out: Vec<f64>,
+    carried_out: Vec<Vec<f64>>,
 }
 
 impl Standing {
     fn new(plan: &Plan) -> Self {
-        let last = LastMove { id: 0, targets: vec![0.0] };
-        Self(Rc::new(RefCell::new(Stand { rig: VirtualRig::of_plan(plan), offered: None, last, carried_out: Vec::new() })), 0)
+        let rig = virtual_rig(plan);
+        let last = LastMove { id: 0, targets: vec![0.0; rig.degrees_of_freedom()] };
+        Self(Rc::new(RefCell::new(Stand { rig, offered: None, last, carried_out: Vec::new() })), 0)
     }
 }
 
@@ -40,22 +41,22 @@ impl Rig for Standing {
         self.0.borrow().rig.identity()
     }
     fn degrees_of_freedom(&self) -> usize {
-        1
+        self.0.borrow().rig.degrees_of_freedom()
     }
     fn time(&self) -> f64 {
         self.0.borrow().rig.time()
     }
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
         let mut stand = self.0.borrow_mut();
-        stand.offered = Some(targets[0]);
+        stand.offered = Some(targets.to_vec());
         let id = stand.last.id + 1;
         Ok(Offer { move_id: Some(id), ..stand.rig.propose(targets, speed)? })
     }
     fn execute(&mut self) -> Result<(), RigFault> {
         let mut stand = self.0.borrow_mut();
         let target = stand.offered.take().unwrap();
-        stand.carried_out.push(target);
-        stand.last = LastMove { id: stand.last.id + 1, targets: vec![target] };
+        stand.carried_out.push(target.clone());
+        stand.last = LastMove { id: stand.last.id + 1, targets: target };
         stand.rig.execute()
     }
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
@@ -84,45 +85,6 @@ impl Rig for Standing {
     }
     fn tally(&self) -> Tally {
         Tally { reread: self.1 / 20, ..Tally::default() }
-    }
-}
-
-/// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
-struct Killed {
-    disk: PowerLoss,
-    left: usize,
-    after: bool,
-    dead: bool,
-}
-
-impl Killed {
-    fn call(&mut self, call: impl FnOnce(&mut PowerLoss) -> std::io::Result<()>) -> std::io::Result<()> {
-        // What is dropped on the way out writes nothing more.
-        if self.dead {
-            return Ok(());
-        }
-        let last = self.left == 0;
-        self.dead = last;
-        if !last || self.after {
-            call(&mut self.disk)?;
-        }
-        if last {
-            resume_unwind(Box::new("killed"));
-        }
-        self.left -= 1;
-        Ok(())
-    }
-}
-
-impl Storage for Killed {
-    fn append(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.call(|disk| disk.append(bytes))
-    }
-    fn sync(&mut self) -> std::io::Result<()> {
-        self.call(Storage::sync)
-    }
-    fn cut(&mut self, length: u64) -> std::io::Result<()> {
-        self.disk.cut(length)
     }
 }
 
@@ -171,9 +133,11 @@ pub(crate) fn header() -> Header {
         run_id: "0123456789abcdef".to_owned(),
         psd: "0".to_owned(),
         build: "0".to_owned(),
+        toolchain: String::new(),
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),
         rig: None,
+        equipment: None,
         rehearsal: false,
         served: None,
         date: None,
@@ -248,31 +212,40 @@ fn what_the_run_would_not_have_done_is_found_out() {
 
 #[test]
 fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
-    let plan = plan();
-    let (whole_rig, whole, _) = recorded(&plan);
+    killed_everywhere(&plan(), 200);
+}
+
+/// A blow on a storey: targets and readings of two axes.
+#[test]
+fn killed_at_every_write_a_blow_on_a_storey_goes_on_to_the_same_end() {
+    killed_everywhere(&struck_frame(), 60);
+}
+
+fn killed_everywhere(plan: &Plan, least: usize) {
+    let (whole_rig, whole, _) = recorded(plan);
     let once = whole_rig.0.borrow().carried_out.clone();
     let mut kills = 0;
     for call in 4.. {
         for after in [false, true] {
-            let (rig, disk) = (Standing::new(&plan), PowerLoss::new());
-            let storage = Killed { disk: disk.clone(), left: call, after, dead: false };
+            let (rig, disk) = (Standing::new(plan), PowerLoss::new());
+            let storage = Killed::at(&disk, call, after);
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 let mut journal = journal(storage);
                 begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
-                record(&plan, &mut rig.clone(), &mut Witness, journal, no_wall())
+                record(plan, &mut rig.clone(), &mut Witness, journal, no_wall())
             }));
             if ended.is_ok() {
-                assert!(kills > 200, "{kills}");
+                assert!(kills > least, "{kills}");
                 return;
             }
             kills += 1;
-            go_on_and_compare(&plan, rig, &disk, &measured(&whole.record), &once, call);
+            go_on_and_compare(plan, rig, &disk, &measured(&whole.record), &once, call);
         }
     }
 }
 
 /// What was written is what a killed program leaves: the system still has it.
-fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected: &str, once: &[f64], call: usize) {
+fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected: &str, once: &[Vec<f64>], call: usize) {
     let (recovered, before) = played(&disk.written());
     if before.ended {
         return;
@@ -459,4 +432,12 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
     same_measure(&plan.rig, &turned).unwrap();
     turned.sign = -turned.sign;
     assert_eq!(same_measure(&plan.rig, &turned), Err(Refusal::OtherMeasure { what: "sign" }));
+
+    let fine = DeclaredNoise { force: 1.0, resolution: 1e-6 };
+    same_resolution(fine, DeclaredNoise { force: 2.0, ..fine }).unwrap();
+    assert!(same_resolution(fine, DeclaredNoise { resolution: 1e-5, ..fine }).is_err());
+    let was = Standing::new(&plan).identity();
+    let is = Identity { firmware: "2.0".to_owned(), ..was.clone() };
+    assert!(matches!(same_rig(&was, &is, false), Err(Refusal::OtherFirmware { .. })));
+    same_rig(&was, &is, true).unwrap();
 }

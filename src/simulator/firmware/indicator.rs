@@ -27,7 +27,7 @@ impl Indicator {
             (true, false) => "ST",
         };
         let shown = if within { format!("{kilograms:+08.2}") } else { "^^^^^^^^".to_owned() };
-        format!("{status},GS,{},kg\r\n", bench.shown_force(shown)).into_bytes()
+        format!("{status},GS,{},kg\r\n", bench.shown_force(0, shown)).into_bytes()
     }
 }
 
@@ -76,7 +76,7 @@ mod tests {
         assert_eq!(indicator.receive(b"READ\r\n", &mut bench), b"US,GS,+0005.00,kg\r\n", "49.03 N on the way");
         bench.advance(1.5);
         assert_eq!(indicator.tick(&mut bench), b"ST,GS,+0010.00,kg\r\n", "98.0665 N");
-        bench.strike(crate::simulator::BenchFault::Spike(-1e6));
+        bench.strike(0, crate::simulator::BenchFault::Spike(-1e6));
         assert_eq!(indicator.receive(b"READ\r\n", &mut bench), b"OL,GS,^^^^^^^^,kg\r\n");
         assert!(indicator.receive(b"WRITE\r\n", &mut bench).is_empty());
     }

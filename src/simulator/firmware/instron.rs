@@ -69,7 +69,7 @@ impl Instron {
             ["Q134", "1", "0"] => Some(format!("{:.8}", bench.displacement() / self.full_scale[0])),
             ["Q134", "2", "0"] => {
                 let raw = format!("{:.8}", bench.force() / self.full_scale[1]);
-                Some(bench.shown_force(raw))
+                Some(bench.shown_force(0, raw))
             }
             ["Q86", "1"] => self.console.ramp_time.map(|seconds| seconds.to_string()),
             ["Q4", "1"] => self.console.ramp_target.map(|raw| raw.to_string()),

@@ -183,7 +183,7 @@ impl Stand {
 
     fn status(&self, bench: &Bench) -> String {
         let here = bench.commanded() - self.zero;
-        let left = bench.moves().last().filter(|_| bench.moving()).map_or(0.0, |sent| sent.target - bench.commanded());
+        let left = bench.moves().last().filter(|_| bench.moving()).map_or(0.0, |sent| sent.targets[0] - bench.commanded());
         let moving = if left > 0.0 {
             "U"
         } else if left < 0.0 {

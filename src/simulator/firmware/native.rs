@@ -1,5 +1,5 @@
-//! A rig of psd's own line protocol. In: frames as `>MOVE 41 17 1.250000 0.500000*6858`. Out: one reply a frame, the same
-//! one for the same sequence number. It never clamps: what it cannot do exactly, it refuses.
+//! A rig of psd's own line protocol, of one axis or of several. In: frames as `>MOVE 41 17 1.250000 0.500000*6858`. Out: one
+//! reply a frame, the same one for the same sequence number. It never clamps: what it cannot do exactly, it refuses.
 
 use rand::RngExt as _;
 use rand_pcg::Pcg64;
@@ -8,8 +8,9 @@ use rand_pcg::rand_core::SeedableRng as _;
 use crate::plan::Interval;
 use crate::simulator::{Bench, Firmware};
 
-/// Longest frame with its ending, bytes.
+/// Longest frame with its ending, bytes: of one axis, of several.
 const LONGEST: usize = 96;
+const LONGEST_OF_SEVERAL: usize = 512;
 /// Most readings of one `MEAS`.
 const MOST_READINGS: usize = 1000;
 /// What stands for a limit there is none of: mm and mm/s, N.
@@ -20,8 +21,8 @@ const NO_LIMIT_N: f64 = 99_999.0;
 #[derive(Clone, Debug)]
 pub struct NativeSettings {
     pub serial_number: String,
-    /// N
-    pub force_limits: Interval,
+    /// One an axis, N; an axis without an entry has none.
+    pub force_limits: Vec<Interval>,
     /// Silence after which it holds, s.
     pub watchdog: f64,
     /// Word of its first power-up; None: drawn.
@@ -30,16 +31,36 @@ pub struct NativeSettings {
 
 impl Default for NativeSettings {
     fn default() -> Self {
-        Self { serial_number: "0042".to_owned(), force_limits: Interval::ALL, watchdog: 3.0, boot: None }
+        Self { serial_number: "0042".to_owned(), force_limits: Vec::new(), watchdog: 3.0, boot: None }
     }
 }
 
-/// Limits in the units of the wire: mm, N, mm/s.
-#[derive(Clone, Copy, Debug)]
+/// Limits in the units of the wire.
+#[derive(Clone, Debug)]
 struct Bounds {
+    axes: Vec<AxisBounds>,
+    /// mm/s
+    top_speed: f64,
+}
+
+/// mm and N
+#[derive(Clone, Copy, Debug)]
+struct AxisBounds {
     displacement: (f64, f64),
     force: (f64, f64),
-    top_speed: f64,
+}
+
+impl AxisBounds {
+    /// Of the four words of an axis.
+    fn of(words: &[&str]) -> Option<Self> {
+        let [low, high, least, most] = words else { return None };
+        Some(Self { displacement: (decimal(low)?, decimal(high)?), force: (decimal(least)?, decimal(most)?) })
+    }
+
+    fn narrower_than(&self, own: &Self) -> bool {
+        let within = |(low, high): (f64, f64), (least, most): (f64, f64)| least <= low && low <= high && high <= most;
+        within(self.displacement, own.displacement) && within(self.force, own.force)
+    }
 }
 
 /// The firmware.
@@ -55,8 +76,8 @@ pub struct Native {
     own: Bounds,
     /// Those of the run, within its own.
     run: Bounds,
-    /// Number and target (mm) of the last move it began.
-    last_move: Option<(u64, f64)>,
+    /// Number and targets (mm) of the last move it began.
+    last_move: Option<(u64, Vec<f64>)>,
     referenced: bool,
     held: bool,
     watchdog_tripped: bool,
@@ -74,11 +95,16 @@ impl Native {
             let scale = 10_f64.powi(decimals);
             (wire * scale).round() / scale
         };
-        let bench = bench.settings();
+        let axis = |ram: usize| {
+            let (place, force) = (bench.limits_of(ram), settings.force_limits.get(ram).copied().unwrap_or(Interval::ALL));
+            AxisBounds {
+                displacement: (known(place.low, NO_LIMIT_MM, 1e3, 6), known(place.high, NO_LIMIT_MM, 1e3, 6)),
+                force: (known(force.low, NO_LIMIT_N, 1.0, 3), known(force.high, NO_LIMIT_N, 1.0, 3)),
+            }
+        };
         let own = Bounds {
-            displacement: (known(bench.limits.low, NO_LIMIT_MM, 1e3, 6), known(bench.limits.high, NO_LIMIT_MM, 1e3, 6)),
-            force: (known(settings.force_limits.low, NO_LIMIT_N, 1.0, 3), known(settings.force_limits.high, NO_LIMIT_N, 1.0, 3)),
-            top_speed: known(bench.top_speed, NO_LIMIT_MM, 1e3, 6),
+            axes: (0..bench.rams()).map(axis).collect(),
+            top_speed: known(bench.settings().top_speed, NO_LIMIT_MM, 1e3, 6),
         };
         Self {
             settings,
@@ -86,8 +112,8 @@ impl Native {
             boot,
             line: Vec::new(),
             last: None,
+            run: own.clone(),
             own,
-            run: own,
             last_move: None,
             referenced: true,
             held: false,
@@ -122,7 +148,7 @@ impl Native {
         }
         let reply = match self.carry_out(verb, &arguments, bench) {
             Ok((kind, words)) => self.reply(kind, sequence, &words),
-            Err(code) => self.reply("ERR", sequence, code),
+            Err(code) => self.reply("ERR", sequence, &code),
         };
         self.last = Some((sequence, reply.clone()));
         Some(reply)
@@ -133,96 +159,98 @@ impl Native {
         format!("<{body}*{:04X}\n", crc(body.as_bytes())).into_bytes()
     }
 
-    fn carry_out(&mut self, verb: &str, arguments: &[&str], bench: &mut Bench) -> Result<(&'static str, String), &'static str> {
+    fn carry_out(&mut self, verb: &str, arguments: &[&str], bench: &mut Bench) -> Result<(&'static str, String), String> {
+        let axes = bench.rams();
         match (verb, arguments) {
             ("HELLO", []) => {
-                self.run = self.own;
+                self.run = self.own.clone();
                 return Ok(("ACK", self.hello()));
             }
-            ("LIM", [low, high, least, most, speed]) => {
-                let given = [low, high, least, most, speed].map(|word| decimal(word));
-                let [Some(low), Some(high), Some(least), Some(most), Some(speed)] = given else { return Err("ARG") };
-                let own = self.own;
-                let narrower = own.displacement.0 <= low
-                    && low <= high
-                    && high <= own.displacement.1
-                    && own.force.0 <= least
-                    && least <= most
-                    && most <= own.force.1
-                    && 0.0 <= speed
-                    && speed <= own.top_speed;
-                if !narrower {
-                    return Err("LIMIT");
+            ("LIM", [limits @ .., speed]) if limits.len() == 4 * axes => {
+                let given: Option<Vec<AxisBounds>> = limits.chunks(4).map(AxisBounds::of).collect();
+                let (given, top_speed) = given.zip(decimal(speed)).ok_or("ARG")?;
+                let wider = given.iter().zip(&self.own.axes).position(|(given, own)| !given.narrower_than(own));
+                if let Some(axis) = wider {
+                    return Err(of_axis("LIMIT", axis, axes));
                 }
-                self.run = Bounds { displacement: (low, high), force: (least, most), top_speed: speed };
+                if !(0.0..=self.own.top_speed).contains(&top_speed) {
+                    return Err("LIMIT".to_owned());
+                }
+                self.run = Bounds { axes: given, top_speed };
             }
-            ("MOVE", [id, target, rate]) => self.move_to(id, target, rate, bench)?,
+            ("MOVE", [id, targets @ .., rate]) if targets.len() == axes => self.move_to(id, targets, rate, bench)?,
             ("MEAS", [count]) => {
                 let count = count.parse().ok().filter(|count| (1..=MOST_READINGS).contains(count)).ok_or("ARG")?;
                 return Ok(("DATA", self.measure(count, bench)));
             }
-            ("STAT", []) => return Ok(("ACK", format!("{} 0x{:04X}", self.state(bench), self.flags(false, bench)))),
+            ("STAT", []) => return Ok(("ACK", format!("{} 0x{:04X}", self.state(bench), self.all_flags(bench)))),
             ("STOP", []) => self.hold(bench),
             ("CLR", []) => (self.held, self.watchdog_tripped) = (false, false),
             ("REF", [_]) => self.referenced = true,
-            ("HELLO" | "LIM" | "MOVE" | "MEAS" | "STAT" | "STOP" | "CLR" | "REF", _) => return Err("ARG"),
-            _ => return Err("VERB"),
+            ("HELLO" | "LIM" | "MOVE" | "MEAS" | "STAT" | "STOP" | "CLR" | "REF", _) => return Err("ARG".to_owned()),
+            _ => return Err("VERB".to_owned()),
         }
         Ok(("ACK", self.state(bench).to_owned()))
     }
 
     fn hello(&self) -> String {
-        let Bounds { displacement, force, top_speed } = self.own;
-        let (id, target) = self.last_move.unwrap_or((0, 0.0));
-        format!(
-            "PSD-SIM {} 1.3 {:.6} {:.6} {:.3} {:.3} {top_speed:.6} {id} {target:.6}",
-            self.settings.serial_number, displacement.0, displacement.1, force.0, force.1
-        )
+        let axis = |AxisBounds { displacement, force }: &AxisBounds| {
+            format!("{:.6} {:.6} {:.3} {:.3}", displacement.0, displacement.1, force.0, force.1)
+        };
+        let limits: Vec<String> = self.own.axes.iter().map(axis).collect();
+        let (id, targets) = self.last_move.clone().unwrap_or_else(|| (0, vec![0.0; limits.len()]));
+        let targets: Vec<String> = targets.iter().map(|target| format!("{target:.6}")).collect();
+        let (serial_number, top_speed) = (&self.settings.serial_number, self.own.top_speed);
+        format!("PSD-SIM {serial_number} 1.3 {} {top_speed:.6} {id} {}", limits.join(" "), targets.join(" "))
     }
 
-    fn move_to(&mut self, id: &str, target: &str, rate: &str, bench: &mut Bench) -> Result<(), &'static str> {
+    /// All axes go, or none.
+    fn move_to(&mut self, id: &str, targets: &[&str], rate: &str, bench: &mut Bench) -> Result<(), String> {
         let id: u64 = id.parse().ok().filter(|id| *id > 0).ok_or("ARG")?;
-        let (target, rate) = (decimal(target).ok_or("ARG")?, decimal(rate).ok_or("ARG")?);
-        if let Some((last, where_to)) = self.last_move {
-            if id == last && target == where_to {
+        let targets: Option<Vec<f64>> = targets.iter().map(|target| decimal(target)).collect();
+        let (targets, rate) = targets.zip(decimal(rate)).ok_or("ARG")?;
+        if let Some((last, where_to)) = &self.last_move {
+            if id == *last && targets == *where_to {
                 return Ok(());
             }
-            if id <= last {
-                return Err("ID");
+            if id <= *last {
+                return Err("ID".to_owned());
             }
         }
-        let (low, high) = self.run.displacement;
-        if !(low <= target && target <= high) {
-            bench.refuse(target / 1e3);
-            return Err("LIMIT");
+        let metres: Vec<f64> = targets.iter().map(|target| target / 1e3).collect();
+        let inside = |(axis, target): (&AxisBounds, &f64)| axis.displacement.0 <= *target && *target <= axis.displacement.1;
+        if let Some(axis) = self.run.axes.iter().zip(&targets).position(|axis| !inside(axis)) {
+            bench.refuse_all(&metres);
+            return Err(of_axis("LIMIT", axis, targets.len()));
         }
-        if !(0.0 < rate && rate <= self.run.top_speed) {
-            return Err("RATE");
+        let refused = [
+            (!(0.0 < rate && rate <= self.run.top_speed), "RATE"),
+            (!self.referenced, "REF"),
+            (self.held, "HELD"),
+            (bench.moving(), "BUSY"),
+        ];
+        if let Some((_, code)) = refused.into_iter().find(|(refused, _)| *refused) {
+            return Err(code.to_owned());
         }
-        if !self.referenced {
-            return Err("REF");
-        }
-        if self.held {
-            return Err("HELD");
-        }
-        if bench.moving() {
-            return Err("BUSY");
-        }
-        self.last_move = Some((id, target));
-        bench.go_as(Some(id), target / 1e3, rate / 1e3);
+        self.last_move = Some((id, targets));
+        bench.go_as(Some(id), &metres, rate / 1e3);
         Ok(())
     }
 
-    /// The median of some readings.
+    /// The medians of some readings.
     fn measure(&self, count: usize, bench: &mut Bench) -> String {
-        let mut forces: Vec<f64> = (0..count).map(|_| bench.force()).collect();
-        forces.sort_by(f64::total_cmp);
-        let force = f64::midpoint(forces[(count - 1) / 2], forces[count / 2]);
-        let raw = bench.counts_of(force);
-        let displacement = bench.displacement() * 1e3;
-        let shown = bench.shown_force(format!("{force:.3}"));
-        let flags = self.flags(!(-8_388_607..8_388_607).contains(&raw), bench);
-        format!("{:.0} {displacement:.6} {shown} {raw} 0x{flags:04X} {}", (bench.time() * 1e3).floor(), self.state(bench))
+        let axis = |ram: usize| {
+            let mut forces: Vec<f64> = (0..count).map(|_| bench.force_of(ram)).collect();
+            forces.sort_by(f64::total_cmp);
+            let force = f64::midpoint(forces[(count - 1) / 2], forces[count / 2]);
+            let raw = bench.counts_of(force);
+            let displacement = bench.displacement_of(ram) * 1e3;
+            let shown = bench.shown_force(ram, format!("{force:.3}"));
+            let flags = self.flags(ram, !(-8_388_607..8_388_607).contains(&raw), bench);
+            format!("{displacement:.6} {shown} {raw} 0x{flags:04X}")
+        };
+        let axes: Vec<String> = (0..self.own.axes.len()).map(axis).collect();
+        format!("{:.0} {} {}", (bench.time() * 1e3).floor(), axes.join(" "), self.state(bench))
     }
 
     fn state(&self, bench: &Bench) -> &'static str {
@@ -233,15 +261,20 @@ impl Native {
         }
     }
 
-    fn flags(&self, saturated: bool, bench: &Bench) -> u16 {
-        let position = bench.commanded() * 1e3;
+    /// Those of any axis.
+    fn all_flags(&self, bench: &Bench) -> u16 {
+        (0..self.run.axes.len()).fold(0, |flags, ram| flags | self.flags(ram, false, bench))
+    }
+
+    fn flags(&self, ram: usize, saturated: bool, bench: &Bench) -> u16 {
+        let (position, (low, high)) = (bench.commanded_of(ram) * 1e3, self.run.axes[ram].displacement);
         // Standing on a limit is within it, also for the last bits of a turn to mm.
         let beyond = |excess: f64| excess > 1e-6;
         let bits = [
             saturated,
             false,
-            beyond(position - self.run.displacement.1),
-            beyond(self.run.displacement.0 - position),
+            beyond(position - high),
+            beyond(low - position),
             false,
             !self.referenced,
             bench.moving(),
@@ -254,16 +287,17 @@ impl Native {
 impl Firmware for Native {
     fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
         let mut said = self.tick(bench);
+        let longest = if bench.rams() > 1 { LONGEST_OF_SEVERAL } else { LONGEST };
         for byte in bytes {
             match byte {
                 b'!' => self.hold(bench),
                 b'\n' => {
                     let line = std::mem::take(&mut self.line);
-                    if line.len() < LONGEST {
+                    if line.len() < longest {
                         said.extend(self.frame(&line, bench).unwrap_or_default());
                     }
                 }
-                _ if self.line.len() < LONGEST => self.line.push(*byte),
+                _ if self.line.len() < longest => self.line.push(*byte),
                 _ => {}
             }
         }
@@ -288,6 +322,11 @@ impl Firmware for Native {
         self.referenced = false;
         Vec::new()
     }
+}
+
+/// A code with the axis it is of, from 1, where there are several.
+fn of_axis(code: &str, axis: usize, axes: usize) -> String {
+    if axes > 1 { format!("{code} {}", axis + 1) } else { code.to_owned() }
 }
 
 /// A number as the wire has it: digits, at most one point with digits on both sides, no exponent.

@@ -5,8 +5,11 @@ use crate::simulator::testing::bench;
 
 fn rig() -> (Native, Bench) {
     let bench = bench();
-    let settings =
-        NativeSettings { boot: Some(0x7f3a), force_limits: Interval { low: -2000.0, high: 12_000.0 }, ..Default::default() };
+    let settings = NativeSettings {
+        boot: Some(0x7f3a),
+        force_limits: vec![Interval { low: -2000.0, high: 12_000.0 }],
+        ..Default::default()
+    };
     (Native::new(settings, &bench), bench)
 }
 

@@ -90,7 +90,7 @@ impl Nees {
                 let line = nees_message::control_point(transaction, point, AXIS, displacement, force);
                 // The force is the last word.
                 let (before, ordinary) = line.rsplit_once('\t').unwrap_or((&line, ""));
-                Ok(vec![format!("{before}\t{}", bench.shown_force(ordinary.to_owned()))])
+                Ok(vec![format!("{before}\t{}", bench.shown_force(0, ordinary.to_owned()))])
             }
             Request::Cancel { transaction } => {
                 session.proposed.take_if(|(proposed, _)| proposed == transaction);

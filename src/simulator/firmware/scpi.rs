@@ -22,7 +22,7 @@ impl Scpi {
             b"*IDN?" => format!("PSD,PSD-SIM,{},1.3\n", self.serial_number).into_bytes(),
             b"READ?" => {
                 let shown = scientific(bench.force() / self.newtons_per_unit);
-                format!("{}\n", bench.shown_force(shown)).into_bytes()
+                format!("{}\n", bench.shown_force(0, shown)).into_bytes()
             }
             _ => Vec::new(),
         }
@@ -75,7 +75,7 @@ mod tests {
         assert_eq!(meter.receive(b"?\r\n", &mut bench), b"+2.50000000E+02\n");
         assert!(meter.receive(b"*RST\n", &mut bench).is_empty());
         assert_eq!(scientific(-0.00125), "-1.25000000E-03");
-        bench.strike(crate::simulator::BenchFault::Number("9.91E37".to_owned()));
+        bench.strike(0, crate::simulator::BenchFault::Number("9.91E37".to_owned()));
         assert_eq!(meter.receive(b"READ?\n", &mut bench), b"9.91E37\n");
     }
 }

@@ -89,6 +89,11 @@ pub const CASES: &[Case] = &[
     Case { force_error: 1e-3, ..serial("nees", "link = tcp(address: \"ADDRESS\", dialect: nees(\"MDL-00-01\"))") },
 ];
 
+/// The case of this name.
+pub fn by_name(name: &str) -> &'static Case {
+    CASES.iter().find(|case| case.name == name).unwrap_or_else(|| panic!("no rig is called {name}"))
+}
+
 /// One that resolves a micrometre, and is as fast as the limits allow.
 const fn serial(name: &'static str, devices: &'static str) -> Case {
     Case { name, devices, resolution: 1e-6, force_error: 0.05, speed: 400.0, duration: 50.0, sweep: false }

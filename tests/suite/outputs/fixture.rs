@@ -47,8 +47,12 @@ pub fn finished() -> Finished {
     let impulse = steps.iter().map(|step| step.contact_force * TIME_STEP).sum();
     let error = steps.last().map_or(0.0, |step| step.energies.error) / 5.0;
     let stop = steps.iter().find(|step| step.striker_velocity <= 0.0).map(|step| step.time);
-    let number =
-        |name, value, uncertainty, dimension| NamedResult { name, value: ResultValue::Number { value, uncertainty }, dimension };
+    let number = |name, value, uncertainty, dimension| NamedResult {
+        name,
+        value: ResultValue::Number { value, uncertainty },
+        dimension,
+        contributions: Vec::new(),
+    };
     let ramp = ProcedureRecord {
         name: "k0".into(),
         kind: "stiffness ramp",
@@ -64,6 +68,8 @@ pub fn finished() -> Finished {
             fit: Some(line(327.72, 0.41, -0.012, 0.035)),
             bilinear: None,
             multilinear: None,
+            holds: Vec::new(),
+            relaxation: None,
         }),
     };
     let sweep = ProcedureRecord {
@@ -124,9 +130,7 @@ pub fn finished() -> Finished {
             run_id: "0123456789abcdef".into(),
             psd_version: "0.1.0".into(),
             plan_sha256: "ab".repeat(32),
-            date: None,
-            real: None,
-            amends: None,
+            ..Provenance::default()
         },
     }
 }
@@ -136,7 +140,7 @@ fn event(kind: EventKind, time: f64, text: &str) -> Event {
 }
 
 const fn line(slope: f64, slope_error: f64, intercept: f64, intercept_error: f64) -> LineFit {
-    LineFit { slope, slope_error, intercept, intercept_error, r_squared: 0.999_98 }
+    LineFit { slope, slope_error, intercept, intercept_error, correlation: 0.0, r_squared: 0.999_98 }
 }
 
 /// Eqs. 4 and 5 for a linear structure without damping, one row a step.
@@ -281,6 +285,7 @@ fn plan() -> Plan {
                 repeats: 1,
                 return_path: true,
                 fit: RampFit::Linear,
+                relaxation: None,
                 speed: None,
             }),
         ),
@@ -301,6 +306,7 @@ fn plan() -> Plan {
                 specimen: 0,
                 striker: 0,
                 mass: constant(MASS),
+                mass_uncertainty: 0.0,
                 stiffness: result(0, "stiffness"),
                 damping: constant(0.0),
                 contact: Contact::Rigid,
@@ -336,12 +342,22 @@ fn plan() -> Plan {
         specimens: vec![Specimen {
             name: "beam".into(),
             mass: MASS,
+            mass_from: None,
+            mass_uncertainty: 0.0,
             frame: None,
             behaviour: Some(Behaviour::Elastic { stiffness: STIFFNESS }),
             damping: 4.0,
             coulomb: 0.3,
         }],
-        strikers: vec![Striker { name: "pendulum".into(), mass: STRIKER_MASS, velocity: 1.0, gap: 0.0, gravity: 0.0 }],
+        strikers: vec![Striker {
+            name: "pendulum".into(),
+            mass: STRIKER_MASS,
+            mass_uncertainty: 0.0,
+            velocity: 1.0,
+            velocity_uncertainty: 0.0,
+            gap: 0.0,
+            gravity: 0.0,
+        }],
         grounds: Vec::new(),
         rig: RigPlan {
             name: "rehearsal".into(),

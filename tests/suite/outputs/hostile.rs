@@ -3,6 +3,7 @@
 
 use psd::check::{Checked, LoadFault, Loader, Options, check};
 use psd::diagnostic::{json, render};
+use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, json as golden_json, junit, tap};
 use psd::inert;
 use psd::output::{OutputFile, console, everything};
 use psd::plan::Format;
@@ -205,6 +206,55 @@ fn no_label_is_another_place_or_another_line_of_the_manifest() {
         }
         assert!(seen.contains("tables/con-.csv") && seen.contains("tables/hit.csv") && seen.contains("tables/hit-2.csv"));
         assert_eq!(text(&files, "manifest.sha256").lines().count(), files.len() - 1, "{label:?}");
+    }
+}
+
+/// A test report whose every text is the label.
+fn tested_with(label: &str) -> Report {
+    let own = || label.to_owned();
+    let found = vec![Finding::text(Part::Verdict, label, label, label), Finding::new(Part::Table, label, Change::Gone)];
+    let outcomes = [
+        TestOutcome::Same { verdict: Some("pass") },
+        TestOutcome::Differs(found),
+        TestOutcome::NotBlessed { folder: own() },
+        TestOutcome::Failed(own()),
+        TestOutcome::NotRun,
+    ];
+    Report { tested: outcomes.into_iter().map(|outcome| Tested { name: own(), outcome }).collect(), unused: vec![own()] }
+}
+
+#[test]
+fn no_label_is_another_result_of_a_test() {
+    let begins = |text: &str, with: &[&str]| text.lines().filter(|line| with.iter().any(|word| line.starts_with(word))).count();
+    let xml_tags = |text: &str| {
+        // A suite is a folder: a label with a slash names another.
+        let named = tags(text).into_iter().map(|tag| tag.split(' ').next().unwrap().to_owned());
+        named.filter(|tag| !tag.starts_with("testsuite") && !tag.starts_with("/testsuite")).collect::<Vec<_>>()
+    };
+    let plain = tested_with("a plain label");
+    let (plain_tap, plain_xml) = (tap(&plain), junit(&plain).unwrap());
+    for label in labels() {
+        let report = tested_with(&label);
+        let text = tap(&report);
+        assert_eq!(steering(&text), "", "{label:?}");
+        assert_eq!(text.lines().count(), plain_tap.lines().count(), "{label:?}: {text}");
+        for word in ["ok ", "not ok ", "1..", "Bail out!", "# unused", "  ---", "  ..."] {
+            assert_eq!(begins(&text, &[word]), begins(&plain_tap, &[word]), "{label:?}: {word} in {text}");
+        }
+        assert_eq!(
+            text.lines().filter(|line| line.starts_with("ok ") && line.contains('#')).count(),
+            1,
+            "only what was not run is skipped"
+        );
+        let page = junit(&report).unwrap();
+        assert_eq!(steering(&page), "", "{label:?}");
+        assert_eq!(xml_tags(&page), xml_tags(&plain_xml), "{label:?}: {page}");
+        assert!(!page.contains("<!"), "{label:?}: {page}");
+        let document = golden_json::text(&report);
+        assert_eq!(steering(&document), "", "{label:?}");
+        let read: serde_json::Value = serde_json::from_str(&document).unwrap();
+        assert_eq!((&read["plans"][3]["message"], &read["unused"][0]), (&label.as_str().into(), &label.as_str().into()));
+        assert_eq!(read["plans"][1]["differences"].as_array().unwrap().len(), 2);
     }
 }
 

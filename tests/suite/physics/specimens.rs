@@ -98,6 +98,19 @@ fn turns() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-4.0..4.0_f64, 1..8)
 }
 
+/// Where energy seems to have been given back, by trapezia: place (m), energy (J), what went to and fro (J).
+fn given_back(behaviour: &Behaviour, turns: &[f64], pieces: u32) -> Option<[f64; 3]> {
+    let mut model = SpecimenModel::new(behaviour);
+    let (mut place, mut force, mut energy, mut scale) = (0.0, model.move_to(0.0), 0.0, 0.0);
+    places(turns, pieces).into_iter().find_map(|to| {
+        let next = model.move_to(to);
+        energy += 0.5 * (force + next) * (to - place);
+        scale += (0.5 * (force + next) * (to - place)).abs();
+        (place, force) = (to, next);
+        (energy < -2e-3 * scale - 1e-12).then_some([to, energy, scale])
+    })
+}
+
 /// Every place of a path whose legs are cut into `pieces`.
 fn places(turns: &[f64], pieces: u32) -> Vec<f64> {
     let mut from = 0.0;
@@ -129,18 +142,16 @@ proptest! {
         }
     }
 
-    /// From its virgin state, whatever was done to it: ∫R dX ≥ 0. So a closed cycle from there takes energy, too.
+    /// From its virgin state, whatever was done to it: ∫R dX ≥ 0. So a closed cycle from there takes energy, too. What trapezoids
+    /// over a corner seem to give back is less in shorter ones.
     #[test]
     fn nothing_gives_back_more_energy_than_it_took(behaviour in any(), turns in turns()) {
-        let mut model = SpecimenModel::new(&behaviour);
-        let (mut place, mut force, mut energy, mut scale) = (0.0, model.move_to(0.0), 0.0, 0.0);
-        for to in places(&turns, 300) {
-            let next = model.move_to(to);
-            energy += 0.5 * (force + next) * (to - place);
-            scale += (0.5 * (force + next) * (to - place)).abs();
-            (place, force) = (to, next);
-            prop_assert!(energy >= -2e-3 * scale - 1e-12, "{energy} J at {to} m, {scale} J went to and fro");
+        let (mut given, mut pieces) = (Some([0.0; 3]), 300);
+        while given.is_some() && pieces <= 30_000 {
+            given = given_back(&behaviour, &turns, pieces);
+            pieces *= 10;
         }
+        prop_assert!(given.is_none(), "at, energy, to and fro: {given:?}");
     }
 
     /// Exact ones to rounding; Bouc–Wen to its stated 1e-7 of a yield force, more where a solve in series leans on it.

@@ -109,7 +109,7 @@ fn each_check_word_is_checked_alone() {
 fn another_format_is_refused_by_its_number() {
     let of = |json| damage(&[(1, EntryKind::Header, json)]);
     assert_eq!(of(r#"{"format":999}"#).reason, Wrong::Format { found: "999".to_owned() });
-    assert!(of(r#"{"format":999}"#).to_string().contains("its format is version 999; this psd reads version 1 only"));
+    assert!(of(r#"{"format":999}"#).to_string().contains("its format is version 999; this psd reads versions 1 to 2"));
     assert_eq!(of("{}").reason, Wrong::Format { found: "missing".to_owned() });
     assert_eq!(of(r#"{"format":"\u001b"}"#).to_string().find('\x1b'), None, "a hostile version is inert");
 }

@@ -34,7 +34,7 @@ fn header_is_first_and_only_and_nothing_follows_end() {
 
     let found = recover(&disk.written()).unwrap();
     let expected =
-        [(EntryKind::Header, json!({"format": 1})), (EntryKind::End, json!({"count": 1, "head": head, "why": "done"}))];
+        [(EntryKind::Header, json!({"format": 2})), (EntryKind::End, json!({"count": 1, "head": head, "why": "done"}))];
     assert_eq!(records(&found), expected);
     assert!(found.ended && found.torn.is_none());
     let mut ended = Journal::go_on(Box::new(disk), Durability::EveryPromise, &found);

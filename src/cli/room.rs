@@ -1,0 +1,88 @@
+//! Whether a run fits on its disk, before anything moves. In: a plan, and what the file system has left. Out: nothing, or
+//! [`NoRoom`] with both figures. It frees nothing.
+
+use std::path::{Path, PathBuf};
+
+use super::exit::Failure;
+use super::output::tell;
+use crate::diagnostic::Code;
+use crate::diagnostic::excerpt::escape;
+use crate::plan::Plan;
+use crate::record::journal::FileStorage;
+use crate::run::need;
+
+/// The disk is too small for what the run may write.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: the run may write {}, and its disk has {} left; nothing has moved", folder.display(), amount(*need), amount(*room))]
+pub struct NoRoom {
+    pub folder: PathBuf,
+    /// Bytes.
+    pub need: u64,
+    pub room: u64,
+}
+
+impl NoRoom {
+    pub const CODE: Code = Code::NoRoom;
+
+    /// What to do.
+    pub fn help(&self) -> String {
+        let lacking = amount(self.need - self.room);
+        format!(
+            "free {lacking}, or name a folder on another disk with `--out`; `psd explain {}` says what is reckoned",
+            Self::CODE
+        )
+    }
+}
+
+/// Asks the disk of a record that is about to be written, of which `written` bytes are there already.
+///
+/// # Errors
+/// It has no room, or does not say.
+pub fn enough(folder: &Path, storage: &FileStorage, plan: &Plan, written: u64) -> Result<(), Failure> {
+    let need = need::of(plan);
+    fits(folder, need.bytes.saturating_sub(written), storage.room()?)?;
+    if !need.unknown.is_empty() {
+        let names: Vec<String> = need.unknown.iter().map(|name| escape(name)).collect();
+        tell(&format!(
+            "  not reckoned: the room on the disk that {} may take hangs on what is measured before\n",
+            names.join(", ")
+        ));
+    }
+    Ok(())
+}
+
+fn fits(folder: &Path, need: u64, room: u64) -> Result<(), NoRoom> {
+    if need <= room { Ok(()) } else { Err(NoRoom { folder: folder.to_owned(), need, room }) }
+}
+
+/// Bytes for people: `12.4 MB`.
+fn amount(bytes: u64) -> String {
+    const UNITS: [&str; 4] = ["kB", "MB", "GB", "TB"];
+    #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
+    let (mut size, mut unit) = (bytes as f64 / 1e3, UNITS[0]);
+    for larger in &UNITS[1..] {
+        if size >= 999.5 {
+            (size, unit) = (size / 1e3, larger);
+        }
+    }
+    if size < 9.95 { format!("{size:.1} {unit}") } else { format!("{size:.0} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_fits_to_the_byte_fits_and_one_less_does_not() {
+        let folder = Path::new("runs/beam-1");
+        assert_eq!(fits(folder, 1_500_000, 1_500_000), Ok(()));
+        let refused = fits(folder, 12_400_000, 9_960_000).unwrap_err();
+        assert_eq!(refused.to_string(), "runs/beam-1: the run may write 12 MB, and its disk has 10 MB left; nothing has moved");
+        assert!(refused.help().starts_with("free 2.4 MB, or name a folder"), "{}", refused.help());
+        assert!(fits(folder, 1, 0).is_err());
+        assert_eq!(
+            (amount(999), amount(999_600), amount(5_000_000_000_000)),
+            ("1.0 kB".into(), "1.0 MB".into(), "5.0 TB".into())
+        );
+    }
+}

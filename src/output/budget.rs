@@ -1,0 +1,139 @@
+//! Uncertainty budgets: what each input contributes to the uncertainty of a result. In: a run. Out: lines, the largest
+//! contribution first. Knows neither certificate nor summary, which both print them.
+
+use super::Run;
+use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+use crate::quantity::Dimension;
+use crate::record::{NamedResult, ProcedureRecord};
+use crate::uncertainty::{Contribution, Source};
+
+/// The budget of one result.
+#[derive(Clone, Debug)]
+pub(super) struct Budget<'a> {
+    pub result: &'a NamedResult,
+    pub value: f64,
+    /// u, of all lines together.
+    pub uncertainty: f64,
+    pub lines: Vec<Line>,
+}
+
+/// One input of a budget.
+#[derive(Clone, Debug)]
+pub(super) struct Line {
+    /// As the plan calls it, where it does: `k0.stiffness`, `pendulum.mass`.
+    pub input: String,
+    pub from: From,
+    pub value: Option<f64>,
+    /// Standard, of the input.
+    pub uncertainty: Option<f64>,
+    /// Of the input.
+    pub dimension: Dimension,
+    /// Change of the result when the input moves by its standard uncertainty; of draws, their root mean square.
+    pub contribution: f64,
+    /// Change of the result over that of the input; none of draws.
+    pub sensitivity: Option<f64>,
+    /// Number of draws of what is sampled; all else is linearised.
+    pub draws: Option<usize>,
+    /// Whether the result follows the input smoothly.
+    pub smooth: bool,
+}
+
+/// Where an input comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum From {
+    /// An earlier procedure, or the procedure's own scatter.
+    Result,
+    /// The plan states it of the specimen or a striker.
+    Plan,
+    /// The plan states it of the rig.
+    Rig,
+    /// The program: times to a whole step.
+    Program,
+}
+
+impl Budget<'_> {
+    /// Share of u² that a line has.
+    pub fn share(&self, line: &Line) -> f64 {
+        (line.contribution / self.uncertainty).powi(2)
+    }
+}
+
+/// Budgets of a procedure's results, those that more enters than its own scatter.
+pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureRecord) -> Vec<Budget<'a>> {
+    let own = |part: &Contribution| matches!(part.source, Source::Fit { procedure, .. } if procedure == ProcedureId(index));
+    let made = procedure.results.iter().filter(|result| !result.contributions.iter().all(own));
+    made.filter_map(|result| {
+        let ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } = result.value else { return None };
+        Some(Budget { result, value, uncertainty, lines: lines(run, &result.contributions) })
+    })
+    .collect()
+}
+
+/// A line for each source; the draws of the readings are one.
+fn lines(run: &Run<'_>, contributions: &[Contribution]) -> Vec<Line> {
+    let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. });
+    let mut lines: Vec<Line> = contributions.iter().filter(|part| !drawn(part)).map(|part| line(run, part)).collect();
+    let draws: Vec<&Contribution> = contributions.iter().filter(drawn).collect();
+    if let Some(first) = draws.first() {
+        let together = draws.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
+        let draws = Some(draws.len());
+        lines.push(Line { contribution: together, draws, sensitivity: None, ..line(run, first) });
+    }
+    lines.sort_by(|a, b| b.contribution.abs().total_cmp(&a.contribution.abs()));
+    lines
+}
+
+fn line(run: &Run<'_>, part: &Contribution) -> Line {
+    let plan = run.plan;
+    let calibration = &plan.rig.calibration;
+    let striker = |index: usize| plan.strikers.get(index);
+    let (input, from, value, uncertainty, dimension) = match part.source {
+        Source::Fit { procedure, result } => {
+            let (value, uncertainty, dimension) = fitted(run, procedure, result, part.source);
+            let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
+            (format!("{name}.{result}"), From::Result, value, uncertainty, dimension)
+        }
+        Source::StrikerMass(index) => {
+            let (name, value, u) = striker(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.mass, s.mass_uncertainty));
+            (format!("{name}.mass"), From::Plan, Some(value), Some(u), Dimension::MASS)
+        }
+        Source::StrikerVelocity(index) => {
+            let (name, value, u) =
+                striker(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.velocity, s.velocity_uncertainty));
+            (format!("{name}.velocity"), From::Plan, Some(value), Some(u), Dimension::VELOCITY)
+        }
+        Source::SpecimenMass(index) => {
+            let (name, value, u) =
+                plan.specimens.get(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.mass, s.mass_uncertainty));
+            (format!("{name}.mass"), From::Plan, Some(value), Some(u), Dimension::MASS)
+        }
+        Source::ForceScale => {
+            let u = calibration.force_uncertainty;
+            ("force calibration".to_owned(), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+        }
+        Source::DisplacementScale => {
+            let u = calibration.displacement_uncertainty;
+            ("displacement calibration".to_owned(), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+        }
+        Source::ForceZero => {
+            ("zero of the load cell".to_owned(), From::Rig, Some(0.0), Some(calibration.zero_uncertainty), Dimension::FORCE)
+        }
+        Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
+        Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
+    };
+    let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
+    Line { input, from, value, uncertainty, dimension, contribution: part.amount, sensitivity, draws: None, smooth: part.smooth }
+}
+
+/// Value and dimension of a fitted result, and how much of its uncertainty is of this source.
+fn fitted(run: &Run<'_>, procedure: ProcedureId, name: &'static str, source: Source) -> (Option<f64>, Option<f64>, Dimension) {
+    let reference = ResultReference { procedure, name, part: Part::Value };
+    let value = match run.record.result(reference) {
+        Some(ResultValue::Number { value, .. }) => value,
+        _ => None,
+    };
+    let parts = run.record.contributions(reference);
+    let uncertainty = parts.iter().find(|part| part.source == source).map(|part| part.amount);
+    let found = run.record.procedures.get(procedure.0).and_then(|procedure| procedure.result(name));
+    (value, uncertainty, found.map_or(Dimension::NUMBER, |found| found.dimension))
+}

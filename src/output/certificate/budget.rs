@@ -1,0 +1,126 @@
+//! The uncertainty budget of an impact: input by input, what it contributes to the uncertainty of the results that the
+//! requirements read. In: a run. Out: a table. Every result has its budget in `summary.json`.
+
+use super::super::budget::{Budget, From, Line, budgets};
+use super::super::document::{Block, Column, Table, Text};
+use super::super::{Run, number};
+use super::{results::percent, words};
+use crate::formula::{ProcedureId, ResultReference};
+use crate::quantity::Dimension;
+use crate::quantity::display::{minus, significant, typeset, unit};
+use crate::record::ProcedureRecord;
+use crate::verdict::COVERAGE;
+
+/// Told where no requirement reads a result of the procedure.
+const UNASKED: [&str; 2] = ["max_displacement", "absorbed_energy"];
+
+/// A share of u² below which lines are told together.
+const SMALL: f64 = 1e-3;
+
+pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
+    let mut budgets = budgets(run, index, procedure);
+    let asked = asked(run, index);
+    budgets.retain(|budget| asked.contains(&budget.result.name));
+    if !budgets.is_empty() {
+        body.extend(budgets.iter().map(one));
+        body.push(Block::note(note(&budgets)));
+    }
+}
+
+/// The results of this procedure that a requirement reads, else those that are always worth it.
+fn asked(run: &Run<'_>, index: usize) -> Vec<&'static str> {
+    let mut references: Vec<ResultReference> = Vec::new();
+    run.plan.requirements.iter().flat_map(|requirement| &requirement.conditions).for_each(|condition| {
+        condition.collect_references(&mut references);
+    });
+    let mine: Vec<&str> =
+        references.iter().filter(|reference| reference.procedure == ProcedureId(index)).map(|reference| reference.name).collect();
+    if mine.is_empty() { UNASKED.to_vec() } else { mine }
+}
+
+fn one(budget: &Budget<'_>) -> Block {
+    let columns = vec![
+        Column::words(format!("Uncertainty budget of {}", words(budget.result.name)), 3),
+        Column::words("Input ± u", 2),
+        Column::numbers("Sensitivity"),
+        Column::numbers("Contribution"),
+        Column::numbers("Of u²"),
+    ];
+    Block::Table(Table { columns, rows: rows(budget) })
+}
+
+fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
+    let Budget { result, value, uncertainty, lines } = budget;
+    let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
+    let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
+    let mut rows: Vec<Vec<Text>> = told
+        .into_iter()
+        .map(|line| {
+            let sensitivity = line.sensitivity.map_or_else(|| "—".to_owned(), |each| sensitivity(each, result.dimension, line));
+            let share = percent(budget.share(line));
+            vec![named(line), input(line).into(), sensitivity.into(), amount(line.contribution.abs()), share.into()]
+        })
+        .collect();
+    if !small.is_empty() {
+        let together = small.iter().map(|line| line.contribution.powi(2)).sum::<f64>().sqrt();
+        let names: Vec<&str> = small.iter().map(|line| line.input.as_str()).collect();
+        let names = Text::new().soft(format!("under 0.1\u{a0}% each: {}", names.join(", ")));
+        let share = percent((together / uncertainty).powi(2));
+        rows.push(vec![names, "".into(), "—".into(), amount(together), share.into()]);
+    }
+    let parts = number::parts(*value, Some(*uncertainty), result.dimension);
+    let expanded = parts.expanded.unwrap_or_default();
+    let whole = format!("{} ± {expanded}\u{a0}{} with U = {COVERAGE:.0}\u{a0}u", parts.value, parts.unit);
+    rows.push(vec![whole.into(), "".into(), "".into(), amount(*uncertainty), "100\u{a0}%".into()]);
+    rows
+}
+
+/// What the plan has a name for is set as it is written there.
+fn named(line: &Line) -> Text {
+    let name = match line.from {
+        From::Result | From::Plan => Text::new().code(&line.input),
+        From::Rig | From::Program => Text::from(line.input.as_str()),
+    };
+    let name = match line.draws {
+        Some(draws) => name.soft(format!(" · sampled, {draws} draws")),
+        None => name,
+    };
+    if line.smooth { name } else { name.and(" †") }
+}
+
+fn input(line: &Line) -> String {
+    match (line.value, line.uncertainty, line.dimension) {
+        (Some(value), Some(u), Dimension::NUMBER) if line.from == From::Rig => {
+            format!("{value} ± {}\u{a0}%", minus(&significant(100.0 * u, 2)))
+        }
+        (Some(0.0), Some(u), dimension) => format!("0 ± {}", number::stated(u, dimension)),
+        (Some(value), Some(u), dimension) => number::with_uncertainty(value, Some(u.abs()), dimension),
+        _ => "—".to_owned(),
+    }
+}
+
+/// ∂y/∂x in readable units of both: `−13.2 µm per kN/m`; of a factor, for all of it.
+fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
+    let size = line.value.filter(|value| *value != 0.0).or(line.uncertainty).unwrap_or(1.0);
+    let (unit, factor) = unit(size, line.dimension);
+    let change = number::text(each * factor, result);
+    if unit.is_empty() { change } else { format!("{change} per {}", typeset(&unit)) }
+}
+
+fn note(budgets: &[Budget<'_>]) -> String {
+    let told: Vec<&Line> =
+        budgets.iter().flat_map(|budget| budget.lines.iter().filter(|line| budget.share(line) >= SMALL)).collect();
+    let mut text = format!(
+        "Linearised, k = {COVERAGE:.0}: each input in turn was moved by ± its standard uncertainty and the run integrated again along \
+         its own recorded force–displacement path; half the difference of the results is the contribution, the root sum of squares is u \
+         (JCGM 100:2008). The scheme of integration, the contact law and the slowness of the test are not among the inputs."
+    );
+    if budgets.iter().any(|budget| budget.lines.iter().any(|line| line.draws.is_some())) {
+        text += " Errors of the readings were drawn, and what they do is sampled.";
+    }
+    if told.iter().any(|line| !line.smooth) {
+        text += " † The result does not follow this input smoothly: the differences to either side, or at half the size, disagree; \
+                 the largest change stands for it.";
+    }
+    text
+}

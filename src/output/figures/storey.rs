@@ -1,0 +1,107 @@
+//! Charts of an impact on one storey of a frame: those of an impact for striker and contact, those of a frame for floors and
+//! storeys, with the contact shaded in all that run over time. In: a history. Out: [`Chart`]s in SI with their captions.
+
+use super::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
+use super::{impact, shake};
+use crate::output::Run;
+use crate::plan::{Figure, FigureKind};
+use crate::quantity::Dimension;
+use crate::record::StoreyImpactHistory;
+
+/// None before the first step, and of what this procedure does not draw.
+pub(super) fn chart(
+    run: &Run<'_>,
+    name: &str,
+    history: &StoreyImpactHistory,
+    figure: &Figure,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    if history.floors.is_empty() {
+        return None;
+    }
+    let limits = |result| impact::limits_on(run, figure.procedure, result);
+    let chosen = if shake::is_chosen(&history.floors) { "; not every one is drawn" } else { "" };
+    let struck = history.struck + 1;
+    Some(match kind {
+        FigureKind::Modes => (
+            shake::modes(history.modes.as_ref()?),
+            format!("{name}: shapes of the natural modes and their periods, floor by floor from the ground up."),
+        ),
+        FigureKind::Displacement => {
+            let mut chart = shaded(history, shake::displacement(&history.floors));
+            chart.series.push(striker(history));
+            chart.references = limits("max_displacement");
+            let caption = format!(
+                "{name}: displacement of each floor, and of the striker on floor {struck} while it is near, against virtual \
+                 time{chosen}."
+            );
+            (chart, caption)
+        }
+        FigureKind::Drift => (
+            shaded(history, shake::drift(&history.floors, &limits("max_drift"))),
+            format!("{name}: drift of each storey against virtual time{chosen}."),
+        ),
+        FigureKind::Hysteresis => (
+            shake::hysteresis(&history.floors),
+            format!(
+                "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
+            ),
+        ),
+        FigureKind::BaseShear => (
+            shaded(history, shake::base_shear(&history.floors, &limits("max_base_shear"))),
+            format!("{name}: base shear, the sum of the measured restoring forces, against virtual time."),
+        ),
+        FigureKind::Velocity => {
+            let mut chart = impact::against_time(&history.blow, Quantity::of("Velocity", Dimension::VELOCITY));
+            let floor = Style::line(palette::BLUE, 1.6, SOLID);
+            let striker = Style::line(palette::VERMILION, 2.0, DASHED);
+            chart.series = vec![
+                impact::series(&history.blow, &format!("floor {struck}"), |step| step.velocity, floor),
+                impact::series(&history.blow, "striker", |step| step.striker_velocity, striker),
+            ];
+            (chart, format!("{name}: velocity of the struck floor and of the striker against virtual time."))
+        }
+        FigureKind::StrikerVelocity => (
+            impact::striker_velocity(&history.blow),
+            format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
+        ),
+        FigureKind::ContactForce => (
+            impact::contact_force(&history.blow, &limits("max_contact_force")),
+            format!("{name}: contact force, mean over each step, against virtual time."),
+        ),
+        FigureKind::Energy => (
+            impact::energy(&history.blow),
+            format!(
+                "{name}: where the energy of the striker went, all storeys together; the total of the parts stays level where \
+                 the balance closes."
+            ),
+        ),
+        FigureKind::Tracking => (
+            impact::tracking(&history.blow),
+            format!(
+                "{name}: what the actuator of the struck floor missed of its commands, and the tracking indicator of all axes \
+                 over its largest command; an indicator that falls says that the lag feeds energy into the test."
+            ),
+        ),
+        _ => return None,
+    })
+}
+
+/// Where the striker is, as long as it is near the floors: one that flies away would leave no room to see them.
+fn striker(history: &StoreyImpactHistory) -> Series {
+    let places = history.floors.iter().flat_map(|floors| floors.computed.iter().copied());
+    let (low, high) = places.fold((0.0_f64, 0.0_f64), |(low, high), place| (low.min(place), high.max(place)));
+    let around = 0.5 * (high - low);
+    let near = |place: f64| place >= low - around && place <= high + around;
+    let style = Style::line(palette::BLACK, 1.4, DASHED);
+    let mut striker = impact::series(&history.blow, "striker Xs", |step| step.striker_displacement, style);
+    let last = striker.points.iter().rposition(|(_, place)| near(*place));
+    striker.points.truncate(last.map_or(striker.points.len(), |last| last + 1));
+    striker
+}
+
+/// The contact behind a chart over virtual time.
+fn shaded(history: &StoreyImpactHistory, chart: Chart) -> Chart {
+    let bands = impact::against_time(&history.blow, Quantity::time()).bands;
+    Chart { bands, ..chart }
+}

@@ -1,0 +1,59 @@
+//! The table of an impact on a storey: a row a step and storey, striker and contact beside it. In: a history. Out: columns
+//! in SI. Striker, contact and the energies of the whole frame are the same in every row of a step.
+
+use polars::prelude::Column;
+
+use crate::record::{FloorStep, Floors, ImpactStep, StoreyImpactHistory};
+
+/// Rows and columns, the storeys of a step after each other from the ground up.
+pub(super) fn columns(history: &StoreyImpactHistory) -> (usize, Vec<Column>) {
+    let steps = history.blow.steps.iter().zip(&history.floors);
+    let rows: Vec<Row<'_>> = steps.flat_map(|(step, floors)| rows_of(step, floors)).collect();
+    let numbers = |name: &str, read: fn(&Row<'_>) -> f64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<f64>>());
+    let whole = |name: &str, read: fn(&Row<'_>) -> u64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<u64>>());
+    let states: Vec<&str> = rows.iter().map(|row| row.step.state.name()).collect();
+    let columns = vec![
+        whole("step", |row| row.step.step),
+        whole("storey", |row| row.floor as u64 + 1),
+        numbers("time_s", |row| row.step.time),
+        numbers("wall_time_s", |row| row.step.wall_time),
+        Column::new("state".into(), states),
+        numbers("command_m", |row| row.floors.command[row.floor]),
+        numbers("displacement_m", |row| row.floors.displacement[row.floor]),
+        numbers("computed_m", |row| row.floors.computed[row.floor]),
+        numbers("velocity_m_per_s", |row| row.floors.velocity[row.floor]),
+        numbers("acceleration_m_per_s2", |row| row.floors.acceleration[row.floor]),
+        numbers("restoring_force_n", |row| row.floors.restoring_force[row.floor]),
+        numbers("drift_m", |row| row.drift),
+        numbers("storey_shear_n", |row| row.shear),
+        numbers("storey_energy_j", |row| row.floors.storey_energy[row.floor]),
+        numbers("contact_force_n", |row| row.step.contact_force),
+        numbers("striker_displacement_m", |row| row.step.striker_displacement),
+        numbers("striker_velocity_m_per_s", |row| row.step.striker_velocity),
+        numbers("indentation_m", |row| row.step.indentation),
+        numbers("striker_energy_j", |row| row.step.energies.striker),
+        numbers("structure_energy_j", |row| row.step.energies.structure),
+        numbers("restoring_energy_j", |row| row.step.energies.restoring),
+        numbers("damping_energy_j", |row| row.step.energies.damping),
+        numbers("contact_loss_j", |row| row.step.energies.contact_loss),
+        numbers("indentation_energy_j", |row| row.step.energies.indentation),
+        numbers("weight_work_j", |row| row.step.energies.weight),
+        numbers("energy_error_j", |row| row.step.energies.error),
+        numbers("tracking_energy_error_j", |row| row.floors.tracking[row.floor].energy_error),
+        numbers("tracking_indicator_m2", |row| row.floors.tracking[row.floor].indicator),
+    ];
+    (rows.len(), columns)
+}
+
+struct Row<'a> {
+    step: &'a ImpactStep,
+    floors: &'a FloorStep,
+    floor: usize,
+    drift: f64,
+    shear: f64,
+}
+
+fn rows_of<'a>(step: &'a ImpactStep, floors: &'a FloorStep) -> Vec<Row<'a>> {
+    let storeys = floors.drift().into_iter().zip(floors.shear()).enumerate();
+    storeys.map(|(floor, (drift, shear))| Row { step, floors, floor, drift, shear }).collect()
+}

@@ -1,0 +1,290 @@
+//! What a run was measured with and held to. In: a checked plan, and what the rig says of itself. Out: [`Equipment`], as data:
+//! the first line of a record tells it, so that the record alone does. It knows no rig and no file.
+
+use serde::{Deserialize, Serialize};
+
+use crate::plan::{Dialect, Interval, Limits, Link, Plan, RealLink, RigPlan};
+use crate::quantity::Dimension;
+use crate::quantity::display::stated;
+use crate::rig::{DeclaredNoise, Identity};
+
+/// The rig that answered, what its numbers mean, and what nothing may drive it past.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Equipment {
+    pub device: Device,
+    /// Displacement and force of each axis.
+    pub channels: Vec<Channel>,
+    /// Those that bound something, as the guard holds them.
+    pub limits: Vec<HeldLimit>,
+}
+
+/// What the rig said of itself before the first move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Device {
+    #[serde(flatten)]
+    pub identity: Identity,
+    /// Quantum of a displacement reading, m.
+    pub resolution: f64,
+    /// Standard deviation of one force reading, N.
+    pub noise: f64,
+}
+
+impl Device {
+    #[must_use]
+    pub fn of(identity: &Identity, noise: DeclaredNoise) -> Self {
+        Self { identity: identity.clone(), resolution: noise.resolution, noise: noise.force }
+    }
+}
+
+/// What a channel measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measures {
+    /// m
+    Displacement,
+    /// N
+    Force,
+}
+
+impl Measures {
+    #[must_use]
+    pub const fn dimension(self) -> Dimension {
+        match self {
+            Self::Displacement => Dimension::LENGTH,
+            Self::Force => Dimension::FORCE,
+        }
+    }
+
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::Force => "force",
+        }
+    }
+}
+
+/// How a channel's number becomes a quantity: (number − zero) · factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Channel {
+    /// From 1.
+    pub axis: usize,
+    pub measures: Measures,
+    /// What one of the device's own numbers is.
+    pub given_in: GivenIn,
+    /// m or N of one of them, the rig's sign in it.
+    pub factor: f64,
+    /// Its number at none of the quantity.
+    pub zero: f64,
+    /// Quantum of a displacement (m), standard deviation of one force reading (N), as declared.
+    pub doubt: f64,
+    /// Standard uncertainty of the factor, a share of the quantity, where it is stated.
+    pub uncertainty: f64,
+    /// The calibration that the factor is traced to.
+    pub certificate: Option<String>,
+    /// Day until which that holds, `YYYY-MM-DD`.
+    pub due: Option<String>,
+    /// Class of the measurement, as stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
+    /// Its ends, m or N, where they are stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f64; 2]>,
+}
+
+/// What a device gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GivenIn {
+    /// A quantity whose unit the dialect fixes.
+    Units,
+    /// Counts of a converter, or of a register.
+    Counts,
+}
+
+/// A limit of the guard, SI; an end that is missing bounds nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HeldLimit {
+    /// As the plan's `limits` call it.
+    pub quantity: String,
+    /// From 1, where it is of one axis alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axis: Option<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high: Option<f64>,
+}
+
+impl Equipment {
+    #[must_use]
+    pub fn of(plan: &Plan, device: Device) -> Self {
+        let axes = 0..plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom());
+        let mut limits = held(&plan.limits, None);
+        for axis in axes.clone() {
+            let own = plan.rig.limits_of(axis, &plan.limits);
+            limits.extend(
+                held(&own, Some(axis + 1))
+                    .into_iter()
+                    .filter(|own| !limits.iter().any(|all| all.bounds_as(own)))
+                    .collect::<Vec<_>>(),
+            );
+        }
+        Self { device, channels: axes.flat_map(|axis| channels(&plan.rig, axis)).collect(), limits }
+    }
+
+    /// What makes the same number another quantity than before, if anything does.
+    #[must_use]
+    pub fn measures_otherwise(&self, now: &Self) -> Option<&'static str> {
+        let scale = |channel: &Channel| {
+            let resolution = if channel.measures == Measures::Displacement { channel.doubt.to_bits() } else { 0 };
+            (channel.axis, channel.measures, channel.given_in, channel.factor.to_bits(), channel.zero.to_bits(), resolution)
+        };
+        if !self.channels.iter().map(scale).eq(now.channels.iter().map(scale)) {
+            return Some("calibration");
+        }
+        (self.device.resolution.to_bits() != now.device.resolution.to_bits()).then_some("resolution")
+    }
+
+    /// Limits and certificates that are no longer those, in words.
+    #[must_use]
+    pub fn changes(&self, now: &Self) -> Vec<String> {
+        let mut named: Vec<(&str, Option<usize>)> =
+            self.limits.iter().chain(&now.limits).map(|limit| (limit.quantity.as_str(), limit.axis)).collect();
+        named.sort_unstable();
+        named.dedup();
+        let limit = |of: &Self, name: (&str, Option<usize>)| {
+            of.limits.iter().find(|limit| (limit.quantity.as_str(), limit.axis) == name).cloned()
+        };
+        let told = |limit: Option<HeldLimit>| limit.map_or_else(|| "none".to_owned(), |limit| limit.told());
+        let limits = named.into_iter().filter(|name| limit(self, *name) != limit(now, *name)).map(|name| {
+            let axis = name.1.map_or_else(String::new, |axis| format!(" of axis {axis}"));
+            format!("limit {}{axis}: {} became {}", name.0, told(limit(self, name)), told(limit(now, name)))
+        });
+        let traced = |of: &Self| {
+            let said = |channel: &Channel| (channel.certificate.clone(), channel.due.clone(), channel.uncertainty.to_bits());
+            of.channels.iter().map(said).collect()
+        };
+        let (was, is): (Vec<_>, Vec<_>) = (traced(self), traced(now));
+        limits.chain((was != is).then(|| "another calibration certificate is named".to_owned())).collect()
+    }
+}
+
+impl HeldLimit {
+    #[must_use]
+    pub fn interval(&self) -> Interval {
+        Interval { low: self.low.unwrap_or(f64::NEG_INFINITY), high: self.high.unwrap_or(f64::INFINITY) }
+    }
+
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        let known = Limits::NONE.named().into_iter().find(|(name, ..)| *name == self.quantity);
+        known.map_or(Dimension::NUMBER, |(.., dimension)| dimension)
+    }
+
+    /// Whether it bounds the same quantity in the same way, whatever axis it is said of.
+    fn bounds_as(&self, other: &Self) -> bool {
+        (&self.quantity, self.low, self.high) == (&other.quantity, other.low, other.high)
+    }
+
+    fn told(&self) -> String {
+        let end = |end: Option<f64>| end.map_or_else(|| "any".to_owned(), |end| stated(end, self.dimension()));
+        format!("{} .. {}", end(self.low), end(self.high))
+    }
+}
+
+/// The two channels of an axis, by its place.
+fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
+    let link = rig.link.as_real();
+    let weighs = |link: &RealLink| link.load_cell.as_ref().unwrap_or(&link.actuator).dialect.clone();
+    let moves = link.map(|link| &link.actuator.dialect);
+    let (length_given, length) = match moves {
+        Some(Dialect::Modbus(map)) => (GivenIn::Counts, map.length_unit),
+        _ => (GivenIn::Units, 1.0),
+    };
+    let (force_given, force, zero) = match link.map(weighs) {
+        Some(Dialect::Modbus(map)) => (GivenIn::Counts, map.force_unit, 0.0),
+        Some(Dialect::Scpi { newtons_per_unit }) => (GivenIn::Counts, newtons_per_unit, 0.0),
+        Some(dialect) if dialect.counts() => {
+            (GivenIn::Counts, rig.calibration.newtons_per_count.unwrap_or(1.0), rig.calibration.zero_count)
+        }
+        _ => (GivenIn::Units, 1.0, 0.0),
+    };
+    let (sign, calibration) = (rig.sign_of(axis), rig.calibration_of(axis));
+    let (resolution, noise) = match &rig.link {
+        Link::Virtual(link) => (link.resolution, link.noise),
+        Link::Real(link) => (link.readings_of(axis).resolution, link.readings_of(axis).noise),
+    };
+    let channel = |measures, given_in, factor: f64, zero, doubt, uncertainty| Channel {
+        axis: axis + 1,
+        measures,
+        given_in,
+        factor: sign * factor,
+        zero,
+        doubt,
+        uncertainty,
+        certificate: calibration.reference.clone(),
+        due: calibration.due.clone(),
+        class: None,
+        range: None,
+    };
+    let cell = link.map(|link| link.readings_of(axis).force_range);
+    let cell = cell.map(|Interval { low, high }| [low, high]).filter(|ends| ends.iter().all(|end| end.is_finite()));
+    let displacement =
+        channel(Measures::Displacement, length_given, length, 0.0, resolution, calibration.displacement_uncertainty);
+    let (certificate, due) = calibration
+        .displacement
+        .clone()
+        .map_or((calibration.reference.clone(), calibration.due.clone()), |(own, due)| (Some(own), due));
+    [
+        Channel { certificate, due, class: calibration.displacement_class.clone(), ..displacement },
+        Channel {
+            class: calibration.force_class.clone(),
+            range: cell,
+            ..channel(Measures::Force, force_given, force, zero, noise, calibration.force_uncertainty)
+        },
+    ]
+}
+
+fn held(limits: &Limits, axis: Option<usize>) -> Vec<HeldLimit> {
+    let end = |end: f64| Some(end).filter(|end| end.is_finite());
+    let bounded = limits.held().named().into_iter().filter(|(_, interval, _)| interval.is_bounded());
+    bounded
+        .map(|(name, Interval { low, high }, _)| HeldLimit { quantity: name.to_owned(), axis, low: end(low), high: end(high) })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Calibration;
+    use crate::run::testing::elastic_plan;
+
+    fn equipment(plan: &Plan) -> Equipment {
+        let unknown = String::new;
+        let identity =
+            Identity { name: unknown(), model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: true };
+        Equipment::of(plan, Device::of(&identity, DeclaredNoise::default()))
+    }
+
+    #[test]
+    fn another_sign_or_factor_is_another_measure_and_another_limit_a_change() {
+        let plan = elastic_plan(300.0, Vec::new());
+        let was = equipment(&plan);
+        let mut turned = plan.clone();
+        turned.rig.sign = -1.0;
+        assert_eq!(was.measures_otherwise(&equipment(&turned)), Some("calibration"));
+        let mut narrow = plan.clone();
+        narrow.limits.force = Interval { low: f64::NEG_INFINITY, high: 1000.0 };
+        narrow.limits.tracking_energy_error = Interval { low: 0.0, high: 0.02 };
+        let now = equipment(&narrow);
+        assert_eq!(was.measures_otherwise(&now), None);
+        assert_eq!(
+            was.changes(&now),
+            ["limit force: none became any .. 1 kN", "limit tracking_energy_error: 0 .. 0.05 became 0 .. 0.02"]
+        );
+        let mut traced = plan;
+        traced.rig.calibration = Calibration { reference: Some("ACME 17".to_owned()), ..Calibration::default() };
+        assert_eq!(was.changes(&equipment(&traced)), ["another calibration certificate is named"]);
+    }
+}

@@ -1,0 +1,66 @@
+//! Several axes in one step: how each was followed, and how they are told to whoever watches. In: targets, readings, the
+//! state of a frame. Out: numbers of each axis, and of all together. It drives nothing.
+
+use super::{AxisReport, StepReport};
+use crate::mechanics::frame::FrameState;
+use crate::mechanics::monitor::{Monitor, Tracking};
+use crate::rig::Reading;
+
+/// A monitor of tracking for every axis.
+pub(super) struct Monitors(Vec<Monitor>);
+
+impl Monitors {
+    pub(super) fn new(commanded: &[f64], reading: &Reading) -> Self {
+        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
+        Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
+    }
+
+    /// What each axis has come to; `taken` is what the recursion takes for the forces at the commands, N.
+    pub(super) fn take(&mut self, commanded: &[f64], reading: &Reading, taken: &[f64]) -> Vec<Tracking> {
+        let read = reading.displacement.iter().zip(&reading.force).zip(taken);
+        let axes = self.0.iter_mut().zip(commanded).zip(read);
+        axes.map(|((monitor, to), ((measured, force), taken))| monitor.take_as(*to, *measured, *force, *taken)).collect()
+    }
+}
+
+/// All axes told as one: energies add, of the others the largest counts.
+pub(super) fn together(axes: &[Tracking]) -> Tracking {
+    axes.iter().fold(Tracking::default(), |all, axis| Tracking {
+        energy_error: all.energy_error + axis.energy_error,
+        indicator: all.indicator + axis.indicator,
+        nrms_error: all.nrms_error.max(axis.nrms_error),
+        peak_error: all.peak_error.max(axis.peak_error),
+    })
+}
+
+/// The errors of a step.
+pub(super) struct Told {
+    pub energy_error: f64,
+    pub tracking: Tracking,
+    pub tracking_energy_error: Option<f64>,
+}
+
+/// A step of all axes, the first one first.
+pub(super) fn report(state: &FrameState, told: &Told) -> StepReport {
+    let axis = |floor: usize| AxisReport {
+        command: state.target[floor],
+        displacement: state.measured_displacement[floor],
+        velocity: state.velocity[floor],
+        acceleration: state.acceleration[floor],
+        force: state.restoring_force[floor],
+    };
+    let first = axis(0);
+    StepReport {
+        step: state.step,
+        time: state.time,
+        command: first.command,
+        displacement: first.displacement,
+        velocity: Some(first.velocity),
+        acceleration: Some(first.acceleration),
+        force: first.force,
+        energy_error: Some(told.energy_error),
+        tracking: Some(told.tracking),
+        tracking_energy_error: told.tracking_energy_error,
+        others: (1..state.target.len()).map(axis).collect(),
+    }
+}

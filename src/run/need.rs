@@ -1,0 +1,247 @@
+//! How much room a run may take on the disk: its record and its results. In: a checked plan. Out: bytes, more than it will
+//! take, and the procedures whose length is known only when they run. It asks no disk.
+//!
+//! What a run asks of its rig is counted procedure by procedure; a stiffness that a ramp will measure is taken as the highest
+//! that the gate lets through, or as the specimen's own, for a stiffer specimen is stepped more finely. A record is taken to be as
+//! long as its longest numbers make it. The tests hold the sum against what runs wrote.
+
+use crate::formula::{Formula, ResultReference, ResultValue, Results};
+use crate::mechanics::critical_time_step;
+use crate::plan::{DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp};
+
+use super::{shake, storey_impact};
+
+/// What a run may write.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Need {
+    /// Of the record and the results together.
+    pub bytes: u64,
+    /// Of the record alone.
+    pub record: u64,
+    /// Procedures that are not counted: their length hangs on what is not measured yet.
+    pub unknown: Vec<String>,
+}
+
+/// A float as the record writes it, with what stands between it and the next: sign, 17 digits, point, exponent, comma.
+const NUMBER: f64 = 25.0;
+/// Number, type, chain and checksum of a line, its blanks and its end.
+const LINE: f64 = 96.0;
+/// The wall clock of a record.
+pub(crate) const WALL: f64 = 34.0;
+/// The bytes of a target: frames are no longer than 96 bytes.
+const WIRE: f64 = 200.0;
+/// What another axis adds to a frame or to a reply: its target; its place and its force.
+const AXIS: f64 = 60.0;
+/// A reading that was not usable and taken again, a TALLY: one in ten readings.
+const MENDED: f64 = 1.1;
+/// Header, plan texts apart; the gate, events, notes, faults.
+pub(crate) const FRAME: f64 = 131_072.0;
+/// A row of the tables and what figures and pages show of it.
+const ROW: f64 = 1_200.0;
+/// Certificate on page and paper, with the fonts of the latter; the figures of one procedure, drawn and set in both.
+const REPORT: f64 = 1_048_576.0;
+/// Increments of one way, at most: as the guard divides it.
+const MOST_INCREMENTS: f64 = 1e5;
+/// Targets of one unloading, at most.
+const UNLOADING: f64 = 50.0;
+
+/// Records of each type.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Counts {
+    /// INTENT, those of ways that are read on the way included.
+    targets: f64,
+    /// INTENT with a path, and STROKE.
+    ways: f64,
+    /// SAMPLE
+    readings: f64,
+    /// STEP, and a row of a table.
+    steps: f64,
+}
+
+impl Counts {
+    fn times(self, count: f64) -> Self {
+        Self {
+            targets: self.targets * count,
+            ways: self.ways * count,
+            readings: self.readings * count,
+            steps: self.steps * count,
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            targets: self.targets + other.targets,
+            ways: self.ways + other.ways,
+            readings: self.readings + other.readings,
+            steps: self.steps + other.steps,
+        }
+    }
+}
+
+/// What a run of the plan may write.
+#[must_use]
+pub fn of(plan: &Plan) -> Need {
+    let reckoner = Reckoner { plan, assumed: Assumed(plan), way: way(plan) };
+    let mut all = Counts { targets: 2.0 * reckoner.way, readings: 8.0, ..Counts::default() };
+    let mut unknown = Vec::new();
+    for procedure in &plan.procedures {
+        match reckoner.counts(&procedure.kind) {
+            Some(counts) => all = all.plus(counts),
+            None => unknown.push(procedure.name.clone()),
+        }
+    }
+    let axes = f64::from(u32::try_from(plan.degrees_of_freedom()).unwrap_or(u32::MAX));
+    let (raw, wire) = plan.rig.link.as_real().map_or((0.0, 0.0), |link| (raw(link, axes), WIRE + AXIS * (axes - 1.0) + WALL));
+    let target = LINE + wire + 90.0 + NUMBER * (4.0 + 2.0 * axes);
+    let path = LINE + 20.0 + 2.0 * NUMBER + 5.0 * axes * (NUMBER + 18.0);
+    let reading = LINE + 20.0 + NUMBER * (1.0 + 2.0 * axes) + raw + if raw > 0.0 { WALL } else { 0.0 };
+    let step = LINE + 8.0 * (NUMBER + 5.0) + (axes - 1.0) * 5.0 * (NUMBER + 5.0);
+    let lines = all.targets * target + all.ways * path + MENDED * all.readings * reading + all.steps * step;
+    // Twice: in the record, where a sign outside ASCII takes six bytes or twelve, and beside it.
+    let texts: f64 = plan.files.iter().map(|file| bytes(&file.text)).sum();
+    let record = FRAME + lines + texts;
+    let procedures = f64::from(u32::try_from(plan.procedures.len()).unwrap_or(u32::MAX));
+    let results = texts + REPORT * (1.0 + procedures) + all.steps * axes * ROW;
+    Need { bytes: whole(record + results), record: whole(record), unknown }
+}
+
+fn bytes(text: &str) -> f64 {
+    let count: u64 = text.chars().map(|character| if character.is_ascii() { 2 } else { 12 }).sum();
+    rounded(count)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "an estimate")]
+const fn rounded(count: u64) -> f64 {
+    count as f64
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturating, never below 0")]
+fn whole(bytes: f64) -> u64 {
+    bytes.ceil() as u64
+}
+
+/// Increments of a way from one end of the limits to the other.
+fn way(plan: &Plan) -> f64 {
+    let Interval { low, high } = plan.limits.displacement;
+    let increments = (high - low) / plan.limits.increment.high;
+    if increments.is_finite() { (increments.ceil() + 1.0).clamp(1.0, MOST_INCREMENTS) } else { 1.0 }
+}
+
+/// The replies of one reading, escaped twice as the record writes them: a byte that is no letter takes five.
+fn raw(link: &RealLink, axes: f64) -> f64 {
+    let reply = |dialect: &Dialect| match dialect {
+        Dialect::Modbus(_) => 4.0 * 5.0 * 20.0,
+        Dialect::Native => 180.0 + AXIS * (axes - 1.0),
+        Dialect::Grbl | Dialect::Nees { .. } => 180.0,
+        Dialect::Instron | Dialect::Mark10 => 120.0,
+        Dialect::Hx711 | Dialect::Indicator | Dialect::Scpi { .. } | Dialect::Mark10Gauge => 60.0,
+    };
+    let devices = std::iter::once(&link.actuator).chain(&link.load_cell);
+    f64::from(link.readings.samples.max(1)) * devices.map(|device| reply(&device.dialect)).sum::<f64>()
+}
+
+/// What results are taken to be before they are measured: only stiffnesses, the highest that can come.
+struct Assumed<'a>(&'a Plan);
+
+impl Results for Assumed<'_> {
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        let ramp = match &self.0.procedures.get(reference.procedure.0)?.kind {
+            ProcedureKind::StiffnessRamp(ramp) if reference.name.ends_with("stiffness") => ramp,
+            _ => return None,
+        };
+        let gate = self.0.rig.link.as_real().map(|link| link.gate.stiffness.high).filter(|high| high.is_finite());
+        let own = || self.0.specimens.get(ramp.specimen)?.behaviour.as_ref().map(|behaviour| 1.5 * behaviour.initial_stiffness());
+        Some(ResultValue::Number { value: Some(gate.or_else(own)?), uncertainty: None })
+    }
+}
+
+struct Reckoner<'a> {
+    plan: &'a Plan,
+    assumed: Assumed<'a>,
+    /// Targets of one way, at most.
+    way: f64,
+}
+
+impl Reckoner<'_> {
+    fn number(&self, formula: &Formula) -> Option<f64> {
+        formula.evaluate(&self.assumed, None).ok().map(|estimate| estimate.value)
+    }
+
+    /// None: not known before it runs.
+    fn counts(&self, kind: &ProcedureKind) -> Option<Counts> {
+        let moves = |targets| Counts { targets, readings: targets, ..Counts::default() };
+        match kind {
+            ProcedureKind::StiffnessRamp(ramp) => Some(self.ramp(ramp)),
+            ProcedureKind::DampingSweep(sweep) => self.sweep(sweep),
+            ProcedureKind::Impact(impact) => self.blow(impact),
+            ProcedureKind::Escalate(escalate) => {
+                let between = moves(UNLOADING * self.way).plus(Counts { steps: UNLOADING, ..Counts::default() });
+                Some(self.blow(&escalate.blow)?.plus(between).times(rounded(escalate.velocities.len() as u64)))
+            }
+            ProcedureKind::StoreyImpact(impact) => {
+                let steps = rounded(storey_impact::steps(impact, self.plan)?) + 1.0;
+                Some(stepped(Mode::StepAndPause, steps))
+            }
+            ProcedureKind::Shake(shaking) => {
+                let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;
+                Some(stepped(shaking.mode, steps))
+            }
+            ProcedureKind::Cycle(cycle) => {
+                let begin = Counts { targets: self.way, readings: 2.0 + f64::from(cycle.samples), steps: 1.0, ways: 0.0 };
+                let Some(rate) = &cycle.rate else {
+                    let targets = rounded(cycle.targets());
+                    let readings = targets * (1.0 + f64::from(cycle.samples));
+                    return Some(begin.plus(Counts { targets: targets * self.way, readings, steps: targets, ways: 0.0 }));
+                };
+                let (rate, speed) = (self.number(rate)?, self.number(cycle.speed.as_ref()?)?);
+                let legs = if cycle.sides == Sides::Both { 4.0 } else { 2.0 };
+                let mut readings = 0.0;
+                for level in &cycle.levels {
+                    let length = legs * self.number(&level.amplitude)?;
+                    readings += f64::from(level.cycles) * (length / speed * rate + legs);
+                }
+                let ways = legs * rounded(cycle.cycles());
+                Some(begin.plus(Counts { targets: ways, ways, readings, steps: readings }))
+            }
+            ProcedureKind::Unload(_) => Some(Counts { steps: UNLOADING, ..moves(UNLOADING * self.way) }),
+            ProcedureKind::Move(_) => Some(Counts { steps: 1.0, ..moves(self.way) }),
+            ProcedureKind::Inspect { .. } => Some(Counts::default()),
+        }
+    }
+
+    fn ramp(&self, ramp: &StiffnessRamp) -> Counts {
+        let once = rounded(ramp.displacements.len() as u64) * if ramp.return_path { 2.0 } else { 1.0 };
+        let readings = once * (1.0 + f64::from(ramp.samples.max(1))) + 1.0;
+        Counts { targets: once + self.way, readings, steps: once, ways: 0.0 }.times(f64::from(ramp.repeats))
+    }
+
+    fn sweep(&self, sweep: &DampingSweep) -> Option<Counts> {
+        let stroke = self.number(&sweep.stroke)?.abs();
+        let lag = self.plan.rig.link.as_virtual().map_or(0.0, |link| link.lag);
+        let mut all = Counts { targets: self.way, ..Counts::default() };
+        for velocity in &sweep.velocities {
+            let seconds = stroke / self.number(velocity)?.abs();
+            let rate = sweep.rate.as_ref().map(|rate| self.number(rate));
+            let samples = super::damping_sweep::wanted(seconds, lag, rate.map_or(Some(None), |rate| rate.map(Some))?);
+            let both = 2.0 * samples;
+            all = all.plus(Counts { targets: 3.0, ways: 2.0, readings: both, steps: both });
+        }
+        Some(all)
+    }
+
+    fn blow(&self, impact: &Impact) -> Option<Counts> {
+        let critical = critical_time_step(self.number(&impact.mass)?, self.number(&impact.stiffness)?);
+        let time_step = impact.time_step.evaluate(&self.assumed, Some(critical)).ok()?.value;
+        let steps = (self.number(&impact.duration)? / time_step).ceil() + 1.0;
+        Some(stepped(impact.mode, steps))
+    }
+}
+
+/// Steps of a procedure that integrates, the reading before the first and the braking after the last.
+fn stepped(mode: Mode, steps: f64) -> Counts {
+    let each = match mode {
+        Mode::StepAndPause => Counts { targets: 1.0, readings: 1.0, steps: 1.0, ways: 0.0 },
+        Mode::Continuous { .. } => Counts { targets: 2.0, ways: 2.0, readings: 5.0, steps: 1.0 },
+    };
+    each.times(steps).plus(Counts { targets: 1.0, ways: 1.0, readings: 5.0, steps: 1.0 })
+}

@@ -1,0 +1,285 @@
+//! An impact on one storey of a frame: the striker is computed, the frame is on the rig, an actuator and a load cell for each
+//! floor. Each step: predict, command, settle, pause, read, feed back. In: a frame, a striker, a contact law, a time step.
+//! Out: every step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
+
+use super::Performed;
+use super::axes::{Monitors, Told, report, together};
+use super::impact::{law, remark};
+use super::inputs::Inputs;
+use super::session::Session;
+use super::shake::{damping, steps_in};
+use super::stop::Stop;
+use super::storey_summary::{StoreySummary, of_floor, results};
+use super::triggers::Triggers;
+use super::watch::Watch;
+use crate::formula::NoResults;
+use crate::mechanics::contact::ContactLaw;
+use crate::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver, StrikerState};
+use crate::mechanics::frame::{Damping, FrameInput, FrameState, Tangents, storeys_of};
+use crate::mechanics::frame_properties::{Approach, FrameProperties};
+use crate::mechanics::impact::ImpactInput;
+use crate::mechanics::monitor::Tracking;
+use crate::plan::{Contact, Frame, MOST_STEPS, Plan, StoreyImpact, Striker, Until};
+use crate::quantity::Dimension;
+use crate::quantity::display::stated;
+use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, StoreyImpactHistory};
+use crate::rig::Reading;
+
+pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let striker = &whole.strikers[plan.striker];
+    // `check` has seen that the specimen is a frame.
+    let frame = whole.specimens[plan.specimen].frame.as_ref();
+    let setting = frame.map_or_else(
+        || Err(Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }),
+        |frame| Setting::evaluate(plan, frame, striker, inputs, session),
+    );
+    let blow = |setting: Option<&Setting>| ImpactHistory {
+        steps: Vec::new(),
+        time_step: setting.map_or(0.0, |setting| setting.time_step),
+        critical_time_step: setting.map_or(0.0, |setting| setting.critical_time_step),
+    };
+    let mut history = StoreyImpactHistory {
+        blow: blow(setting.as_ref().ok()),
+        floors: Vec::new(),
+        struck: plan.struck,
+        modes: None,
+        damping_ratios: Vec::new(),
+    };
+    let setting = match setting {
+        Ok(setting) => setting,
+        Err(stop) => {
+            return Performed {
+                results: results(None, None, &history),
+                history: History::StoreyImpact(history),
+                stop: Some(stop),
+            };
+        }
+    };
+    history.modes = Some(setting.properties.modes.clone());
+    history.damping_ratios = setting.properties.damping_ratios();
+    let summary = StoreySummary::new(&setting.body, setting.properties.matrices.order());
+    let mut striking = Striking { setting: &setting, history, summary, watch: Watch::default() };
+    let stop = striking.run(plan, session).err();
+    let Striking { history, summary, watch, .. } = striking;
+    let summary = (!history.floors.is_empty()).then_some(summary);
+    if let (Some(summary), None) = (&summary, &stop) {
+        remark(&summary.blow(), plan.until, session);
+    }
+    Performed { results: results(summary.as_ref(), watch.worst, &history), history: History::StoreyImpact(history), stop }
+}
+
+/// Steps of an impact on a storey, where the plan alone tells.
+pub(super) fn steps(impact: &StoreyImpact, plan: &Plan) -> Option<u64> {
+    let frame = plan.specimens.get(impact.specimen)?.frame.as_ref()?;
+    let properties = FrameProperties::of(frame, &Damping::None).ok()?;
+    let hertz = match &impact.contact {
+        Contact::Hertz { stiffness, .. } => Some(stiffness.constant()?),
+        _ => None,
+    };
+    let approach = Approach::of(plan.strikers.get(impact.striker)?, hertz);
+    let critical = properties.critical_on_impact(impact.struck, &approach);
+    let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
+    Some(steps_in(impact.duration.constant()?, time_step) as u64)
+}
+
+/// Everything known before the first step.
+struct Setting {
+    properties: FrameProperties,
+    tangents: Tangents,
+    law: ContactLaw,
+    striker: Striker,
+    /// s
+    time_step: f64,
+    /// s
+    critical_time_step: f64,
+    steps: u64,
+    /// s
+    pause: f64,
+    /// The struck floor and the striker as an impact on one degree of freedom has them.
+    body: ImpactInput,
+}
+
+impl Setting {
+    fn evaluate(
+        plan: &StoreyImpact,
+        frame: &Frame,
+        striker: &Striker,
+        inputs: &mut Inputs<'_>,
+        session: &Session<'_>,
+    ) -> Result<Self, Stop> {
+        let (damping, ratio) = damping(&plan.damping, inputs)?;
+        let unmet = |reason: String| Stop::BadInput { field: "damping_ratio", value: ratio, wanted: reason.into() };
+        let properties = FrameProperties::of(frame, &damping).map_err(|reason| unmet(format!("other: {reason}")))?;
+        let law = law(&plan.contact, inputs)?;
+        let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
+        let critical = properties.critical_on_impact(plan.struck, &Approach::of(striker, hertz));
+        let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical))?.value;
+        let limit = properties.longest_stable_step(plan.integrator, Some(frame).filter(|_| session.reckoned()));
+        if time_step > limit && !plan.allow_unstable {
+            let wanted =
+                format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
+            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
+        }
+        let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let largest_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
+        let steps = steps_in(duration, time_step);
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+        let floors = frame.degrees_of_freedom() as f64;
+        if steps * floors > MOST_STEPS {
+            let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
+            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
+        }
+        let tangents = match storeys_of(&properties.matrices.stiffness) {
+            Some(_) => Tangents::Storeys { largest_ratio },
+            None => Tangents::Initial,
+        };
+        let noise = session.guard.declared_noise();
+        let stiffness = frame.stiffness[plan.struck][plan.struck];
+        let body = ImpactInput {
+            mass: properties.struck_mass(plan.struck),
+            damping: 0.0,
+            stiffness,
+            striker_mass: striker.mass,
+            striker_velocity: striker.velocity,
+            gap: striker.gap,
+            gravity: striker.gravity,
+            time_step,
+            max_tangent_ratio: largest_ratio,
+            law,
+            integrator: plan.integrator,
+            operator_stiffness: stiffness,
+            i_modification: plan.i_modification,
+            force_noise: noise.force,
+            resolution: noise.resolution,
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
+        let steps = steps as u64;
+        let striker = striker.clone();
+        Ok(Self { properties, tangents, law, striker, time_step, critical_time_step: critical, steps, pause, body })
+    }
+}
+
+struct Striking<'a> {
+    setting: &'a Setting,
+    history: StoreyImpactHistory,
+    summary: StoreySummary,
+    watch: Watch,
+}
+
+impl Striking<'_> {
+    fn run(&mut self, plan: &StoreyImpact, session: &mut Session<'_>) -> Result<(), Stop> {
+        let Setting { properties, steps, pause, .. } = self.setting;
+        let mut triggers = Triggers::new(&plan.inspect);
+        // X starts where the actuators were sent to, and R₀ is read there once, before the first step.
+        let start = session.guard.commanded().to_vec();
+        let reading = session.guard.read()?;
+        let unloaded = vec![0.0; properties.matrices.order()];
+        let mut solver = self.solver(plan, &start, &reading, &unloaded)?;
+        let mut monitors = Monitors::new(&start, &reading);
+        let mut at_rest = solver.frame().clone();
+        at_rest.measured_displacement.clone_from(&reading.displacement);
+        self.take(&at_rest, solver.striker(), vec![Tracking::default(); start.len()], session);
+        for _ in 1..=*steps {
+            let targets = solver.predict(&unloaded).to_vec();
+            session.guard.move_to(&targets, None)?;
+            session.guard.pause(*pause)?;
+            let reading = session.guard.read()?;
+            solver.complete(&reading.displacement, &reading.force);
+            let (state, striker) = (solver.frame(), solver.striker());
+            let tracking = monitors.take(&targets, &reading, solver.taken(&reading.force));
+            let told = self.take(state, striker, tracking, session);
+            self.watch.judge(told.tracking_energy_error, session);
+            session.guard.check_energy_error(told.energy_error)?;
+            session.guard.check_tracking(told.tracking_energy_error, told.tracking.nrms_error)?;
+            session.step_done(&report(state, &told))?;
+            let (step, time, base_shear) = (state.step, state.time, state.restoring_force.iter().sum());
+            let over = match plan.until {
+                Until::StrikerStop => solver.finished(),
+                Until::Rebound => solver.rebounded(),
+                Until::Duration => false,
+            };
+            if over {
+                break;
+            }
+            if let Some(reason) = triggers.after(step, time, base_shear) {
+                session.inspect(&reason)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn solver(&self, plan: &StoreyImpact, start: &[f64], reading: &Reading, unloaded: &[f64]) -> Result<FrameImpactSolver, Stop> {
+        let Setting { properties, tangents, law, striker, time_step, body, .. } = self.setting;
+        let input = FrameImpactInput {
+            frame: FrameInput {
+                matrices: &properties.matrices,
+                operator_stiffness: &properties.matrices.stiffness,
+                integrator: plan.integrator,
+                i_modification: plan.i_modification,
+                tangents: *tangents,
+                time_step: *time_step,
+                initial_displacement: start,
+                initial_restoring_force: &reading.force,
+                initial_load: unloaded,
+                force_noise: body.force_noise,
+                resolution: body.resolution,
+            },
+            struck: plan.struck,
+            striker_mass: striker.mass,
+            striker_velocity: striker.velocity,
+            gap: striker.gap,
+            gravity: striker.gravity,
+            law: *law,
+        };
+        FrameImpactSolver::new(&input).map_err(|error| Stop::BadInput {
+            field: "time_step",
+            value: *time_step,
+            wanted: format!("one that can be stepped: {error}").into(),
+        })
+    }
+
+    /// Keeps a step; gives its errors over the energy of the striker.
+    fn take(&mut self, state: &FrameState, striker: &StrikerState, axes: Vec<Tracking>, session: &Session<'_>) -> Told {
+        let tracking = together(&axes);
+        let floor = of_floor(state, striker, self.history.struck, self.setting.body.stiffness);
+        self.summary.push(state, &floor);
+        self.history.blow.steps.push(ImpactStep {
+            step: floor.step,
+            time: floor.time,
+            wall_time: session.guard.time(),
+            state: floor.state,
+            command: floor.target,
+            computed: floor.displacement,
+            displacement: floor.measured_displacement,
+            velocity: floor.velocity,
+            acceleration: floor.acceleration,
+            restoring_force: floor.restoring_force,
+            contact_force: floor.contact_force,
+            striker_displacement: floor.striker_displacement,
+            striker_velocity: floor.striker_velocity,
+            tangent_stiffness: floor.tangent_stiffness,
+            indentation: floor.indentation,
+            energies: floor.energies,
+            tracking,
+        });
+        self.history.floors.push(FloorStep {
+            time: state.time,
+            command: state.target.clone(),
+            displacement: state.measured_displacement.clone(),
+            computed: state.displacement.clone(),
+            velocity: state.velocity.clone(),
+            acceleration: state.acceleration.clone(),
+            restoring_force: state.restoring_force.clone(),
+            storey_energy: self.summary.storey_energy().to_vec(),
+            tracking: axes,
+        });
+        let input = self.setting.body.striker_energy();
+        Told {
+            energy_error: if floor.energies.error == 0.0 { 0.0 } else { floor.energies.error / input },
+            tracking,
+            tracking_energy_error: tracking.share_of(input),
+        }
+    }
+}

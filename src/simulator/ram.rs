@@ -1,0 +1,100 @@
+//! One ram of a bench, with its transducer and its load cell. In: targets, time, the force that bends it. Out: where it
+//! stands and what its sensors read, in SI, with noise, quanta and faults. It knows neither the other rams nor a dialect.
+
+use rand_distr::{Distribution as _, Normal};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng as _;
+
+use super::bench_fault::BenchFaults;
+use crate::plan::Interval;
+
+/// A target may lie this far beyond a limit and still be on it, m: the last bits of a turn from mm to m.
+const ROUNDING: f64 = 1e-12;
+
+/// What a ram and its sensors are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RamSettings {
+    /// +1 or −1: how its displacement and force count at the specimen.
+    pub sign: f64,
+    /// Standard deviation of a force reading, N.
+    pub noise: f64,
+    /// Quantum of the displacement reading, m; 0: none.
+    pub resolution: f64,
+    /// Targets outside are a failure of whoever sent them, m.
+    pub limits: Interval,
+}
+
+#[derive(Debug)]
+pub(super) struct Ram {
+    pub(super) settings: RamSettings,
+    generator: Pcg64,
+    pub(super) faults: BenchFaults,
+    /// Where it is commanded to be now, m.
+    pub(super) position: f64,
+    /// Where a ram without lag would be, m.
+    reached: f64,
+    /// Where it is, m.
+    pub(super) at: f64,
+    pub(super) target: f64,
+    /// m/s
+    pub(super) speed: f64,
+}
+
+impl Ram {
+    pub(super) fn new(settings: RamSettings, seed: u64) -> Self {
+        let (generator, faults) = (Pcg64::seed_from_u64(seed), BenchFaults::none(seed));
+        Self { settings, generator, faults, position: 0.0, reached: 0.0, at: 0.0, target: 0.0, speed: 0.0 }
+    }
+
+    /// `seconds` pass.
+    pub(super) fn advance(&mut self, seconds: f64) {
+        let left = self.target - self.position;
+        let before = self.position;
+        if left != 0.0 {
+            let way = self.speed * seconds;
+            self.position = if left.abs() <= way { self.target } else { self.position + way.copysign(left) };
+        }
+        // A sound ram is at its command to the last bit, which a sum of ways would not be.
+        let sound = self.faults.reach == 1.0 && self.reached == before;
+        self.reached = if sound { self.position } else { self.reached + self.faults.reach * (self.position - before) };
+        let follows = if self.faults.lag > 0.0 { -(-seconds / self.faults.lag).exp_m1() } else { 1.0 };
+        self.at = if follows == 1.0 { self.reached } else { self.at + follows * (self.reached - self.at) };
+    }
+
+    /// s of the next `seconds` in which it goes on.
+    pub(super) fn arrives_in(&self, seconds: f64) -> f64 {
+        match self.target - self.position {
+            _ if self.faults.lag > 0.0 => seconds,
+            0.0 => 0.0,
+            left => (left.abs() / self.speed).min(seconds),
+        }
+    }
+
+    pub(super) fn moving(&self) -> bool {
+        self.position != self.target
+    }
+
+    /// m/s, signed; 0 at rest.
+    pub(super) fn velocity(&self) -> f64 {
+        if self.moving() { self.speed * (self.target - self.position).signum() } else { 0.0 }
+    }
+
+    /// Whether a target (m) lies within its limits.
+    pub(super) fn allows(&self, target: f64) -> bool {
+        let Interval { low, high } = self.settings.limits;
+        low - ROUNDING <= target && target <= high + ROUNDING
+    }
+
+    /// m, as its transducer reads it.
+    pub(super) fn displacement(&mut self) -> f64 {
+        let quantum = self.settings.resolution;
+        let read = self.faults.read_displacement(self.at);
+        if quantum > 0.0 { (read / quantum).round() * quantum } else { read }
+    }
+
+    /// N, as its cell reads a force that it feels at `time` (s).
+    pub(super) fn force(&mut self, felt: f64, time: f64) -> f64 {
+        let noise = Normal::new(0.0, self.settings.noise).map_or(0.0, |normal| normal.sample(&mut self.generator));
+        self.faults.read_force(felt + noise, time)
+    }
+}

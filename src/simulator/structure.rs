@@ -1,0 +1,125 @@
+//! What stands on a bench: a specimen of one degree of freedom, or a frame with a ram at every floor. In: where the rams
+//! stand, how they went there. Out: the restoring force of each. It knows no rig and no sensor.
+
+use crate::mechanics::damping::CellDamping;
+use crate::mechanics::frame::{drifts, floor_forces};
+use crate::mechanics::maxwell::{MaxwellBranch, Travel};
+use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
+use crate::plan::{Behaviour, Frame, Storey};
+
+#[derive(Debug)]
+pub(super) enum Structure {
+    One {
+        specimen: Box<SpecimenModel>,
+        damping: CellDamping,
+        branches: Vec<MaxwellBranch>,
+    },
+    /// Each storey resists its drift, and has what damps it beside.
+    Storeys {
+        models: Vec<SpecimenModel>,
+        dampers: Vec<CellDamping>,
+        branches: Vec<Vec<MaxwellBranch>>,
+        shear: Vec<f64>,
+    },
+    /// R = K X, row by row.
+    Matrix(Vec<Vec<f64>>),
+}
+
+impl Structure {
+    /// `damping`: c of c·v, N·s/m.
+    pub(super) fn of_one(behaviour: &Behaviour, damping: f64) -> Self {
+        let specimen = Box::new(SpecimenModel::new(behaviour));
+        let damping = CellDamping::new(damping, 0.0).with_rate_of(behaviour);
+        Self::One { specimen, damping, branches: MaxwellBranch::all_of(behaviour) }
+    }
+
+    pub(super) fn of_frame(frame: &Frame) -> Self {
+        if frame.storeys.is_empty() {
+            return Self::Matrix(frame.stiffness.clone());
+        }
+        let damper = |storey: &Storey| CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour);
+        Self::Storeys {
+            models: frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect(),
+            dampers: frame.storeys.iter().map(damper).collect(),
+            branches: frame.storeys.iter().map(|storey| MaxwellBranch::all_of(&storey.behaviour)).collect(),
+            shear: vec![0.0; frame.storeys.len()],
+        }
+    }
+
+    /// Restoring forces (N) with the rams at these places (m).
+    pub(super) fn bend(&mut self, places: &[f64]) -> Vec<f64> {
+        match self {
+            Self::One { specimen, .. } => places.iter().map(|place| specimen.move_to(*place)).collect(),
+            Self::Storeys { models, shear, .. } => {
+                let (mut drift, mut forces) = (vec![0.0; places.len()], vec![0.0; places.len()]);
+                drifts(places, &mut drift);
+                for ((shear, model), drift) in shear.iter_mut().zip(models).zip(drift) {
+                    *shear = model.move_to(drift);
+                }
+                floor_forces(shear, &mut forces);
+                forces
+            }
+            Self::Matrix(rows) => rows.iter().map(|row| row.iter().zip(places).map(|(k, x)| k * x).sum()).collect(),
+        }
+    }
+
+    /// What relaxes follows rams that moved by so much (m), evenly for `going` of the `seconds` and at rest for the others.
+    pub(super) fn relax(&mut self, moved: &[f64], going: f64, seconds: f64) {
+        let mut apart = vec![0.0; moved.len()];
+        drifts(moved, &mut apart);
+        let branches = match self {
+            Self::One { branches, .. } => std::slice::from_mut(branches),
+            Self::Storeys { branches, .. } => branches,
+            Self::Matrix(_) => return,
+        };
+        for (branches, moved) in branches.iter_mut().zip(apart) {
+            for branch in branches {
+                branch.follow(&Travel::even(if moved == 0.0 { 0.0 } else { moved / going }, going));
+                branch.follow(&Travel::rest(seconds - going));
+            }
+        }
+    }
+
+    /// What the cells feel of `forces` (N) while the rams go at these velocities (m/s).
+    pub(super) fn felt(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
+        match self {
+            Self::One { damping, branches, .. } => {
+                let relaxing: f64 = branches.iter().map(MaxwellBranch::force).sum();
+                forces.iter().zip(velocities).map(|(force, v)| damping.felt(*force, *v) + relaxing).collect()
+            }
+            Self::Storeys { dampers, branches, shear, .. } => {
+                let mut apart = vec![0.0; velocities.len()];
+                drifts(velocities, &mut apart);
+                // What a fault took of the specimen's force is not felt again: only what is beside it is added.
+                let relaxing = branches.iter().map(|storey| storey.iter().map(MaxwellBranch::force).sum::<f64>());
+                let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
+                let beside = storeys.map(|(((damper, shear), v), relaxing)| damper.felt(*shear, v) - shear + relaxing);
+                let mut more = vec![0.0; velocities.len()];
+                floor_forces(&beside.collect::<Vec<f64>>(), &mut more);
+                forces.iter().zip(more).map(|(force, more)| force + more).collect()
+            }
+            Self::Matrix(_) => forces.to_vec(),
+        }
+    }
+
+    /// Friction on the cell of a specimen of one degree of freedom, N.
+    pub(super) const fn set_friction(&mut self, friction: f64) {
+        if let Self::One { damping, .. } = self {
+            damping.coulomb = friction;
+        }
+    }
+
+    /// The rams go at these velocities now, m/s: friction is against the last motion.
+    pub(super) fn goes(&mut self, velocities: &[f64]) {
+        let mut apart = vec![0.0; velocities.len()];
+        drifts(velocities, &mut apart);
+        let dampers = match self {
+            Self::One { damping, .. } => std::slice::from_mut(damping),
+            Self::Storeys { dampers, .. } => dampers,
+            Self::Matrix(_) => return,
+        };
+        for (damper, velocity) in dampers.iter_mut().zip(apart).filter(|(_, velocity)| *velocity != 0.0) {
+            damper.last_direction = velocity.signum();
+        }
+    }
+}

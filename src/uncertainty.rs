@@ -1,0 +1,174 @@
+//! Where an uncertainty comes from. An uncertain number is a sum of contributions, each of one source, and sources are
+//! independent of each other: so numbers that share a source are correlated as much as they share (JCGM 100:2008,
+//! 5.2 and F.1.2.3). In: contributions. Out: standard uncertainties, and results with one source moved. It knows no
+//! procedure and no plan.
+
+use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+
+/// Something that is not known exactly, independent of every other source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Source {
+    /// What a procedure's own scatter leaves open of a result; of one fitted together with others, what goes beyond those
+    /// before it.
+    Fit {
+        procedure: ProcedureId,
+        result: &'static str,
+    },
+    /// By its place among the plan's strikers.
+    StrikerMass(usize),
+    StrikerVelocity(usize),
+    /// By its place among the plan's specimens.
+    SpecimenMass(usize),
+    /// The factor between the rig's newtons and newtons.
+    ForceScale,
+    /// The factor between the rig's metres and metres.
+    DisplacementScale,
+    /// The load cell's reading of no force.
+    ForceZero,
+    /// Noise and resolution of a procedure's readings: one of the draws by which they are sampled.
+    Readings {
+        procedure: ProcedureId,
+        draw: u16,
+    },
+    /// Times are told to a whole step.
+    TimeStep {
+        procedure: ProcedureId,
+    },
+}
+
+/// What one source does to one number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contribution {
+    pub source: Source,
+    /// Change of the number when the source moves by its standard uncertainty, in the number's own unit.
+    pub amount: f64,
+    /// Whether the number follows the source smoothly there. Where it does not, `amount` is the largest change seen.
+    pub smooth: bool,
+}
+
+impl Contribution {
+    #[must_use]
+    pub const fn new(source: Source, amount: f64) -> Self {
+        Self { source, amount, smooth: true }
+    }
+}
+
+/// u = √Σ cᵢ² of independent contributions (JCGM 100:2008, eq. 10); None of nothing.
+#[must_use]
+pub fn combined(contributions: &[Contribution]) -> Option<f64> {
+    let variance = contributions.iter().map(|part| part.amount * part.amount).reduce(|sum, square| sum + square)?;
+    Some(variance.sqrt())
+}
+
+/// Results as they would be with one source moved.
+pub struct Moved<'a> {
+    pub results: &'a dyn Results,
+    pub source: Source,
+    /// In standard uncertainties of the source.
+    pub by: f64,
+}
+
+impl Results for Moved<'_> {
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        let found = self.results.result(reference)?;
+        let ResultValue::Number { value: Some(value), uncertainty } = found else { return Some(found) };
+        let amount = (reference.part == Part::Value)
+            .then(|| self.results.contributions(reference))
+            .and_then(|parts| parts.iter().find(|part| part.source == self.source).map(|part| part.amount));
+        let value = amount.map_or(value, |amount| value + self.by * amount);
+        Some(ResultValue::Number { value: Some(value), uncertainty })
+    }
+
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        self.results.contributions(reference)
+    }
+}
+
+/// Every source of the results that are read, each once, in the order they are met.
+#[must_use]
+pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<Source> {
+    let mut sources = Vec::new();
+    for reference in references.iter().filter(|reference| reference.part == Part::Value) {
+        for part in results.contributions(*reference) {
+            if part.amount != 0.0 && !sources.contains(&part.source) {
+                sources.push(part.source);
+            }
+        }
+    }
+    sources
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::{Formula, Operator};
+
+    /// Slope and intercept of one line, and a number of its own.
+    struct OneLine;
+
+    const CORRELATION: f64 = -0.8;
+
+    const fn reference(name: &'static str) -> ResultReference {
+        ResultReference { procedure: ProcedureId(0), name, part: Part::Value }
+    }
+
+    const fn source(result: &'static str) -> Source {
+        Source::Fit { procedure: ProcedureId(0), result }
+    }
+
+    impl Results for OneLine {
+        fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+            let (value, uncertainty) = match reference.name {
+                "stiffness" => (100.0, 2.0),
+                "intercept_force" => (5.0, 0.5),
+                _ => (7.0, 0.3),
+            };
+            Some(ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) })
+        }
+
+        fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+            match reference.name {
+                "stiffness" => vec![Contribution::new(source("stiffness"), 2.0)],
+                "intercept_force" => vec![
+                    Contribution::new(source("stiffness"), 0.5 * CORRELATION),
+                    Contribution::new(source("intercept_force"), 0.5 * 0.6),
+                ],
+                name => vec![Contribution::new(source(name), 0.3)],
+            }
+        }
+    }
+
+    /// R = K·x + R₀ at x: u² = x²u(K)² + u(R₀)² + 2x·r·u(K)·u(R₀) (JCGM 100:2008, eq. 16), not their plain sum.
+    #[test]
+    fn numbers_of_one_fit_are_correlated() {
+        let line = |x: f64| {
+            let slope = Formula::Binary(
+                Operator::Multiply,
+                Box::new(Formula::Result(reference("stiffness"))),
+                Box::new(Formula::Constant(x)),
+            );
+            Formula::Binary(Operator::Add, Box::new(slope), Box::new(Formula::Result(reference("intercept_force"))))
+        };
+        for x in [0.0, 0.1, 0.2, 1.0] {
+            let by_hand = (4.0 * x * x + 0.25 + 2.0 * x * CORRELATION * 2.0 * 0.5_f64).sqrt();
+            let u = line(x).evaluate(&OneLine, None).unwrap().uncertainty.unwrap();
+            assert!((u - by_hand).abs() < 1e-12, "at {x}: {u} {by_hand}");
+        }
+        // And independent of others.
+        let other = Formula::Binary(Operator::Add, Box::new(line(0.0)), Box::new(Formula::Result(reference("mass"))));
+        let u = other.evaluate(&OneLine, None).unwrap().uncertainty.unwrap();
+        assert!((u - 0.5_f64.hypot(0.3)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_moved_source_moves_what_it_is_in_and_nothing_else() {
+        let moved = Moved { results: &OneLine, source: source("stiffness"), by: -0.5 };
+        let value = |name| match moved.result(reference(name)) {
+            Some(ResultValue::Number { value: Some(value), .. }) => value,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!((value("stiffness"), value("intercept_force"), value("mass")), (99.0, 5.2, 7.0));
+        assert_eq!(sources_of(&[reference("intercept_force"), reference("stiffness")], &OneLine).len(), 2);
+        assert_eq!(combined(&[]), None);
+    }
+}

@@ -1,0 +1,218 @@
+//! An impact on one storey of a frame, from the text of a plan: against a frame that yields and was integrated by a method of
+//! its own, with one storey against the impact of one degree of freedom, and as a record that is enough.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use psd::check::{LoadFault, Loader, Options, check};
+use psd::formula::ResultValue;
+use psd::record::{History, Outcome, Record, StoreyImpactHistory};
+use psd::rig::virtual_rig;
+use psd::run::{Unwatched, run};
+
+struct NoFiles;
+
+impl Loader for NoFiles {
+    fn load(&self, _: &str) -> Result<String, LoadFault> {
+        Err(LoadFault::NotFound)
+    }
+}
+
+fn record(text: &str) -> Record {
+    let checked = check("plan.psd", text, &NoFiles, &Options::default());
+    let plan = checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    let record = run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
+    assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
+    record
+}
+
+fn history(record: &Record) -> &StoreyImpactHistory {
+    match &record.procedures[0].history {
+        History::StoreyImpact(history) => history,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn list(record: &Record, name: &str) -> Vec<f64> {
+    match &record.procedures[0].result(name).expect("a result of the schema").value {
+        ResultValue::List(values) => values.clone(),
+        other @ ResultValue::Number { .. } => panic!("{name} is {other:?}"),
+    }
+}
+
+fn number(record: &Record, name: &str) -> Option<f64> {
+    match &record.procedures[0].result(name).expect("a result of the schema").value {
+        ResultValue::Number { value, .. } => *value,
+        other @ ResultValue::List(_) => panic!("{name} is {other:?}"),
+    }
+}
+
+const MASSES: [f64; 3] = [4000.0, 4000.0, 3000.0];
+const STIFFNESSES: [f64; 3] = [2e6, 2e6, 1.5e6];
+const YIELD: [f64; 3] = [20e3, 16e3, 9e3];
+const HARDENING: f64 = 0.05;
+const STRIKER: f64 = 1500.0;
+const SPEED: f64 = 1.2;
+const HERTZ: f64 = 4e7;
+
+fn yielding(fields: &str) -> Record {
+    let storeys: Vec<String> = (0..3)
+        .map(|i| {
+            format!(
+                "storey(mass: {} kg, behaviour: bilinear(stiffness: {} N/m, yield_force: {} N, hardening: {HARDENING}))",
+                MASSES[i], STIFFNESSES[i], YIELD[i]
+            )
+        })
+        .collect();
+    record(&format!(
+        "specimen frame {{ storeys = [{}] }}\nstriker truck {{\n  mass = {STRIKER} kg\n  velocity = {SPEED} m/s\n}}\nimpact hit {{\n  striker = truck\n  storey = 2\n  contact = hertz(stiffness: {HERTZ} N/m^1.5)\n  duration = 0.4 s\n  until = duration\n{fields}\n}}\n",
+        storeys.join(", ")
+    ))
+}
+
+/// The same frame and striker by central differences, x₂ = 2x₁ − x₀ + h²a: the storey's shear is h·kδ + (1 − h)·kz with z the
+/// drift of an elastic, perfectly plastic spring beside an elastic one. Displacements at `times` (s), in order.
+fn central_differences(times: &[f64]) -> Vec<[f64; 3]> {
+    const STEP: f64 = 2e-6;
+    let (mut x, mut before, mut z) = ([0.0; 3], [0.0; 3], [0.0_f64; 3]);
+    let (mut striker, mut striker_before) = (0.0_f64, -SPEED * STEP);
+    let mut told = Vec::new();
+    let mut step = 0_u32;
+    while told.len() < times.len() {
+        let time = f64::from(step) * STEP;
+        if time >= times[told.len()] - 0.5 * STEP {
+            told.push(x);
+        }
+        let mut shear = [0.0; 3];
+        for storey in 0..3 {
+            let below = |x: &[f64; 3]| if storey == 0 { 0.0 } else { x[storey - 1] };
+            let (drift, last) = (x[storey] - below(&x), before[storey] - below(&before));
+            let reach = YIELD[storey] / STIFFNESSES[storey];
+            z[storey] = (z[storey] + drift - last).clamp(-reach, reach);
+            shear[storey] = STIFFNESSES[storey] * (HARDENING * drift + (1.0 - HARDENING) * z[storey]);
+        }
+        let depth = (striker - x[1]).max(0.0);
+        let contact = HERTZ * depth * depth.sqrt();
+        let mut next = [0.0; 3];
+        for floor in 0..3 {
+            let above = if floor < 2 { shear[floor + 1] } else { 0.0 };
+            let push = if floor == 1 { contact } else { 0.0 };
+            next[floor] = 2.0 * x[floor] - before[floor] + STEP * STEP * (push - shear[floor] + above) / MASSES[floor];
+        }
+        let after = 2.0 * striker - striker_before - STEP * STEP * contact / STRIKER;
+        (before, x) = (x, next);
+        (striker_before, striker) = (striker, after);
+        step += 1;
+    }
+    told
+}
+
+/// Largest difference of any floor at any step, over the largest displacement.
+fn difference(record: &Record) -> f64 {
+    let floors = &history(record).floors;
+    let times: Vec<f64> = floors.iter().map(|step| step.time).collect();
+    let reference = central_differences(&times);
+    let largest = reference.iter().flatten().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let pairs = floors.iter().zip(&reference).flat_map(|(found, exact)| found.computed.iter().zip(exact));
+    pairs.map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max) / largest
+}
+
+/// Every storey yields, and the test is that frame: ever nearer as the step shrinks.
+#[test]
+fn a_frame_that_yields_is_the_one_of_central_differences() {
+    let record = yielding("  time_step = 0.25 ms");
+    for (storey, drift) in list(&record, "max_drift").into_iter().enumerate() {
+        assert!(drift > 1.2 * YIELD[storey] / STIFFNESSES[storey], "storey {storey} yields: {drift} m");
+    }
+    let (coarse, fine) = (difference(&yielding("  time_step = 1 ms")), difference(&record));
+    assert!(fine < 2e-3, "{fine}");
+    assert!(coarse > 3.0 * fine, "{coarse} at 1 ms, {fine} at a quarter of it");
+}
+
+/// The storeys' energies are the frame's, the balance closes, and where the plan counts on a rebound it is there.
+#[test]
+fn results_say_of_each_storey_what_the_balance_says_of_all() {
+    let record = yielding("  time_step = 0.5 ms\n  damping_ratio = 2 %");
+    let last = history(&record).blow.steps.last().expect("steps").energies;
+    let storeys: f64 = list(&record, "storey_energy").iter().sum();
+    assert!((storeys - last.restoring).abs() < 1e-9 * last.restoring, "{storeys} and {}", last.restoring);
+    let sum = last.striker + last.structure + last.restoring + last.damping + last.contact_loss + last.error;
+    assert!((sum - 0.5 * STRIKER * SPEED * SPEED).abs() < 1e-9, "{sum} J");
+    assert!(number(&record, "energy_error").expect("a number").abs() < 2e-3);
+    let back = number(&record, "rebound_velocity").expect("it bounced");
+    assert!((0.5 * STRIKER * back * back - last.striker).abs() < 1e-9 * last.striker);
+    // A blow of finite stiffness lasts 2.943 δ/u between free masses; the storeys' give is little in it.
+    let reduced = STRIKER * MASSES[1] / (STRIKER + MASSES[1]);
+    let blow = 2.943 * (1.25 * reduced * SPEED * SPEED / HERTZ).powf(0.4) / SPEED;
+    let lasted = number(&record, "contact_duration").expect("it touched");
+    assert!((lasted / blow - 1.0).abs() < 0.1, "{lasted} s, free masses {blow} s");
+    let shear = history(&record).floors.iter().map(|step| step.restoring_force.iter().sum::<f64>().abs());
+    assert_eq!(number(&record, "max_base_shear"), shear.reduce(f64::max));
+}
+
+/// The same plan said twice, as a storey and as one degree of freedom: every column to rounding.
+#[test]
+fn one_storey_is_one_degree_of_freedom() {
+    const STRIKER_AND_LAWS: [&str; 4] =
+        ["rigid", "limit(900 N)", "restitution(0.6)", "hertz(stiffness: 4e6 N/m^1.5, loss: 0.1 s/m)"];
+    for law in STRIKER_AND_LAWS {
+        let behaviour = "bilinear(stiffness: 300 N/m, yield_force: 25 N, hardening: 0.1)";
+        let fields = |own: &str| {
+            format!(
+                "striker s {{\n  mass = 10 kg\n  velocity = 1 m/s\n  gap = 1 mm\n  gravity = 1 gn\n}}\nimpact hit {{\n  striker = s\n{own}  contact = {law}\n  time_step = 1 ms\n  duration = 0.6 s\n}}\n"
+            )
+        };
+        let one = format!("specimen post {{\n  mass = 1 kg\n  behaviour = {behaviour}\n}}\n{}", fields("  damping = 3 N*s/m\n"));
+        // C = 2ζ√(KM).
+        let ratio = 3.0 / (2.0 * 300.0_f64.sqrt());
+        let storey = format!(
+            "specimen post {{ storeys = [storey(mass: 1 kg, behaviour: {behaviour})] }}\n{}",
+            fields(&format!("  storey = 1\n  damping_ratio = {ratio}\n"))
+        );
+        let (one, storey) = (record(&one), record(&storey));
+        let History::Impact(of_one) = &one.procedures[0].history else { panic!("an impact") };
+        let of_storey = &history(&storey).blow;
+        assert_eq!(of_one.steps.len(), of_storey.steps.len(), "{law}");
+        assert!((of_one.critical_time_step - of_storey.critical_time_step).abs() < 1e-15 || law.starts_with("hertz"));
+        for (one, other) in of_one.steps.iter().zip(&of_storey.steps) {
+            assert_eq!(one.state, other.state, "{law} at {} s", one.time);
+            for (name, one, other, within) in [
+                ("displacement", one.computed, other.computed, 1e-11),
+                ("velocity", one.velocity, other.velocity, 1e-9),
+                ("force", one.restoring_force, other.restoring_force, 1e-8),
+                ("striker", one.striker_displacement, other.striker_displacement, 1e-11),
+                ("contact", one.contact_force * 1e-3, other.contact_force * 1e-3, 1e-8),
+                ("energy", one.energies.error, other.energies.error, 1e-9),
+                ("weight", one.energies.weight, other.energies.weight, 1e-9),
+            ] {
+                assert!((one - other).abs() < within, "{law} at {name}: {one} and {other}");
+            }
+        }
+    }
+}
+
+fn psd(arguments: &[&str], out: &Path) {
+    let ended = Command::new(env!("CARGO_BIN_EXE_psd")).args(arguments).arg(out).output().expect("psd starts");
+    assert!(ended.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&ended.stderr));
+}
+
+/// A run, its verification and its report made anew give the same bytes, with the plan gone: the record has it.
+#[test]
+fn the_record_of_a_blow_on_a_storey_is_enough() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let plan = path("storey_impact.psd");
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/storey_impact.psd"), &plan).expect("a copy");
+    psd(&["run", plan.to_str().expect("UTF-8"), "--yes", "--out"], &path("run"));
+    fs::remove_file(&plan).expect("removed");
+    psd(&["verify"], &path("run"));
+    psd(&["report", path("run").to_str().expect("UTF-8"), "--out"], &path("again"));
+    let read =
+        |folder: &str, name: &str| fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"));
+    for name in
+        ["summary.json", "tables/hit.csv", "certificate.html", "figures/hit_hysteresis.png", "figures/hit_displacement.svg"]
+    {
+        assert_eq!(read("run", name), read("again", name), "{name}");
+    }
+}

@@ -1,0 +1,119 @@
+//! A rig by hand: `psd rig monitor` and `jog` against a stand-in behind a pseudo-terminal. What moves is what the log of every
+//! byte says, and what was done is proven by `psd verify`.
+
+use std::io::{BufRead as _, BufReader};
+use std::process::Stdio;
+
+use rustix::process::Signal;
+
+use crate::stage::{Stage, code, finish, signal, start, until, wait};
+use crate::terminal::Terminal;
+
+#[test]
+fn a_monitor_ends_with_its_reader_and_with_each_signal() {
+    let stage = Stage::new();
+    let mut monitor = stage.tool("monitor", &["--every", "20 ms"]).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let mut lines = BufReader::new(monitor.stdout.take().unwrap()).lines();
+    let three: Vec<String> = lines.by_ref().take(3).map(Result::unwrap).collect();
+    assert_eq!(three[0], "time_s,displacement_m,force_n");
+    // As `| head -n 3` leaves it.
+    drop(lines);
+    assert_eq!(code(&mut monitor), Some(0));
+    for sent in [Signal::INT, Signal::TERM, Signal::HUP] {
+        let heard = stage.requests().len();
+        let monitor = start(&mut stage.tool("monitor", &[]));
+        until("readings are asked for", || stage.requests().len() > heard + 5);
+        signal(&monitor, sent);
+        let ended = finish(monitor);
+        assert_eq!(ended.code, Some(0), "{}", ended.told);
+    }
+    assert!(stage.moves().is_empty());
+}
+
+#[test]
+fn a_rig_that_falls_silent_ends_the_monitor_and_is_told() {
+    let stage =
+        Stage::of(|plan| plan.replace("reply_timeout: 2 s", "reply_timeout: 0.2 s"), "after 12 replies: drop replies for ever");
+    let ended = wait(&mut stage.tool("monitor", &["--every", "20 ms"]));
+    assert_eq!(ended.code, Some(3), "{}", ended.told);
+    assert!(ended.told.contains("no usable answer within"), "{}", ended.told);
+    assert!(ended.told.contains("time_s,displacement_m,force_n\n0."), "what was read before is given: {}", ended.told);
+}
+
+#[test]
+fn a_place_beyond_a_limit_is_refused_before_any_byte_asks_for_it() {
+    // Ten increments would be inside the limit and the eleventh beyond it: none is gone.
+    let stage = Stage::of(|plan| plan.replace("speed        = 200 mm/s", "speed        = 200 mm/s\n  increment    = 1 mm"), "");
+    for (more, said) in [
+        (&["--to", "10.001 mm"][..], "target displacement 10.001 mm is outside its limit -5 mm .. 10 mm"),
+        (&["--to", "-5.001 mm"], "target displacement -5.001 mm is outside its limit"),
+        (&["--to", "0.1 mm", "--speed", "0.201 m/s"], "speed 0.201 m/s is outside its limit"),
+    ] {
+        let ended = wait(&mut stage.recorded_tool("jog", &[more, &["--yes"]].concat()));
+        assert!(ended.code == Some(4) && ended.told.contains(said), "{}", ended.told);
+        assert!(stage.proven().contains("all 0 came out again"), "the refusal is on record");
+        std::fs::remove_dir_all(stage.path("run")).unwrap();
+    }
+    assert!(stage.moves().is_empty() && !stage.requests().iter().any(|request| request.contains(">MOVE")));
+}
+
+#[test]
+fn a_jog_goes_where_it_is_told_and_is_on_record() {
+    let stage = Stage::of(|plan| plan.replace("speed        = 200 mm/s", "speed        = 200 mm/s\n  increment    = 1 mm"), "");
+    let ended = wait(&mut stage.recorded_tool("jog", &["--to", "2.5 mm", "--speed", "25 mm/s", "--yes"]));
+    assert_eq!(ended.code, Some(0), "{}", ended.told);
+    assert!(ended.told.contains("X 2.500 mm   R 250.0 N"), "{}", ended.told);
+    assert_eq!(stage.moves().len(), 3, "increments of at most 1 mm");
+    assert!(stage.proven().contains("all 3 came out again bit for bit, and 3 steps"));
+    let record = std::fs::read_to_string(stage.journal()).unwrap();
+    for expected in ["\"served\":\"by hand\"", "move from 0 mm to 2.5 mm at 25 mm/s? answered by --yes (A. Tester)"] {
+        assert!(record.contains(expected), "{expected} in {record}");
+    }
+    let table = std::fs::read_to_string(stage.path("run").join("tables/served.csv")).unwrap();
+    assert_eq!(table.lines().count(), 4, "{table}");
+    assert!(stage.requests().iter().any(|request| request.contains(" 25.000000*")), "at the speed that was asked for");
+}
+
+#[test]
+fn only_a_yes_moves_and_the_end_of_the_input_is_none() {
+    let stage = Stage::new();
+    for keys in ["n\n", "\n", "\u{4}", "yesterday\n"] {
+        let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &["--to", "1 mm"]));
+        terminal.answer("[y or n]", keys);
+        assert_eq!(code(&mut terminal.child), Some(4), "{keys:?}: {}", terminal.shown());
+        assert!(terminal.shown().contains("nothing moved"), "{}", terminal.shown());
+        assert!(stage.proven().contains("all 0 came out again"));
+        // What was done by hand is no run that can be gone on with.
+        let resumed = wait(&mut stage.resume_with(&[]));
+        assert!(resumed.code == Some(2) && resumed.told.contains("done by hand"), "{}", resumed.told);
+        std::fs::remove_dir_all(stage.path("run")).unwrap();
+    }
+    assert!(stage.moves().is_empty());
+    let piped = wait(&mut stage.recorded_tool("jog", &["--to", "1 mm"]));
+    assert!(piped.code == Some(2) && piped.told.contains("nobody can be asked"), "{}", piped.told);
+}
+
+#[test]
+fn a_sitting_goes_from_place_to_place() {
+    let stage = Stage::new();
+    let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &[]));
+    terminal.answer("at 0 mm; where to?", "0.5\n");
+    terminal.answer("write it as 1 mm", "0.5 mm\n");
+    terminal.answer("move from 0 mm to 0.5 mm? [y or n]", "y\n");
+    terminal.answer("at 0.5 mm; where to?", "11 mm\n");
+    terminal.answer("refused: target displacement 11 mm", "0 mm\n");
+    terminal.answer("move from 0.5 mm to 0 mm? [y or n]", "y\n");
+    terminal.answer("at 0 mm; where to?", "q\n");
+    assert_eq!(code(&mut terminal.child), Some(4), "one place was refused: {}", terminal.shown());
+    assert_eq!(stage.moves().len(), 2);
+    assert!(stage.proven().contains("all 2 came out again"));
+}
+
+#[test]
+fn a_rig_that_falls_silent_ends_the_sitting_and_the_record_is_sound() {
+    let stage =
+        Stage::of(|plan| plan.replace("reply_timeout: 2 s", "reply_timeout: 0.2 s"), "after 1 moves: drop replies for ever");
+    let ended = wait(&mut stage.recorded_tool("jog", &["--to", "1 mm", "--yes"]));
+    assert!(ended.code == Some(3) && ended.told.contains("no usable answer within"), "{}", ended.told);
+    assert!(stage.proven().contains("INCOMPLETE"));
+}
