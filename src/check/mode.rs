@@ -3,7 +3,7 @@
 
 use super::checker::Checker;
 use super::faults::methods as fault;
-use crate::plan::{Frame, Impact, Mode, Shake, ShakeDamping, Specimen};
+use crate::plan::{Frame, Impact, Mode, ShakeDamping, Specimen};
 use crate::schema::Kind;
 
 /// The mode a block names, else step and pause.
@@ -40,16 +40,21 @@ pub fn damping_twice(checker: &mut Checker, block: usize, impact: &Impact, speci
 }
 
 /// The same of a frame, whose damping is that of its storeys.
-pub fn storeys_damped_twice(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame) {
-    let computed = match &shake.damping {
+pub fn storeys_damped_twice(
+    checker: &mut Checker,
+    block: usize,
+    (specimen, mode, damping): (usize, Mode, &ShakeDamping),
+    frame: &Frame,
+) {
+    let computed = match damping {
         ShakeDamping::Rayleigh(ratio) => ratio.constant().is_none_or(|ratio| ratio > 0.0),
         ShakeDamping::Modal(ratios) => ratios.iter().any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
     };
     let felt = frame.storeys.iter().any(|storey| storey.damping > 0.0);
-    if !(computed && felt && matches!(shake.mode, Mode::Continuous { .. })) {
+    if !(computed && felt && matches!(mode, Mode::Continuous { .. })) {
         return;
     }
-    let of_specimen = checker.scope.of_kind(Kind::Specimen).nth(shake.specimen).map(|(index, _)| index);
+    let of_specimen = checker.scope.of_kind(Kind::Specimen).nth(specimen).map(|(index, _)| index);
     let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
     let felt = of_specimen.and_then(|index| at(index, "storeys"));
     if let (Some(computed), Some(felt)) = (at(block, "damping_ratio"), felt) {

@@ -72,7 +72,7 @@ pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
 /// What the time step of a shake must be held against, as far as it is known before the run: stability, the shortest
 /// period, the record, the number of steps.
 pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, ground: &Ground) {
-    mode::storeys_damped_twice(checker, block, shake, frame);
+    mode::storeys_damped_twice(checker, block, (shake.specimen, shake.mode, &shake.damping), frame);
     let head = checker.scope.blocks[block].block.head;
     let at = |checker: &Checker, field| checker.given(block, field).map_or(head, |(_, entry)| entry.value.span);
     let Some(damping) = shake.damping.known() else { return };

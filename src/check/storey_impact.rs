@@ -6,10 +6,10 @@ use std::rc::Rc;
 use super::checker::Checker;
 use super::faults::{frames as fault, methods, values, whole};
 use super::fields::whole as whole_number;
-use super::{frame, impact, integrator, shake, warnings};
+use super::{frame, impact, integrator, mode, shake, warnings};
 use crate::formula::NoResults;
 use crate::mechanics::frame_properties::{Approach, FrameProperties};
-use crate::plan::{Contact, Frame, MOST_STEPS, ProcedureKind, ShakeDamping, StoreyImpact, Striker};
+use crate::plan::{Contact, Frame, MOST_STEPS, Mode, ProcedureKind, ShakeDamping, StoreyImpact, Striker};
 use crate::schema::Kind;
 
 /// The frame that a block strikes one storey of; None where it strikes one degree of freedom, or nothing that is known.
@@ -33,7 +33,6 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
         ("mass", "remove it: the storeys of the frame have masses of their own"),
         ("stiffness", "remove it: the storeys of the frame have stiffnesses of their own"),
         ("damping", "write `damping_ratio = 2 %`: damping of the frame's modes"),
-        ("mode", "remove it: the floors are moved step by step"),
     ];
     let mut foreign = false;
     for (field, help) in own {
@@ -45,9 +44,11 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
     }
     let damping = shake::damping(checker, block);
     let contact = impact::contact(checker, block);
-    let integrator = integrator::integrator(checker, block, None, None);
+    let mode = mode::mode(checker, block);
+    let integrator = integrator::integrator(checker, block, mode, contact.as_ref());
     let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
-    let i_modification = checker.word(block, "i_modification", "false").map(|word| word == "true");
+    let unsaid = if matches!(mode, Some(Mode::Continuous { .. })) { "true" } else { "false" };
+    let i_modification = checker.word(block, "i_modification", unsaid).map(|word| word == "true");
     let time_step = match checker.given(block, "time_step") {
         Some(_) => checker.quantity(block, "time_step"),
         None => Some(impact::twentieth_of_critical()),
@@ -69,6 +70,7 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
         integrator: integrator?,
         allow_unstable: allow_unstable?,
         i_modification: i_modification?,
+        mode: mode?,
         time_step: time_step?,
         duration: duration?,
         until: until?,
@@ -110,6 +112,7 @@ fn approach(impact: &StoreyImpact, striker: &Striker) -> Option<Approach> {
 /// limit force needs, the number of steps.
 pub fn judge(checker: &mut Checker, block: usize, impact: &StoreyImpact, frame: &Frame, striker: &Striker) {
     let head = checker.scope.blocks[block].block.head;
+    mode::storeys_damped_twice(checker, block, (impact.specimen, impact.mode, &impact.damping), frame);
     let at = |checker: &Checker, field| checker.given(block, field).map_or(head, |(_, entry)| entry.value.span);
     let Some(damping) = impact.damping.known() else { return };
     let ratios = at(checker, "damping_ratio");

@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::faults::{cyclic, values, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker};
+use crate::plan::{Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker, Until};
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
 
@@ -54,24 +54,31 @@ pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     }
 }
 
-/// An impact straight after another starts from the peak of that one, which no specimen stays at.
+/// An impact straight after another starts from the peak of that one, which no specimen stays at. A frame that is struck is
+/// not unloaded: its run goes on until it has come to rest.
 fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     let mut before: Option<usize> = None;
     for (block, procedure) in procedures {
-        match procedure.as_ref().map(|procedure| &procedure.kind) {
-            Some(ProcedureKind::Impact(_) | ProcedureKind::StoreyImpact(_)) => {
-                if let Some(first) = before {
-                    let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
-                    let name = first.name.map_or("", |name| name.node.as_str());
-                    let fault = cyclic::blow_on_blow(this.block.head, name, first.block.head);
-                    checker.faults.push(fault);
-                }
-                before = Some(*block);
-            }
+        let (help, rests) = match procedure.as_ref().map(|procedure| &procedure.kind) {
+            Some(ProcedureKind::Impact(_)) => ("take the load off in between: `unload rest { }`", false),
+            Some(ProcedureKind::StoreyImpact(impact)) => (
+                "let the first run on until the frame rests: `until = duration`, with a `damping_ratio`",
+                impact.until == Until::Duration,
+            ),
             // A look moves nothing.
-            Some(ProcedureKind::Inspect { .. }) => {}
-            _ => before = None,
+            Some(ProcedureKind::Inspect { .. }) => continue,
+            _ => {
+                before = None;
+                continue;
+            }
+        };
+        if let Some(first) = before {
+            let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
+            let name = first.name.map_or("", |name| name.node.as_str());
+            let fault = cyclic::blow_on_blow(this.block.head, name, first.block.head, help);
+            checker.faults.push(fault);
         }
+        before = Some(*block).filter(|_| !rests);
     }
 }
 

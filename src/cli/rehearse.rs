@@ -45,11 +45,15 @@ pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, 
 /// On what it is predicted.
 fn told(plan: &Plan, stand_in: &Plan) -> String {
     let specimen = VirtualRig::specimen_of(stand_in);
+    let storeys = specimen.and_then(|specimen| specimen.frame.as_ref()).map(|frame| frame.degrees_of_freedom());
     let stiffness = specimen.and_then(|specimen| specimen.behaviour.as_ref()).map(Behaviour::initial_stiffness);
     let stiffness = stiffness.map_or_else(|| "unknown".to_owned(), |stiffness| readable(stiffness, Dimension::STIFFNESS));
     let noise = stand_in.rig.link.as_virtual().map_or(0.0, |link| link.noise);
     let noise = readable(noise, Dimension::FORCE);
     let name = escape(&plan.rig.name);
+    if let Some(storeys) = storeys {
+        return format!("rehearsal of the run on rig `{name}`, predicted on the {storeys} storeys of the plan, noise {noise}");
+    }
     format!(
         "rehearsal of the run on rig `{name}`, predicted on a virtual specimen as measured: stiffness {stiffness}, noise {noise}"
     )

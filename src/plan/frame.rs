@@ -147,6 +147,7 @@ pub struct StoreyImpact {
     pub allow_unstable: bool,
     /// Whether readings are corrected to the place that was commanded.
     pub i_modification: bool,
+    pub mode: Mode,
     /// s; may read `critical`.
     pub time_step: Formula,
     /// s, at most.

@@ -163,7 +163,8 @@ fn no_more_steps_come_than_were_foretold() {
         rising.blow.duration = Constant(0.02);
         let plan = yielding(vec![ProcedureKind::Escalate(rising)]);
         let mut counting = Counting::default();
-        crate::run::run(&plan, &mut VirtualRig::of_plan(&plan), &mut counting);
+        let record = crate::run::run(&plan, &mut VirtualRig::of_plan(&plan), &mut counting);
+        assert_eq!(record.outcome, Outcome::Completed);
         let bound = counting.bound.unwrap();
         assert!(counting.last <= bound && (!exact || counting.last == bound), "{between:?}: {} of {bound}", counting.last);
         assert!(counting.last >= 300);

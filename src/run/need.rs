@@ -180,7 +180,7 @@ impl Reckoner<'_> {
             }
             ProcedureKind::StoreyImpact(impact) => {
                 let steps = rounded(storey_impact::steps(impact, self.plan)?) + 1.0;
-                Some(stepped(Mode::StepAndPause, steps))
+                Some(stepped(impact.mode, steps))
             }
             ProcedureKind::Shake(shaking) => {
                 let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;

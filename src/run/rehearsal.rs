@@ -37,7 +37,7 @@ fn leading(plan: &Plan) -> usize {
 /// There would be nothing to predict the rest on.
 pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     let ramps = leading(plan);
-    let bent = VirtualRig::specimen_of(plan).filter(|specimen| specimen.behaviour.is_none());
+    let bent = VirtualRig::specimen_of(plan).filter(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
     if let Some(specimen) = bent.filter(|_| ramps == 0) {
         return Err(Unrehearsed::NothingMeasured(specimen.name.clone()));
     }
@@ -125,10 +125,21 @@ fn scatter(measured: &Record) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{elastic_plan, impact, ramp, result_of, run_unwatched};
+    use super::super::testing::{elastic_plan, impact, ramp, result_of, run_unwatched, struck_frame};
     use super::*;
     use crate::formula::Formula::Constant;
     use crate::plan::{BreakCount, InspectTrigger, Move, RampFit};
+
+    /// A frame has its storeys' behaviours: nothing of it is measured first, and the blow is predicted on them.
+    #[test]
+    fn a_blow_on_a_storey_is_predicted_on_the_storeys_of_the_plan() {
+        let plan = struck_frame();
+        let part = measured_part(&plan).unwrap();
+        assert!(part.procedures.is_empty());
+        assert_eq!(told(&part), Some("nothing ran on the rig; p0 did not run and was predicted on a virtual specimen"));
+        let model = prediction(&plan, &run_unwatched(&part)).unwrap();
+        assert_eq!(format!("{:?}", run_unwatched(&model).procedures), format!("{:?}", run_unwatched(&plan).procedures));
+    }
 
     fn plan() -> Plan {
         let mut blow = impact(result_of(1, "stiffness"));

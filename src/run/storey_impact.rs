@@ -1,9 +1,11 @@
 //! An impact on one storey of a frame: the striker is computed, the frame is on the rig, an actuator and a load cell for each
-//! floor. Each step: predict, command, settle, pause, read, feed back. In: a frame, a striker, a contact law, a time step.
+//! floor. Each step: predict, command, settle, pause, read, feed back; or, continuous, the floors follow smooth paths together
+//! (`gliding`) and are read as they pass their targets. In: a frame, a striker, a contact law, a time step.
 //! Out: every step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
 
 use super::Performed;
 use super::axes::{Monitors, Told, report, together};
+use super::gliding::{Gliding, Passing};
 use super::impact::{law, remark};
 use super::inputs::Inputs;
 use super::session::Session;
@@ -19,7 +21,7 @@ use crate::mechanics::frame::{Damping, FrameInput, FrameState, Tangents, storeys
 use crate::mechanics::frame_properties::{Approach, FrameProperties};
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::monitor::Tracking;
-use crate::plan::{Contact, Frame, MOST_STEPS, Plan, StoreyImpact, Striker, Until};
+use crate::plan::{Contact, Frame, MOST_STEPS, Mode, Plan, StoreyImpact, Striker};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, StoreyImpactHistory};
@@ -66,6 +68,14 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
         remark(&summary.blow(), plan.until, session);
     }
     Performed { results: results(summary.as_ref(), watch.worst, &history), history: History::StoreyImpact(history), stop }
+}
+
+/// Where each floor is to pass in this step, and how fast.
+fn foretold(solver: &mut FrameImpactSolver, unloaded: &[f64]) -> Vec<Passing> {
+    let places = solver.predict(unloaded).to_vec();
+    let mut velocities = vec![0.0; places.len()];
+    let struck = solver.predicted_velocity(&mut velocities);
+    places.into_iter().zip(velocities).map(|(place, velocity)| Passing { place, velocity, struck }).collect()
 }
 
 /// Steps of an impact on a storey, where the plan alone tells.
@@ -178,36 +188,38 @@ impl Striking<'_> {
         let unloaded = vec![0.0; properties.matrices.order()];
         let mut solver = self.solver(plan, &start, &reading, &unloaded)?;
         let mut monitors = Monitors::new(&start, &reading);
+        let mut gliding = match plan.mode {
+            Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, self.setting.time_step)),
+            Mode::StepAndPause => None,
+        };
         let mut at_rest = solver.frame().clone();
         at_rest.measured_displacement.clone_from(&reading.displacement);
         self.take(&at_rest, solver.striker(), vec![Tracking::default(); start.len()], session);
         for _ in 1..=*steps {
-            let targets = solver.predict(&unloaded).to_vec();
-            session.guard.move_to(&targets, None)?;
-            session.guard.pause(*pause)?;
-            let reading = session.guard.read()?;
+            let reading = if let Some(gliding) = &mut gliding {
+                gliding.step(|| foretold(&mut solver, &unloaded), session)?
+            } else {
+                session.guard.move_to(solver.predict(&unloaded), None)?;
+                session.guard.pause(*pause)?;
+                session.guard.read()?
+            };
             solver.complete(&reading.displacement, &reading.force);
             let (state, striker) = (solver.frame(), solver.striker());
-            let tracking = monitors.take(&targets, &reading, solver.taken(&reading.force));
+            let tracking = monitors.take(&state.target, &reading, solver.taken(&reading.force));
             let told = self.take(state, striker, tracking, session);
             self.watch.judge(told.tracking_energy_error, session);
             session.guard.check_energy_error(told.energy_error)?;
             session.guard.check_tracking(told.tracking_energy_error, told.tracking.nrms_error)?;
             session.step_done(&report(state, &told))?;
             let (step, time, base_shear) = (state.step, state.time, state.restoring_force.iter().sum());
-            let over = match plan.until {
-                Until::StrikerStop => solver.finished(),
-                Until::Rebound => solver.rebounded(),
-                Until::Duration => false,
-            };
-            if over {
+            if solver.over(plan.until) {
                 break;
             }
             if let Some(reason) = triggers.after(step, time, base_shear) {
                 session.inspect(&reason)?;
             }
         }
-        Ok(())
+        gliding.map_or(Ok(()), |gliding| gliding.brake(session))
     }
 
     fn solver(&self, plan: &StoreyImpact, start: &[f64], reading: &Reading, unloaded: &[f64]) -> Result<FrameImpactSolver, Stop> {

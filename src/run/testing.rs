@@ -83,6 +83,7 @@ pub(crate) fn struck_frame() -> Plan {
         integrator: Integrator::Tangent,
         allow_unstable: false,
         i_modification: false,
+        mode: Mode::StepAndPause,
         time_step: Formula::Constant(0.01),
         duration: Formula::Constant(0.25),
         until: Until::Duration,

@@ -57,6 +57,11 @@ const SPEED: f64 = 1.2;
 const HERTZ: f64 = 4e7;
 
 fn yielding(fields: &str) -> Record {
+    yielding_by(fields, &["hit"])
+}
+
+/// The frame under so many blows, each of 0.4 s.
+fn yielding_by(fields: &str, blows: &[&str]) -> Record {
     let storeys: Vec<String> = (0..3)
         .map(|i| {
             format!(
@@ -65,15 +70,22 @@ fn yielding(fields: &str) -> Record {
             )
         })
         .collect();
-    record(&format!(
-        "specimen frame {{ storeys = [{}] }}\nstriker truck {{\n  mass = {STRIKER} kg\n  velocity = {SPEED} m/s\n}}\nimpact hit {{\n  striker = truck\n  storey = 2\n  contact = hertz(stiffness: {HERTZ} N/m^1.5)\n  duration = 0.4 s\n  until = duration\n{fields}\n}}\n",
+    let mut text = format!(
+        "specimen frame {{ storeys = [{}] }}\nstriker truck {{\n  mass = {STRIKER} kg\n  velocity = {SPEED} m/s\n}}\n",
         storeys.join(", ")
-    ))
+    );
+    for name in blows {
+        text += &format!(
+            "impact {name} {{\n  striker = truck\n  storey = 2\n  contact = hertz(stiffness: {HERTZ} N/m^1.5)\n  duration = 0.4 s\n  until = duration\n{fields}\n}}\n"
+        );
+    }
+    record(&text)
 }
 
 /// The same frame and striker by central differences, x₂ = 2x₁ − x₀ + h²a: the storey's shear is h·kδ + (1 − h)·kz with z the
-/// drift of an elastic, perfectly plastic spring beside an elastic one. Displacements at `times` (s), in order.
-fn central_differences(times: &[f64]) -> Vec<[f64; 3]> {
+/// drift of an elastic, perfectly plastic spring beside an elastic one. Displacements at `times` (s), in order. At `again` (s)
+/// the frame is held and struck once more.
+fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
     const STEP: f64 = 2e-6;
     let (mut x, mut before, mut z) = ([0.0; 3], [0.0; 3], [0.0_f64; 3]);
     let (mut striker, mut striker_before) = (0.0_f64, -SPEED * STEP);
@@ -83,6 +95,9 @@ fn central_differences(times: &[f64]) -> Vec<[f64; 3]> {
         let time = f64::from(step) * STEP;
         if time >= times[told.len()] - 0.5 * STEP {
             told.push(x);
+        }
+        if (time - again).abs() < 0.5 * STEP {
+            (before, striker, striker_before) = (x, x[1], x[1] - SPEED * STEP);
         }
         let mut shear = [0.0; 3];
         for storey in 0..3 {
@@ -112,7 +127,7 @@ fn central_differences(times: &[f64]) -> Vec<[f64; 3]> {
 fn difference(record: &Record) -> f64 {
     let floors = &history(record).floors;
     let times: Vec<f64> = floors.iter().map(|step| step.time).collect();
-    let reference = central_differences(&times);
+    let reference = central_differences(&times, f64::INFINITY);
     let largest = reference.iter().flatten().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let pairs = floors.iter().zip(&reference).flat_map(|(found, exact)| found.computed.iter().zip(exact));
     pairs.map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max) / largest
@@ -128,6 +143,50 @@ fn a_frame_that_yields_is_the_one_of_central_differences() {
     let (coarse, fine) = (difference(&yielding("  time_step = 1 ms")), difference(&record));
     assert!(fine < 2e-3, "{fine}");
     assert!(coarse > 3.0 * fine, "{coarse} at 1 ms, {fine} at a quarter of it");
+}
+
+/// A second blow meets the frame as the first one left it: bent, and with the memory of its storeys.
+#[test]
+fn a_second_blow_meets_the_damage_of_the_first() {
+    let record = yielding_by("  time_step = 0.25 ms", &["first", "second"]);
+    let of = |procedure: usize| match &record.procedures[procedure].history {
+        History::StoreyImpact(history) => &history.floors,
+        other => panic!("{other:?}"),
+    };
+    let (first, second) = (of(0), of(1));
+    assert_eq!(second[0].computed, first.last().expect("steps").command);
+    let times: Vec<f64> = second.iter().map(|step| 0.4 + step.time).collect();
+    let reference = central_differences(&times, 0.4);
+    let largest = reference.iter().flatten().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    for (found, exact) in second.iter().zip(&reference) {
+        for (found, exact) in found.computed.iter().zip(exact) {
+            assert!((found - exact).abs() < 5e-3 * largest, "{found} and {exact} at {} s", 0.4 + second[0].time);
+        }
+    }
+}
+
+/// On an ideal rig floors that never stop are read where they would have stopped: the same motion, whatever integrates it.
+#[test]
+fn floors_that_never_stop_are_struck_as_those_that_do() {
+    let plan = |mode: &str, integrator: &str| {
+        record(&format!(
+            "specimen frame {{ storeys = [storey(mass: 2 t, stiffness: 3 MN/m), storey(mass: 1.5 t, stiffness: 2 MN/m)] }}\nstriker s {{\n  mass = 100 kg\n  velocity = 1 m/s\n}}\nimpact hit {{\n  striker = s\n  storey = 1\n  mode = {mode}\n  integrator = {integrator}\n  time_step = 1 ms\n  duration = 0.3 s\n  until = duration\n}}\n"
+        ))
+    };
+    for integrator in ["tangent", "explicit", "alpha_os(alpha: -0.05)"] {
+        let (stepped, gliding) = (plan("step_and_pause", integrator), plan("continuous(time_scale: 50)", integrator));
+        let largest = list(&stepped, "floor_displacement").into_iter().fold(0.0, f64::max);
+        assert_eq!(history(&stepped).floors.len(), history(&gliding).floors.len());
+        for (one, other) in history(&stepped).floors.iter().zip(&history(&gliding).floors) {
+            for (one, other) in one.computed.iter().zip(&other.computed) {
+                assert!(
+                    (one - other).abs() < 1e-9 * largest,
+                    "{integrator} at {} s: {one} and {other}",
+                    history(&stepped).floors[0].time
+                );
+            }
+        }
+    }
 }
 
 /// The storeys' energies are the frame's, the balance closes, and where the plan counts on a rebound it is there.

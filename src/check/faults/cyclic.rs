@@ -24,11 +24,11 @@ pub fn no_use_with_rate(field: &str, span: Span, rate: Span) -> Diagnostic {
         .help(format!("leave out `{field}`, or `rate`"))
 }
 
-pub fn blow_on_blow(head: Span, before: &str, before_at: Span) -> Diagnostic {
+pub fn blow_on_blow(head: Span, before: &str, before_at: Span, help: &str) -> Diagnostic {
     Diagnostic::new(Code::BlowOnBlow, format!("this blow begins where `{before}` ended: under load, and at rest"))
         .at(head, "begins there")
         .at(before_at, "ends near its largest displacement")
-        .help("take the load off in between: `unload rest { }`")
+        .help(help)
 }
 
 pub fn levels_twice(again: &str, span: Span, first_field: &str, first: Span) -> Diagnostic {

@@ -16,7 +16,7 @@ use super::solver::{FrameError, FrameInput, FrameSolver, FrameState};
 use crate::mechanics::contact::{ContactLaw, StepState};
 use crate::mechanics::energy::Energies;
 use crate::mechanics::law::{Bodies, HertzContact};
-use crate::plan::Integrator;
+use crate::plan::{Integrator, Until};
 
 /// All a frame's impact starts from.
 #[derive(Clone, Copy, Debug)]
@@ -224,6 +224,33 @@ impl FrameImpactSolver {
                 *passed = Some(through);
                 through.damping_work
             }),
+        }
+    }
+
+    /// Velocities that the step predicted last is foretold to end with, m/s, and whether a contact force has its share in
+    /// them: exact under `tangent`; under the others what the frame does by itself it keeps doing, a blow is over but for the
+    /// half of its impulse that this step still has, and a limit force lasts.
+    pub fn predicted_velocity(&self, velocity: &mut [f64]) -> bool {
+        self.frame.predicted_velocity(velocity);
+        let before = self.now.contact_force;
+        match &self.law {
+            Law::Impulse(limit) if self.frame.decides_afterwards() => {
+                let over = if before >= *limit { 0.0 } else { 0.5 };
+                self.frame.push(-over * self.time_step * before, velocity);
+                before > 0.0
+            }
+            Law::Impulse(_) => before > 0.0 || self.frame.contact_force() > 0.0,
+            Law::Hertz(_) | Law::Restitution(_) => before > 0.0 || self.passed.is_some_and(|passed| passed.contact_force > 0.0),
+        }
+    }
+
+    /// Whether the run has come to its end before its duration.
+    #[must_use]
+    pub fn over(&self, until: Until) -> bool {
+        match until {
+            Until::StrikerStop => self.finished(),
+            Until::Rebound => self.rebounded(),
+            Until::Duration => false,
         }
     }
 

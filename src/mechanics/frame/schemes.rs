@@ -171,6 +171,13 @@ impl Schemes {
         self.factor.solve_in_place(&mut struck.response);
     }
 
+    /// x ← x + `force` M⁻¹e_s, `force` on the struck degree of freedom.
+    pub fn push(&self, force: f64, x: &mut [f64]) {
+        if let Some(struck) = &self.struck {
+            add(x, force, &struck.push);
+        }
+    }
+
     /// F of the last step, N.
     pub fn contact_force(&self) -> f64 {
         self.struck.as_ref().map_or(0.0, |struck| struck.force)

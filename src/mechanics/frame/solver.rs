@@ -176,6 +176,11 @@ impl FrameSolver {
         }
     }
 
+    /// x ← x + `force` M⁻¹e_s of the struck degree of freedom.
+    pub(super) fn push(&self, force: f64, x: &mut [f64]) {
+        self.schemes.push(force, x);
+    }
+
     /// [`FrameSolver::predict`] with a body that may strike.
     pub(super) fn predict_with(&mut self, load_end: &[f64], decide: Decide) -> &[f64] {
         if !self.predicted {
@@ -202,6 +207,11 @@ impl FrameSolver {
             self.state.target.copy_from_slice(&self.next.displacement);
         }
         &self.state.target
+    }
+
+    /// Whether the contact of a step is decided on once its force is read.
+    pub(super) fn decides_afterwards(&self) -> bool {
+        self.schemes.integrator != Integrator::Tangent
     }
 
     /// Whether the step under way has its targets.

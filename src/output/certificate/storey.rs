@@ -6,7 +6,7 @@ use super::super::{Run, number};
 use super::results::{contact_law, energy_balance, percent, scalar};
 use super::{contact_log, frames, method};
 use crate::formula::ResultValue;
-use crate::plan::{Contact, ProcedureKind, StoreyImpact};
+use crate::plan::{Contact, Mode, ProcedureKind, StoreyImpact};
 use crate::quantity::Dimension;
 use crate::record::{ProcedureRecord, StoreyImpactHistory};
 
@@ -53,6 +53,13 @@ fn told(run: &Run<'_>, impact: &StoreyImpact, procedure: &ProcedureRecord, histo
              stiffness (I-modification)."
                 .to_owned(),
         );
+    }
+    if let Mode::Continuous { time_scale } = impact.mode {
+        sentences.push(format!(
+            "The actuators did not stop at the steps: they moved together at {} times the virtual time, and what dampers of the \
+             storeys do at that speed is in the restoring forces.",
+            number::text(time_scale, Dimension::NUMBER)
+        ));
     }
     if let (Some(peak), Some(impulse)) = (scalar(procedure, "max_contact_force"), scalar(procedure, "impulse")) {
         sentences.push(format!(
