@@ -109,7 +109,7 @@ mod tests {
     fn a_trifle_below_zero_has_no_tick_of_its_own() {
         let energy = Quantity::of("Energy", Dimension::ENERGY);
         assert_eq!(labels(&energy, -0.01, 5.0)[0], "0");
-        assert_eq!(labels(&energy, -0.1, 5.0)[0], "−1");
+        assert_eq!(labels(&energy, -0.1, 5.0)[0], "−2");
     }
 
     #[test]
