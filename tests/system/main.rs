@@ -5,6 +5,7 @@ mod amended;
 mod certificate;
 mod disk;
 mod faults;
+mod frame;
 mod golden;
 mod hand;
 mod killed;
