@@ -3,7 +3,9 @@
 
 mod amended;
 mod certificate;
+mod clock;
 mod disk;
+mod ended;
 mod faults;
 mod frame;
 mod golden;
