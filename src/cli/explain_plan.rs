@@ -206,7 +206,12 @@ impl<'a> DryRun<'a> {
         let mut rows = vec![row(["limit", "allowed", "reached", "margin"])];
         for (name, allowed, dimension, reached) in all {
             if allowed.is_bounded() {
-                let left = reached.map(|reached| (allowed.high - reached.high).min(reached.low - allowed.low));
+                // A size is never below 0: only its upper bound can be met.
+                let below = |reached: Interval| match name {
+                    "displacement" | "force" => reached.low - allowed.low,
+                    _ => f64::INFINITY,
+                };
+                let left = reached.map(|reached| (allowed.high - reached.high).min(below(reached)));
                 rows.push(vec![
                     name.to_owned(),
                     span(allowed, dimension),
