@@ -5,7 +5,7 @@ use super::choice::Chosen;
 use super::faults::specimens as fault;
 use super::table_file;
 use crate::mechanics::beam;
-use crate::plan::{Beam, Behaviour, Bolted, Breaks, Ends, Loads, Pinching, Portal, Table, Unloading};
+use crate::plan::{Beam, Behaviour, Bolted, Breaks, Ends, Loads, Pinching, Portal, Sections, Table, Unloading};
 use crate::schema::Variant;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind};
@@ -263,6 +263,8 @@ fn portal<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, span
     let (length, height, plastic_moment) = (number("span"), number("height"), number("plastic_moment"));
     let modulus = checker.optional_argument(chosen, "youngs_modulus", place);
     let second_moment = checker.optional_argument(chosen, "second_moment", place);
+    let column_moment = checker.optional_argument(chosen, "column_plastic_moment", place);
+    let column_second = checker.optional_argument(chosen, "column_second_moment", place);
     let stiffness = checker.optional_argument(chosen, "stiffness", place);
     let loads = checker.chosen_argument(chosen, "loads")?;
     let loads = match loads.variant.name {
@@ -275,9 +277,19 @@ fn portal<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, span
         }
     };
     let (length, height, plastic_moment) = (length?, height?, plastic_moment?);
-    let portal = match (modulus?, second_moment?, stiffness?) {
-        (Some(modulus), Some(second_moment), None) => {
-            Portal::of_section(length, height, plastic_moment, modulus * second_moment, loads)
+    let plastic_moment = Sections { beam: plastic_moment, column: column_moment?.unwrap_or(plastic_moment) };
+    let (second_moment, column_second) = (second_moment?, column_second?);
+    if let (Some(_), None) = (column_second, second_moment) {
+        return checker.fail(fault::missing_partner(
+            "column_second_moment",
+            "second_moment",
+            chosen.span("column_second_moment")?,
+        ));
+    }
+    let portal = match (modulus?, second_moment, stiffness?) {
+        (Some(modulus), Some(beam), None) => {
+            let bending = Sections { beam: modulus * beam, column: modulus * column_second.unwrap_or(beam) };
+            Portal::of_sections(length, height, plastic_moment, bending, loads)
         }
         (None, None, Some(stiffness)) => {
             Portal { span: length, height, plastic_moment, bending_stiffness: None, stiffness, loads }

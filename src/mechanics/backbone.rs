@@ -24,8 +24,15 @@ pub struct BilinearFit {
     /// `K_p`/K
     pub hardening: f64,
     pub hardening_error: f64,
+    /// Each error in [`SHARED`]'s order as a sum of four that are independent of each other: that of the stiffness, then what
+    /// goes beyond it of intercept, `K_p` and knee. The same columns in two rows are what the two share.
+    pub shares: [[f64; 4]; 6],
     pub r_squared: f64,
 }
+
+/// Results of a bilinear fit in the order of their shares; the first four name the independent errors.
+pub const SHARED: [&str; 6] =
+    ["stiffness", "intercept_force", "hardened_stiffness", "yield_displacement", "yield_force", "hardening"];
 
 impl BilinearFit {
     /// Force of the two lines at `displacement` (m), N.
@@ -118,6 +125,16 @@ fn fitted(points: &[(f64, f64)], knee: f64, [intercept, stiffness, hardened]: [f
     let covariance = normal.try_inverse()? * (squares / (count - 4.0));
     let to_si = Vector4::new(1.0, 1.0 / scale, 1.0 / scale, scale / size);
     let covariance = Matrix4::from_diagonal(&to_si) * covariance * Matrix4::from_diagonal(&to_si);
+    // Of stiffness, intercept, K_p, knee, in this order; of points without scatter there is no error to share.
+    let ordered = covariance.select_rows(&[1, 0, 2, 3]).select_columns(&[1, 0, 2, 3]);
+    let independent = ordered.cholesky().map_or_else(Matrix4::zeros, |root| root.l().fixed_view::<4, 4>(0, 0).into_owned());
+    let share = |effect: Vector4<f64>| -> [f64; 4] {
+        let row = Vector4::new(effect[1], effect[0], effect[2], effect[3]).transpose() * independent;
+        [row[0], row[1], row[2], row[3]]
+    };
+    let (of_force, of_hardening) =
+        (Vector4::new(1.0, knee, 0.0, stiffness), Vector4::new(0.0, -hardened / (stiffness * stiffness), 1.0 / stiffness, 0.0));
+    let effects = [Vector4::y(), Vector4::x(), Vector4::z(), Vector4::w(), of_force, of_hardening];
     let error = |effect: Vector4<f64>| (effect.transpose() * covariance * effect)[(0, 0)].max(0.0).sqrt();
     let mean = points.iter().map(|point| point.1).sum::<f64>() / count;
     let total: f64 = points.iter().map(|point| (point.1 - mean).powi(2)).sum();
@@ -131,9 +148,10 @@ fn fitted(points: &[(f64, f64)], knee: f64, [intercept, stiffness, hardened]: [f
         yield_displacement: knee,
         yield_displacement_error: error(Vector4::new(0.0, 0.0, 0.0, 1.0)),
         yield_force: intercept + stiffness * knee,
-        yield_force_error: error(Vector4::new(1.0, knee, 0.0, stiffness)),
+        yield_force_error: error(of_force),
         hardening: hardened / stiffness,
-        hardening_error: error(Vector4::new(0.0, -hardened / (stiffness * stiffness), 1.0 / stiffness, 0.0)),
+        hardening_error: error(of_hardening),
+        shares: effects.map(share),
         r_squared: if total > 0.0 { 1.0 - squares / total } else { 1.0 },
     })
 }
@@ -160,6 +178,35 @@ mod tests {
         assert!((fit.yield_displacement - 0.0103).abs() < 1e-11 && (fit.yield_force - 4120.0).abs() < 1e-5);
         assert!((fit.hardening - 0.08).abs() < 1e-9 && fit.r_squared > 1.0 - 1e-12 && fit.intercept.abs() < 1e-5);
         assert!((fit.force(0.02) - y[39]).abs() < 1e-5);
+    }
+
+    /// Errors that share: their sums of squares are the errors themselves, and `F_y` = R₀ + K·`X_y` makes its row of the others.
+    #[test]
+    fn its_shares_are_its_errors_and_know_what_follows_from_what() {
+        let mut at = 0.0_f64;
+        let (x, y) = ramp(&mut || {
+            at += 1.0;
+            20.0 * (at * at).sin()
+        });
+        let fit = fit_bilinear(&x, &y).unwrap();
+        let errors = [
+            fit.stiffness_error,
+            fit.intercept_error,
+            fit.hardened_error,
+            fit.yield_displacement_error,
+            fit.yield_force_error,
+            fit.hardening_error,
+        ];
+        for (row, error) in fit.shares.iter().zip(errors) {
+            let root = row.iter().map(|share| share * share).sum::<f64>().sqrt();
+            assert!((root / error - 1.0).abs() < 1e-9, "{root} {error}");
+        }
+        let [stiffness, intercept, _, knee, force, _] = fit.shares;
+        for column in 0..4 {
+            let by_hand = intercept[column] + fit.yield_displacement * stiffness[column] + fit.stiffness * knee[column];
+            assert!((force[column] - by_hand).abs() < 1e-9 * fit.yield_force_error);
+        }
+        assert_eq!(stiffness[1..], [0.0; 3], "the stiffness has its own error alone");
     }
 
     type Read = fn(&BilinearFit) -> f64;

@@ -49,6 +49,16 @@ pub struct Noise {
     pub draw: u16,
 }
 
+impl Noise {
+    /// Errors of force (N) and displacement (m) of the reading at `step`.
+    #[must_use]
+    pub fn errors(&self, step: u64) -> [f64; 2] {
+        let bits = drawn(self.draw, step);
+        let signed = |bit: u64, size: f64| if bits & bit == 0 { size } else { -size };
+        [signed(1, self.force), signed(2, self.displacement)]
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Branch {
     /// Steps at its ends.
@@ -206,9 +216,9 @@ impl Again<'_> {
         let (displacement, force) = self.path.at(self.branch, self.nearest(), place);
         let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * (force + self.raised) + zero);
         if let Some(noise) = noise {
-            let bits = drawn(noise.draw, self.step as u64);
-            force += if bits & 1 == 0 { noise.force } else { -noise.force };
-            displacement += if bits & 2 == 0 { noise.displacement } else { -noise.displacement };
+            let [of_force, of_displacement] = noise.errors(self.step as u64);
+            force += of_force;
+            displacement += of_displacement;
         }
         (displacement, force)
     }

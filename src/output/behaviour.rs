@@ -2,7 +2,7 @@
 //! Out: labelled texts, for the certificate and for `psd check --explain`.
 
 use crate::mechanics::beam::first_mode_mass_factor;
-use crate::plan::{Beam, Behaviour, Breaks, Ends, Loads, Mechanism, Portal, Unloading};
+use crate::plan::{Beam, Behaviour, Breaks, Ends, Loads, Mechanism, Portal, Sections, Unloading};
 use crate::quantity::Dimension;
 
 /// Shows a number that somebody stated, or that follows from such.
@@ -145,10 +145,16 @@ fn held(ends: Ends, shown: Shown<'_>) -> String {
 }
 
 fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
-    let section = portal.bending_stiffness.map_or_else(String::new, |bending| {
-        // N·m² has no name among the dimensions: shown as what bends a beam of 1 m.
-        format!(", EI {}", shown(bending, Dimension::ENERGY).replace('J', "N·m²"))
-    });
+    let of_both = |sections: Sections, unit: &str| {
+        let one = |value: f64| shown(value, Dimension::ENERGY).replace('J', unit);
+        if sections.are_same() {
+            one(sections.beam)
+        } else {
+            format!("{} of the beam and {} of the columns", one(sections.beam), one(sections.column))
+        }
+    };
+    // N·m² has no name among the dimensions: shown as what bends a beam of 1 m.
+    let section = portal.bending_stiffness.map_or_else(String::new, |bending| format!(", EI {}", of_both(bending, "N·m²")));
     let loads = match portal.loads {
         Loads::Sway => "sway load".to_owned(),
         Loads::Beam => "load at midspan".to_owned(),
@@ -162,7 +168,7 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
         "portal, fixed feet, span {}, height {}, plastic moment {}{section}, {loads}: stiffness {}",
         shown(portal.span, Dimension::LENGTH),
         shown(portal.height, Dimension::LENGTH),
-        shown(portal.plastic_moment, Dimension::ENERGY).replace('J', "N·m"),
+        of_both(portal.plastic_moment, "N·m"),
         shown(portal.stiffness, Dimension::STIFFNESS)
     )
 }

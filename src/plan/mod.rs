@@ -7,6 +7,7 @@ mod escalate;
 mod figure;
 mod frame;
 mod golden;
+mod identification;
 mod integrator;
 mod portal;
 mod rig;
@@ -16,16 +17,15 @@ use crate::formula::{Formula, ResultReference};
 use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
-pub use crate::mechanics::multilinear_fit::BreakCount;
-pub use crate::mechanics::relaxation::RelaxationModel;
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
+pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, StiffnessRamp, WatchedHold};
 pub use integrator::{Integrator, Mode};
-pub use portal::{Loads, Mechanism, Portal};
+pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
     AxisPlan, Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
     SafeState, Settle, VirtualLink,
@@ -272,63 +272,6 @@ impl ProcedureKind {
             Self::Move(_) | Self::Inspect { .. } => None,
         }
     }
-}
-
-/// Sec. 5 step 1: prescribed displacements, a pause at each, the mean of some samples.
-#[derive(Clone, Debug)]
-pub struct StiffnessRamp {
-    /// Index into `Plan::specimens`.
-    pub specimen: usize,
-    /// m
-    pub displacements: Vec<Formula>,
-    /// s
-    pub pause: Formula,
-    /// Readings averaged at each pause, at least 1.
-    pub samples: u32,
-    /// Times the whole ramp is run, at least 1.
-    pub repeats: u32,
-    /// Also back to the start through the same displacements.
-    pub return_path: bool,
-    pub fit: RampFit,
-    /// Readings during the pauses of the first repeat.
-    pub relaxation: Option<WatchedHold>,
-    /// Actuator speed, m/s.
-    pub speed: Option<Formula>,
-}
-
-/// How the force is watched while it relaxes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WatchedHold {
-    pub model: RelaxationModel,
-    /// In a pause, after the first.
-    pub readings: u32,
-    /// N, to which the force is to be known. None: the noise of the rig's cell, if it declares one.
-    pub accuracy: Option<f64>,
-}
-
-/// What is fitted to force on displacement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RampFit {
-    Linear,
-    /// Two lines that meet.
-    Bilinear,
-    Multilinear(BreakCount),
-}
-
-/// Sec. 6 (b): constant-velocity ramps at rising velocities.
-#[derive(Clone, Debug)]
-pub struct DampingSweep {
-    pub specimen: usize,
-    /// m/s
-    pub velocities: Vec<Formula>,
-    /// m
-    pub stroke: Formula,
-    /// The middle of the strokes, m. None: they begin where the actuator is.
-    pub about: Option<Formula>,
-    /// K of F_d = R − K·X, N/m.
-    pub stiffness: Formula,
-    /// Sampling rate, Hz. None: at least 50 samples on the steady part of each ramp.
-    pub rate: Option<Formula>,
 }
 
 /// Steps of one impact, at most: a record of them takes some 2 GB. `check` counts them where it can, `run` where it must.

@@ -1,5 +1,5 @@
-//! A portal frame by plastic hinges: fixed feet, one section throughout, point loads at midspan and at the beam's end. In:
-//! geometry, plastic moment, EI or a stiffness. Out: the mechanism that governs, its load, and the elastic stiffness.
+//! A portal frame by plastic hinges: fixed feet, a section of the beam and one of the columns, point loads at midspan and at the
+//! beam's end. In: geometry, plastic moments, EI or a stiffness. Out: the mechanism that governs, its load, and the elastic stiffness.
 //! Axial and shear strains are left out, and so is the effect of axial force on the plastic moment.
 
 /// A portal frame and the loads on it (Melo et al. 2006, Figs. 3 and 4).
@@ -10,12 +10,38 @@ pub struct Portal {
     /// h, m
     pub height: f64,
     /// Mp, N·m
-    pub plastic_moment: f64,
+    pub plastic_moment: Sections,
     /// EI, N·m²; None where the stiffness was given.
-    pub bending_stiffness: Option<f64>,
+    pub bending_stiffness: Option<Sections>,
     /// Of the load against its own displacement, N/m.
     pub stiffness: f64,
     pub loads: Loads,
+}
+
+/// A property of the beam and of either column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sections {
+    pub beam: f64,
+    pub column: f64,
+}
+
+impl Sections {
+    /// One section throughout.
+    #[must_use]
+    pub const fn same(value: f64) -> Self {
+        Self { beam: value, column: value }
+    }
+
+    #[must_use]
+    pub fn are_same(self) -> bool {
+        self.beam == self.column
+    }
+
+    /// Of a corner, where beam and column meet: the weaker one.
+    #[must_use]
+    pub const fn corner(self) -> f64 {
+        self.beam.min(self.column)
+    }
 }
 
 /// What the frame carries. The load of the specimen is W + H in the given ratio, its displacement the one it does work on:
@@ -79,24 +105,27 @@ impl Loads {
 impl Portal {
     /// A portal of flexural rigidity `bending_stiffness` EI, N·m².
     #[must_use]
-    pub fn of_section(span: f64, height: f64, plastic_moment: f64, bending_stiffness: f64, loads: Loads) -> Self {
+    pub fn of_sections(span: f64, height: f64, plastic_moment: Sections, bending_stiffness: Sections, loads: Loads) -> Self {
         let stiffness = elastic_stiffness(span, height, bending_stiffness, loads);
         Self { span, height, plastic_moment, bending_stiffness: Some(bending_stiffness), stiffness, loads }
     }
 
     /// Load W + H at which the frame would collapse by one mechanism, N; infinite where the loads do no work on it. Work
-    /// of the loads = work of the hinges, for a rotation θ of a column or half-beam:
-    /// beam W·(L/2)θ = Mp(1 + 2 + 1)θ; sway H·hθ = 4Mpθ; combined W·(L/2)θ + H·hθ = Mp(1 + 1 + 2 + 2)θ.
+    /// of the loads = work of the hinges, for a rotation θ of a column or half-beam, with `M_b` of the beam, `M_c` of the columns and
+    /// m the less of both at a corner: beam W·(L/2)θ = (m + 2M_b + m)θ; sway H·hθ = (2M_c + 2m)θ; combined
+    /// W·(L/2)θ + H·hθ = (2M_c + 2M_b + 2m)θ. With one section 4Mp, 4Mp and 6Mp.
     #[must_use]
     pub fn collapse_load(&self, mechanism: Mechanism) -> f64 {
         let (beam, sway) = self.loads.shares();
         let (on_beam, on_sway) = (beam * self.span / 2.0, sway * self.height);
+        let Sections { beam, column } = self.plastic_moment;
+        let corner = self.plastic_moment.corner();
         let (hinges, way) = match mechanism {
-            Mechanism::Beam => (4.0, on_beam),
-            Mechanism::Sway => (4.0, on_sway),
-            Mechanism::Combined => (6.0, on_beam + on_sway),
+            Mechanism::Beam => (2.0 * (corner + beam), on_beam),
+            Mechanism::Sway => (2.0 * (column + corner), on_sway),
+            Mechanism::Combined => (2.0 * (column + beam + corner), on_beam + on_sway),
         };
-        hinges * self.plastic_moment / way
+        hinges / way
     }
 
     /// The mechanism of the least load, which governs.
@@ -113,18 +142,19 @@ impl Portal {
     }
 }
 
-/// Stiffness of the load W + H against the displacement it does work on, by slope-deflection, k = (EI/L)/(EI/h) = h/L.
+/// Stiffness of the load W + H against the displacement it does work on, by slope-deflection, k = (EI_b/L)/(EI_c/h).
 ///
 /// Sway, joint rotations θ, column rotation ψ = Δ/h: joint 4θ − 6ψ + 6kθ = 0, so θ = 3ψ/(2 + 3k); shear
-/// H·h = 2(EI/h)(12ψ − 6θ), so H/Δ = (24EI/h³)(6k + 1)/(6k + 4).
-/// Midspan load, joint rotations ±θ: 4EIθ/h + 2EIθ/L = WL/8, and the midspan deflection WL³/192EI + θL/4 gives
-/// W/δ = (192EI/L³)(k + 2)/(4k + 2).
+/// H·h = 2(EI_c/h)(12ψ − 6θ), so H/Δ = (24EI_c/h³)(6k + 1)/(6k + 4).
+/// Midspan load, joint rotations ±θ: 4EI_cθ/h + 2EI_bθ/L = WL/8, and the midspan deflection WL³/192EI_b + θL/4 gives
+/// W/δ = (192EI_b/L³)(k + 2)/(4k + 2).
 /// Neither load moves the other's point (one is symmetric, the other antisymmetric), so that the flexibilities add with
 /// the squares of the shares.
-fn elastic_stiffness(span: f64, height: f64, bending_stiffness: f64, loads: Loads) -> f64 {
-    let k = height / span;
-    let sway = 24.0 * bending_stiffness / height.powi(3) * (6.0 * k + 1.0) / (6.0 * k + 4.0);
-    let beam = 192.0 * bending_stiffness / span.powi(3) * (k + 2.0) / (4.0 * k + 2.0);
+fn elastic_stiffness(span: f64, height: f64, bending_stiffness: Sections, loads: Loads) -> f64 {
+    let Sections { beam: of_beam, column: of_columns } = bending_stiffness;
+    let k = of_beam / of_columns * (height / span);
+    let sway = 24.0 * of_columns / height.powi(3) * (6.0 * k + 1.0) / (6.0 * k + 4.0);
+    let beam = 192.0 * of_beam / span.powi(3) * (k + 2.0) / (4.0 * k + 2.0);
     let (on_beam, on_sway) = loads.shares();
     1.0 / (on_beam * on_beam / beam + on_sway * on_sway / sway)
 }

@@ -4,9 +4,10 @@
 
 use super::inputs::Inputs;
 use crate::formula::{Formula, ProcedureId, ResultValue};
+use crate::mechanics::backbone::SHARED;
 use crate::plan::{Calibration, ProcedureKind};
 use crate::quantity::Dimension;
-use crate::record::{History, NamedResult};
+use crate::record::{BilinearFit, History, NamedResult};
 use crate::uncertainty::{Contribution, Source, combined};
 
 /// Results of a fit that lie on one line, slope first.
@@ -23,15 +24,20 @@ pub(super) fn attribute(
     inputs: &Inputs<'_>,
     results: &mut [NamedResult],
 ) {
-    let line = match history {
-        History::Ramp(ramp) => ramp.fit,
-        History::Sweep(sweep) => sweep.fit,
+    let (line, bilinear) = match history {
+        History::Ramp(ramp) => (ramp.fit, ramp.bilinear.as_ref()),
+        History::Sweep(sweep) => (sweep.fit, None),
+        // What is fitted to the backbone; its loops know already.
+        History::Cycle(_) => (None, None),
         _ => return,
     };
     let procedure = inputs.procedure();
-    for result in results.iter_mut() {
+    for result in results.iter_mut().filter(|result| result.contributions.is_empty()) {
         if let ResultValue::Number { value: Some(value), uncertainty: Some(own) } = result.value {
-            result.contributions = own_parts(procedure, result.name, own, line.map(|line| line.correlation));
+            result.contributions = match bilinear {
+                Some(fit) => shares_of(procedure, result.name, own, fit),
+                None => own_parts(procedure, result.name, own, line.map(|line| line.correlation)),
+            };
             result.contributions.extend(of_calibration(result, value, calibration));
         }
     }
@@ -40,7 +46,8 @@ pub(super) fn attribute(
     }
     for result in results.iter_mut() {
         // A fit alone keeps its standard error as it is, to the bit.
-        if result.contributions.len() > 1
+        let calibrated = |part: &Contribution| !matches!(part.source, Source::Fit { .. });
+        if result.contributions.iter().any(calibrated)
             && let ResultValue::Number { uncertainty, .. } = &mut result.value
         {
             *uncertainty = combined(&result.contributions);
@@ -53,6 +60,20 @@ fn own_parts(procedure: ProcedureId, name: &'static str, own: f64, correlation: 
     let part = |result, amount| Contribution::new(Source::Fit { procedure, result }, amount);
     match (LINES.iter().find(|(_, intercept)| *intercept == name), correlation) {
         (Some((slope, _)), Some(r)) => vec![part(slope, r * own), part(name, (1.0 - r * r).max(0.0).sqrt() * own)],
+        _ => vec![part(name, own)],
+    }
+}
+
+/// The errors of a bilinear fit by what they share.
+fn shares_of(procedure: ProcedureId, name: &'static str, own: f64, fit: &BilinearFit) -> Vec<Contribution> {
+    let part = |result, amount| Contribution::new(Source::Fit { procedure, result }, amount);
+    match SHARED.iter().position(|shared| *shared == name) {
+        Some(row) if fit.shares[row].iter().any(|share| *share != 0.0) => SHARED
+            .iter()
+            .zip(fit.shares[row])
+            .filter(|(_, share)| *share != 0.0)
+            .map(|(result, share)| part(result, share))
+            .collect(),
         _ => vec![part(name, own)],
     }
 }

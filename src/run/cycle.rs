@@ -4,6 +4,7 @@
 
 use super::Performed;
 use super::curve;
+use super::cycle_doubts;
 use super::inputs::Inputs;
 use super::results::result;
 use super::samples::{mean, scatter};
@@ -11,12 +12,12 @@ use super::session::{Session, first};
 use super::stop::Stop;
 use crate::formula::ResultValue;
 use crate::mechanics::cyclic::{loop_of, work};
-use crate::plan::{Cycle, CycleInspection, MOST_TARGETS};
+use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{CycleHistory, CycleStep, EventKind, History, NamedResult, WholeCycle};
 
-pub(super) fn perform(plan: &Cycle, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+pub(super) fn perform(plan: &Cycle, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut cycling = Cycling { history: CycleHistory::default(), amplitude: 0.0, cycle: 0 };
     let stop = cycling.run(plan, inputs, session).err();
     if let Some(count) = plan.fit {
@@ -26,7 +27,17 @@ pub(super) fn perform(plan: &Cycle, inputs: &mut Inputs<'_>, session: &mut Sessi
             session.event(EventKind::Remark, text);
         }
     }
-    let results = results(&cycling.history);
+    let mut results = results(&cycling.history);
+    // Means of the samples at a target; on the way every reading stands alone.
+    let samples = if plan.rate.is_some() { 1 } else { plan.samples.max(1) };
+    cycle_doubts::propagate(
+        &cycling.history,
+        samples,
+        &whole.rig.calibration,
+        inputs,
+        &session.guard.declared_noise(),
+        &mut results,
+    );
     Performed { history: History::Cycle(cycling.history), results, stop }
 }
 
@@ -211,7 +222,7 @@ impl Looks {
 }
 
 /// In the order of the reference.
-fn results(history: &CycleHistory) -> Vec<NamedResult> {
+pub(super) fn results(history: &CycleHistory) -> Vec<NamedResult> {
     let cycles = &history.cycles;
     let forces = || history.steps.iter().map(|step| step.restoring_force);
     let list = |name, dimension, read: fn(&WholeCycle) -> f64| NamedResult {

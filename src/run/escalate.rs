@@ -5,7 +5,7 @@ use super::Performed;
 use super::impact::{Setting, blow};
 use super::inputs::Inputs;
 use super::propagation::Doubts;
-use super::results::result;
+use super::results::{measured, result};
 use super::session::Session;
 use super::stop::Stop;
 use super::unload::to_rest;
@@ -15,7 +15,7 @@ use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult};
-use crate::uncertainty::Contribution;
+use crate::uncertainty::{Contribution, combined};
 use crate::verdict::{Verdict, assess_condition};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -43,7 +43,7 @@ fn run(
     for (index, striker_velocity) in velocities.iter().copied().enumerate() {
         let setting = Setting { input: ImpactInput { striker_velocity, ..setting.input }, ..setting };
         let energy = setting.input.striker_energy();
-        let blown = blow(&plan.blow, &setting, &doubts, done, session);
+        let blown = blow(&plan.blow, &setting, &doubts.of_blow(index), done, session);
         done += blown.history.steps.last().map_or(0, |last| last.step);
         let over = blown.stop.is_none();
         let known = OfBlow { own: plan.own, blow: &blown.results, before: inputs.results() };
@@ -132,6 +132,39 @@ fn number(blow: &Blow, name: &str) -> Option<f64> {
     }
 }
 
+/// The largest of a result of length over all blows, as uncertain as that of its blow.
+fn largest(blows: &[Blow], name: &'static str) -> NamedResult {
+    let found = blows.iter().filter_map(|blow| Some((number(blow, name)?, blow))).filter(|(value, _)| value.is_finite());
+    let most = found.reduce(|most, next| if next.0 > most.0 { next } else { most });
+    let parts = most.map_or_else(Vec::new, |(_, blow)| contributions(blow, name));
+    told(name, Dimension::LENGTH, most.map(|(value, _)| value), parts)
+}
+
+/// The sum of a result of energy over all blows: what they share of their sources adds up before it is squared.
+fn sum(blows: &[Blow], name: &'static str, total: Option<f64>) -> NamedResult {
+    let mut parts: Vec<Contribution> = Vec::new();
+    for part in blows.iter().flat_map(|blow| contributions(blow, name)) {
+        match parts.iter_mut().find(|known| known.source == part.source) {
+            Some(known) => {
+                known.amount += part.amount;
+                known.smooth &= part.smooth;
+            }
+            None => parts.push(part),
+        }
+    }
+    told(name, Dimension::ENERGY, total, parts)
+}
+
+fn contributions(blow: &Blow, name: &str) -> Vec<Contribution> {
+    let found = blow.results.iter().find(|result| result.name == name);
+    found.map_or_else(Vec::new, |result| result.contributions.clone())
+}
+
+fn told(name: &'static str, dimension: Dimension, value: Option<f64>, contributions: Vec<Contribution>) -> NamedResult {
+    let result = measured(name, dimension, value.map(|value| (value, combined(&contributions))));
+    NamedResult { contributions, ..result }
+}
+
 /// In the order of the reference.
 fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let blows = &history.blows;
@@ -151,9 +184,9 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
         result("passed", Dimension::NUMBER, Some(count(Some(true)))),
         result("last_passed_energy", Dimension::ENERGY, passed),
         result("first_failed_energy", Dimension::ENERGY, failed),
-        result("max_displacement", Dimension::LENGTH, some(of("max_displacement")).reduce(f64::max)),
+        largest(blows, "max_displacement"),
         result("residual_displacement", Dimension::LENGTH, rest),
-        result("absorbed_energy", Dimension::ENERGY, absorbed),
+        sum(blows, "absorbed_energy", absorbed),
         list("velocities", Dimension::VELOCITY, blows.iter().map(|blow| blow.velocity).collect()),
         list("blow_energies", Dimension::ENERGY, blows.iter().map(|blow| blow.energy).collect()),
         list("max_displacements", Dimension::LENGTH, of("max_displacement")),

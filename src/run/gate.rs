@@ -18,13 +18,10 @@ const REST: f64 = 1.0;
 pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut Session<'_>) -> Result<(), Stop> {
     let axes = session.guard.commanded().len();
     let gates: Vec<Gate> = (0..axes).map(|axis| link.gate_of(axis)).collect();
-    let by = match gates.as_slice() {
-        [gate] => format!("by {}", stated(gate.probe, Dimension::LENGTH)),
-        several => {
-            let each: Vec<String> = several.iter().map(|gate| stated(gate.probe, Dimension::LENGTH)).collect();
-            format!("each of its {axes} axes in turn, by {}", each.join(", "))
-        }
-    };
+    let mut ways: Vec<String> = gates.iter().map(|gate| stated(gate.probe, Dimension::LENGTH)).collect();
+    ways.dedup();
+    let ways = ways.join(", ");
+    let by = if axes == 1 { format!("by {ways}") } else { format!("each of its {axes} axes in turn, by {ways}") };
     session.inspect(&format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name))?;
 
     let first = session.guard.read()?;

@@ -7,6 +7,7 @@ mod continuous;
 mod continuous_tests;
 mod curve;
 mod cycle;
+mod cycle_doubts;
 #[cfg(test)]
 mod cycle_tests;
 mod damping_sweep;
@@ -257,7 +258,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),
         ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
-        ProcedureKind::Cycle(cycling) => cycle::perform(cycling, inputs, session),
+        ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),

@@ -39,11 +39,18 @@ pub(super) struct Doubts<'run> {
     results: &'run dyn Results,
     procedure: ProcedureId,
     noise: DeclaredNoise,
+    /// Which blow of the procedure it is, from 0: each has errors of its own.
+    blow: u16,
 }
 
 impl<'run> Doubts<'run> {
     pub(super) fn new(plan: &'run Impact, whole: &'run Plan, inputs: &Inputs<'run>, noise: DeclaredNoise) -> Self {
-        Self { plan, whole, results: inputs.results(), procedure: inputs.procedure(), noise }
+        Self { plan, whole, results: inputs.results(), procedure: inputs.procedure(), noise, blow: 0 }
+    }
+
+    /// Of another blow of the same procedure, from 0.
+    pub(super) fn of_blow(self, index: usize) -> Self {
+        Self { blow: u16::try_from(index).unwrap_or(u16::MAX), ..self }
     }
 
     /// Gives `results` their contributions. The error says why nothing is known of them.
@@ -177,11 +184,11 @@ impl<'run> Doubts<'run> {
         nominal: &Values,
         contributions: &mut [Vec<Contribution>],
     ) {
-        let affordable = u16::try_from(STEPS_OF_DRAWS / steps.max(1)).unwrap_or(u16::MAX);
-        let draws = affordable.clamp(FEWEST_DRAWS, MOST_DRAWS);
+        let draws = draws_of(steps);
         // Rounding to a quantum q is even over it: q/√12.
         let (force, displacement) = (self.noise.force, self.noise.resolution / 12.0_f64.sqrt());
-        for draw in 0..draws {
+        let first = self.blow.saturating_mul(MOST_DRAWS);
+        for draw in first..first.saturating_add(draws) {
             let noise = Some(Noise { force, displacement, draw });
             let found = self.values(setting, path, Distortion { noise, ..Distortion::NONE });
             let source = Source::Readings { procedure: self.procedure, draw };
@@ -204,6 +211,11 @@ impl<'run> Doubts<'run> {
             }
         }
     }
+}
+
+/// How many draws a run of so many steps is worth.
+pub(super) fn draws_of(steps: u64) -> u16 {
+    u16::try_from(STEPS_OF_DRAWS / steps.max(1)).unwrap_or(u16::MAX).clamp(FEWEST_DRAWS, MOST_DRAWS)
 }
 
 /// What moving a source by ±u does, and whether that is smooth. `moved` is at +u, +u/2, −u/2, −u. Where the two sides, or

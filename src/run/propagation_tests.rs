@@ -314,3 +314,37 @@ fn a_guarded_limit_decides_nothing_where_the_blow_is_uncertain() {
     assert_eq!(verdict(0.97, 0.01, DecisionRule::Guarded), Verdict::Fail);
     assert_eq!(verdict(1.03, 0.02, DecisionRule::Simple), Verdict::Pass);
 }
+
+/// Two blows of one striker and one cell share velocity and calibration, and no error of their readings.
+#[test]
+fn blows_of_one_striker_share_what_is_uncertain_of_it() {
+    use crate::plan::{Between, Escalate};
+    let rising = Escalate {
+        blow: Impact { until: crate::plan::Until::StrikerStop, ..sticking(1e-3) },
+        velocities: vec![constant(0.5), constant(1.0)],
+        condition: Vec::new(),
+        own: crate::formula::ProcedureId(0),
+        between: Between::Home,
+        inspect_between: false,
+    };
+    let run = |velocity: f64, noise: f64| {
+        let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Escalate(rising.clone())]);
+        plan.strikers[0].velocity_uncertainty = velocity;
+        plan.rig.link = Link::Virtual(VirtualLink { noise, seed: 5, ..VirtualLink::default() });
+        let record = run_unwatched(&plan);
+        let crate::record::History::Escalate(history) = &record.procedures[0].history else { panic!() };
+        let of_blows: Vec<f64> = history
+            .blows
+            .iter()
+            .map(|blow| blow.results.iter().find(|result| result.name == "absorbed_energy").unwrap())
+            .map(|result| combined(&result.contributions).unwrap())
+            .collect();
+        (of_blows, number(&record, 0, "absorbed_energy"), number(&record, 0, "max_displacement"))
+    };
+    let (of_blows, (total, u), (largest, largest_u)) = run(0.01, 0.0);
+    // 1 % of V0 is 1 % of every speed, and so 2 % of every energy: the sum of the two, not its root of squares.
+    assert!((u.unwrap() - (of_blows[0] + of_blows[1])).abs() < 1e-9 && (u.unwrap() / total.unwrap() - 0.02).abs() < 1e-4);
+    assert!((largest_u.unwrap() / largest.unwrap() - 0.01).abs() < 1e-4);
+    let (of_blows, (_, u), _) = run(0.0, 0.5);
+    assert!((u.unwrap() / of_blows[0].hypot(of_blows[1]) - 1.0).abs() < 1e-9, "{u:?} of {of_blows:?}");
+}

@@ -199,13 +199,23 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
         &[
             Field::quantity("span", Dimension::LENGTH, "L between the columns").required("span: 4 m").above_zero(),
             Field::quantity("height", Dimension::LENGTH, "h of the columns").required("height: 3 m").above_zero(),
-            Field::quantity("plastic_moment", Dimension::ENERGY, "Mp of the section, the same throughout")
-                .required("plastic_moment: 20 kN*m")
-                .above_zero(),
+            Field::quantity(
+                "plastic_moment",
+                Dimension::ENERGY,
+                "Mp of the section, of the beam where the columns have their own",
+            )
+            .required("plastic_moment: 20 kN*m")
+            .above_zero(),
             Field::choice("loads", LOADS, "what the frame carries").required("loads: sway"),
             YOUNGS_MODULUS,
             SECOND_MOMENT,
             Field::quantity("stiffness", Dimension::STIFFNESS, "in place of `youngs_modulus` and `second_moment`").above_zero(),
+            Field::quantity("column_plastic_moment", Dimension::ENERGY, "Mp of the columns")
+                .above_zero()
+                .or_said("as the beam's"),
+            Field::quantity("column_second_moment", Dimension::SECOND_MOMENT, "second moment of area of the columns")
+                .above_zero()
+                .or_said("as the beam's"),
         ],
         "a portal frame with fixed feet by plastic hinges: elastic up to the least collapse load",
     ),

@@ -92,16 +92,16 @@ pub(super) const CYCLE: BlockKind = BlockKind {
     ],
     exports: &[],
     results: &[
-        ResultKind::new("dissipated_energy", Dimension::ENERGY, "work done on the specimen over all cycles, ∫R dX"),
-        ResultKind::new("max_force", Dimension::FORCE, "largest restoring force"),
-        ResultKind::new("min_force", Dimension::FORCE, "smallest restoring force: the largest pull"),
-        ResultKind::new(
+        ResultKind::measured("dissipated_energy", Dimension::ENERGY, "work done on the specimen over all cycles, ∫R dX"),
+        ResultKind::measured("max_force", Dimension::FORCE, "largest restoring force"),
+        ResultKind::measured("min_force", Dimension::FORCE, "smallest restoring force: the largest pull"),
+        ResultKind::measured(
             "equivalent_damping_ratio",
             Dimension::NUMBER,
             "of the last cycle: E_D / (4π E_S0) with E_S0 = ½ K_sec a², a half its width",
         ),
-        ResultKind::new("stiffness", Dimension::STIFFNESS, "secant stiffness of the first cycle, from end to end"),
-        ResultKind::new("last_stiffness", Dimension::STIFFNESS, "secant stiffness of the last cycle"),
+        ResultKind::measured("stiffness", Dimension::STIFFNESS, "secant stiffness of the first cycle, from end to end"),
+        ResultKind::measured("last_stiffness", Dimension::STIFFNESS, "secant stiffness of the last cycle"),
         ResultKind::count("cycles", "number of whole cycles"),
         ResultKind::list("amplitudes", Dimension::LENGTH, "half the width of each cycle as measured"),
         ResultKind::list("energies", Dimension::ENERGY, "∫R dX of each cycle"),

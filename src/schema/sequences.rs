@@ -90,9 +90,9 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ResultKind::count("passed", "number of blows after which the condition held"),
         ResultKind::new("last_passed_energy", Dimension::ENERGY, "energy of the last blow after which it held"),
         ResultKind::new("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
-        ResultKind::new("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
+        ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
         ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),
-        ResultKind::new(
+        ResultKind::measured(
             "absorbed_energy",
             Dimension::ENERGY,
             "sum over the blows of what each absorbed up to its largest displacement",

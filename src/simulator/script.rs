@@ -449,6 +449,8 @@ mod tests {
         assert_eq!(reason("each reply: drop reply with 2"), "line 1: 2 is no probability");
         assert_eq!(reason("at 1 s: drop reply with 0.5"), "line 1: a probability goes with `each reply` and `each reading`");
         assert_eq!(reason("each reading: reboot"), "line 1: each reading can have a spike or a bad number only");
+        assert_eq!(reason("at 1 s: axis 0 stick"), "line 1: `0` is no axis: the first is 1");
+        assert_eq!(reason("at 1 s: axis 2 reboot"), "line 1: only what befalls a ram, its specimen or its sensors has an axis");
         assert_eq!(reason("at 1 s: drop replies"), "line 1: the line ends too early");
     }
 }

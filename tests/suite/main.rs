@@ -23,3 +23,4 @@ mod shake_continuous;
 mod specimens_page;
 mod storey;
 mod sweep;
+mod uncertainty;

@@ -12,12 +12,13 @@ use psd::rig::dialect::native::{self, AxisBounds, Bounds, Kind, LONGEST_FRAME, R
 use psd::source::Sources;
 use psd::syntax::{format, parse};
 
-/// The plans of the manual use no files.
-struct NoFiles;
+/// The plans of the manual use no file but a ground motion.
+struct Ground;
 
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+impl Loader for Ground {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
+        if path == "ground.csv" { Ok(ground.to_owned()) } else { Err(LoadFault::NotFound) }
     }
 }
 
@@ -35,15 +36,17 @@ fn blocks(page: &str, language: &str) -> Vec<String> {
 fn every_rig_block_checks_in_the_plan_around_it() {
     let plans = blocks(&page("rigs.md"), "psd");
     let (around, rigs): (Vec<&String>, Vec<&String>) = plans.iter().partition(|plan| !plan.starts_with("rig "));
-    assert_eq!(around.len(), 1, "one plan is around every rig");
+    assert_eq!(around.len(), 2, "a plan is around every rig of one axis, and another around those of several");
     assert!(rigs.len() >= 8, "each kind of rig has its block");
     for rig in &rigs {
         let name = rig.split_whitespace().nth(1).expect("a rig has a name").to_owned();
-        let plan = format!("{}\n{rig}", around[0]);
+        let several = rig.contains("  axes ");
+        let plan = around.iter().find(|plan| plan.contains("storey(") == several).expect("the plan around it");
+        let plan = format!("{plan}\n{rig}");
         let mut sources = Sources::default();
         let file = sources.add("rigs.md", &plan);
         assert_eq!(format(&parse(&sources, file).0, &plan), plan, "psd fmt would change `{name}`");
-        let checked = check("rigs.md", &plan, &NoFiles, &Options { rig: Some(name), ..Options::default() });
+        let checked = check("rigs.md", &plan, &Ground, &Options { rig: Some(name), ..Options::default() });
         let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
         assert!(checked.plan.is_some() && checked.diagnostics.is_empty(), "{plan}\n{said}");
     }

@@ -3,8 +3,11 @@
 
 mod amended;
 mod certificate;
+mod clock;
 mod disk;
+mod ended;
 mod faults;
+mod frame;
 mod golden;
 mod hand;
 mod killed;

@@ -28,9 +28,11 @@ pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {
     }
     let axes = (0..rig.degrees_of_freedom()).map(|axis| Axis::of(&readings, axis)).collect::<Vec<_>>();
     give(&report(&identity, &axes, plan))?;
-    let inside =
-        |axis: &Axis| plan.limits.displacement.contains(axis.displacement.mean) && plan.limits.force.contains(axis.force.mean);
-    Ok(if axes.iter().all(inside) { Exit::Met } else { Exit::Stopped })
+    let inside = |(place, axis): (usize, &Axis)| {
+        let limits = plan.rig.limits_of(place, &plan.limits);
+        limits.displacement.contains(axis.displacement.mean) && limits.force.contains(axis.force.mean)
+    };
+    Ok(if axes.iter().enumerate().all(inside) { Exit::Met } else { Exit::Stopped })
 }
 
 /// One degree of freedom.
@@ -113,8 +115,9 @@ fn report(identity: &Identity, axes: &[Axis], plan: &Plan) -> String {
         if axes.len() > 1 {
             let _ = writeln!(text, "  axis {number}");
         }
-        channel(&mut text, "displacement", Dimension::LENGTH, Dimension::VELOCITY, &axis.displacement, plan.limits.displacement);
-        let (force, limit) = (&axis.force, plan.limits.force);
+        let limits = plan.rig.limits_of(number - 1, &plan.limits);
+        channel(&mut text, "displacement", Dimension::LENGTH, Dimension::VELOCITY, &axis.displacement, limits.displacement);
+        let (force, limit) = (&axis.force, limits.force);
         channel(&mut text, "force", Dimension::FORCE, Dimension::FORCE, force, limit);
     }
     text.push_str(&advice(axes, plan).unwrap_or_default());

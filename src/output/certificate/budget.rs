@@ -70,7 +70,7 @@ fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
     }
     let parts = number::parts(*value, Some(*uncertainty), result.dimension);
     let expanded = parts.expanded.unwrap_or_default();
-    let whole = format!("{} ± {expanded}\u{a0}{} with U = {COVERAGE:.0}\u{a0}u", parts.value, parts.unit);
+    let whole = format!("combined: {} ± {expanded}\u{a0}{}, U = {COVERAGE:.0}\u{a0}u", parts.value, parts.unit);
     rows.push(vec![whole.into(), "".into(), "".into(), amount(*uncertainty), "100\u{a0}%".into()]);
     rows
 }

@@ -9,7 +9,7 @@ use crate::plan::{Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRule
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
 use crate::record::EventKind;
-use crate::record::equipment::{Channel, Device, GivenIn};
+use crate::record::equipment::{Channel, GivenIn};
 
 /// The rig of the run.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
@@ -18,6 +18,7 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
         Some(link) => {
             body.push(calibration(run));
             body.push(real(run, link));
+            body.extend((link.axes.len() > 1).then(|| axes(run, link)));
         }
         None => body.push(simulated(run)),
     }
@@ -97,16 +98,48 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
     for channel in equipment.channels.iter().filter(|channel| channel.zero != 0.0) {
         rows.push(("Count at no force", number::stated(channel.zero, Dimension::NUMBER).into()));
     }
-    rows.push(("Declared of its readings", declared(&equipment.device, &link.readings).into()));
+    if link.axes.len() < 2 {
+        rows.push((
+            "Declared of its readings",
+            declared(equipment.device.resolution, equipment.device.noise, &link.readings).into(),
+        ));
+    }
     rows.extend(uncertainty(&run.plan.rig.calibration));
     rows.push(("Taking a reading", taking(&link.readings).into()));
     rows.push(("Settling", settling(run.plan.rig.settle).into()));
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
     rows.push(("Watchdog", format!("the rig holds by itself after {watchdog} without a sign of life").into()));
     rows.push(("Safe state", link.safe_state.name().into()));
-    rows.push(("Gate, demanded", demanded(&link.gate).into()));
-    rows.push(("Gate, found", Text::given(found(run))));
+    if link.axes.len() < 2 {
+        rows.push(("Gate, demanded", demanded(&link.gate_of(0)).into()));
+        rows.push(("Gate, found", Text::given(found(run, "gate passed: "))));
+    } else if let Some(refused) = told_outside_procedures(run).find_map(refused) {
+        rows.push(("Gate, found", refused.into()));
+    }
     pairs(rows)
+}
+
+/// What each axis of several declares, and how it proved itself.
+fn axes(run: &Run<'_>, link: &RealLink) -> Block {
+    let row = |axis: usize| {
+        let (readings, number) = (link.readings_of(axis), axis + 1);
+        let sign = if run.plan.rig.sign_of(axis) < 0.0 { "negative" } else { "positive" };
+        vec![
+            Text::from(number.to_string()),
+            sign.into(),
+            declared(readings.resolution, readings.noise, &readings).into(),
+            demanded(&link.gate_of(axis)).into(),
+            Text::given(passed(run, number)),
+        ]
+    };
+    let columns = vec![
+        Column::short("Axis"),
+        Column::short("Sign"),
+        Column::words("Declared of its readings", 3),
+        Column::words("Gate, demanded", 3),
+        Column::words("Gate, found", 4),
+    ];
+    Block::Table(Table { columns, rows: (0..link.axes.len()).map(row).collect() })
 }
 
 fn simulated(run: &Run<'_>) -> Block {
@@ -169,8 +202,8 @@ fn device(link: &DeviceLink) -> Text {
     }
 }
 
-fn declared(device: &Device, readings: &ReadingRules) -> String {
-    let (resolution, noise, force_range) = (device.resolution, device.noise, readings.force_range);
+fn declared(resolution: f64, noise: f64, readings: &ReadingRules) -> String {
+    let force_range = readings.force_range;
     let mut told = vec![
         format!("displacement to {}", number::stated(resolution, Dimension::LENGTH)),
         format!("noise of one force reading {}", number::stated(noise, Dimension::FORCE)),
@@ -200,11 +233,20 @@ fn demanded(gate: &Gate) -> String {
     )
 }
 
-/// What the gate said, passed or not.
-fn found<'a>(run: &Run<'a>) -> Option<&'a str> {
+/// What the gate said, passed (and then how that begins) or not.
+fn found<'a>(run: &Run<'a>, passed: &str) -> Option<&'a str> {
+    told_outside_procedures(run).find_map(|text| text.strip_prefix(passed).or_else(|| refused(text)))
+}
+
+/// What the gate said of an axis of several that passed it.
+fn passed<'a>(run: &Run<'a>, axis: usize) -> Option<&'a str> {
+    let begins = format!("gate passed by axis {axis}: ");
+    told_outside_procedures(run).find_map(|text| text.strip_prefix(begins.as_str()))
+}
+
+fn told_outside_procedures<'a>(run: &Run<'a>) -> impl Iterator<Item = &'a str> {
     let told = run.record.events.iter().filter(|event| matches!(event.kind, EventKind::Note | EventKind::Fault));
-    told.filter(|event| event.procedure.is_none())
-        .find_map(|event| event.text.strip_prefix("gate passed: ").or_else(|| refused(&event.text)))
+    told.filter(|event| event.procedure.is_none()).map(|event| event.text.as_str())
 }
 
 fn refused(text: &str) -> Option<&str> {

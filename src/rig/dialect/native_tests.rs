@@ -132,3 +132,50 @@ fn each_flag_has_its_bit_and_each_code_its_words() {
     assert!(refusal(&["LIMIT".to_owned()]).contains("outside the limits"));
     assert_eq!(refusal(&["WHAT".to_owned()]), "for a reason psd does not know (`ERR WHAT`)");
 }
+
+/// A rig of two axes: as `docs/rigs.md` shows it.
+#[test]
+fn the_vectors_of_several_axes() {
+    let moving = Request::Move { id: 22, targets: &[1.5e-3, -2.75e-3], speed: 0.5e-3 };
+    assert_eq!(frame(62, &moving).unwrap(), b">MOVE 62 22 1.500000 -2.750000 0.500000*A8EB\n");
+    let limits = |displacement: f64, force: f64| AxisBounds {
+        displacement: Interval { low: -displacement, high: displacement },
+        force: Interval { low: -force, high: force },
+    };
+    let bounds = Bounds { axes: vec![limits(0.02, 6000.0), limits(0.04, 4000.0)], top_speed: 0.05 };
+    let narrowed = b">LIM 61 -20.000000 20.000000 -6000.000 6000.000 -40.000000 40.000000 -4000.000 4000.000 50.000000*4C87\n";
+    assert_eq!(frame(61, &Request::Limits(&bounds)).unwrap(), narrowed, "longer than a frame of one axis may be");
+    let line = b"<DATA 63 7F3A 240117 1.499982 912.250 748401 0x0000 -2.750011 -512.375 -420331 0x0000 IDLE*2457";
+    let read = data(&reply(line).unwrap().words).unwrap();
+    let forces: Vec<(f64, f64)> = read.axes.iter().map(|axis| (axis.displacement, axis.force)).collect();
+    assert_eq!(forces, [(1.499_982e-3, 912.25), (-2.750_011e-3, -512.375)]);
+}
+
+#[test]
+fn a_rig_says_how_many_axes_it_has_by_what_it_says_of_them() {
+    let axis = |number: usize| format!("-{number}.000000 {number}.000000 -10.000 10.000");
+    let said = |axes: usize, targets: usize| {
+        let limits: Vec<String> = (1..=axes).map(axis).collect();
+        let targets = vec!["0.500000"; targets].join(" ");
+        hello(&words(&format!("PSD-BENCH 0042 1.3 {} 120.000000 3 {targets}", limits.join(" "))))
+    };
+    for axes in 1..=MOST_AXES {
+        let rig = said(axes, axes).unwrap();
+        assert_eq!((rig.bounds.axes.len(), rig.last.unwrap().targets.len()), (axes, axes));
+        assert_eq!(rig.bounds.axes[axes - 1].displacement.high, axes as f64 / 1e3);
+    }
+    assert_eq!((said(2, 1), said(2, 3), said(1, 2), said(0, 0)), (None, None, None, None));
+    assert_eq!(said(MOST_AXES + 1, MOST_AXES + 1), None, "no reply may be so long");
+}
+
+#[test]
+fn of_several_axes_the_one_without_a_number_is_known() {
+    let words = |force: &str| words(&format!("118203 1.0 2.0 3 0x0000 1.0 {force} 3 0x0000 IDLE"));
+    assert_eq!(axis_without_number(&words("2.0")), None);
+    for none in ["NaN", "1e400", "OVL"] {
+        assert_eq!((axis_without_number(&words(none)), data(&words(none))), (Some(2), None), "{none}");
+    }
+    // Of one axis there is no other, and of a broken count none is known.
+    assert_eq!(axis_without_number(&words("2.0")[..6]), None);
+    assert_eq!(axis_without_number(&words("NaN")[..8]), None);
+}

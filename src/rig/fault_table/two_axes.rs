@@ -83,18 +83,18 @@ pub(super) fn upper(plan: &mut Plan) -> &mut AxisPlan {
     &mut link.axes[1]
 }
 
-/// The results of the first procedure: all numbers, in order.
-pub(super) fn results(record: &Record) -> Vec<f64> {
+/// The results of the first procedure: all numbers, in order, each with its name.
+pub(super) fn results(record: &Record) -> Vec<(&'static str, f64)> {
     let results = record.procedures.first().map_or(&[][..], |procedure| &procedure.results);
     let numbers = |value: &ResultValue| match value {
-        ResultValue::Number { value, .. } => value.iter().copied().collect(),
+        ResultValue::Number { value, .. } => value.iter().copied().collect::<Vec<f64>>(),
         ResultValue::List(values) => values.clone(),
     };
-    results.iter().flat_map(|result| numbers(&result.value)).collect()
+    results.iter().flat_map(|result| numbers(&result.value).into_iter().map(|value| (result.name, value))).collect()
 }
 
 /// The same plan on a rig that adds nothing.
-pub(super) fn ideal(text: &str) -> Vec<f64> {
+pub(super) fn ideal(text: &str) -> Vec<(&'static str, f64)> {
     let plan = checked(text, "ideal");
     results(&run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched))
 }

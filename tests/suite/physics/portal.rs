@@ -3,7 +3,7 @@
 //! nothing with the product.
 
 use nalgebra::{DMatrix, DVector};
-use psd::plan::{Loads, Mechanism, Portal};
+use psd::plan::{Loads, Mechanism, Portal, Sections};
 
 const SPAN: f64 = 4.0;
 const HEIGHT: f64 = 3.0;
@@ -11,7 +11,7 @@ const MOMENT: f64 = 20e3;
 const BENDING: f64 = 1.6e6;
 
 fn portal(loads: Loads) -> Portal {
-    Portal::of_section(SPAN, HEIGHT, MOMENT, BENDING, loads)
+    Portal::of_sections(SPAN, HEIGHT, Sections::same(MOMENT), Sections::same(BENDING), loads)
 }
 
 fn combined(beam_load: f64, sway_load: f64) -> Portal {
@@ -49,9 +49,57 @@ fn the_mechanism_changes_where_two_loads_are_equal() {
     }
 }
 
+/// Plastic moment at feet A, E, corners B, D and midspan C: a corner yields in the weaker of both.
+fn strengths(sections: Sections) -> [f64; 5] {
+    let corner = if sections.beam < sections.column { sections.beam } else { sections.column };
+    [sections.column, corner, sections.beam, corner, sections.column]
+}
+
+/// With `M_b` and `M_c` and m the less: beam W·L/2 = 2(m + M_b), sway H·h = 2(M_c + m), combined W·L/2 + H·h = 2(M_c + M_b + m). So beam
+/// and combined give way together at H·h = 2M_c·(…): both loads of a pair are compared on either side of where they are equal, of stout
+/// columns and of weak ones.
+#[test]
+fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
+    let beam_load = 10e3;
+    let work = beam_load * SPAN / 2.0;
+    for (beam, column) in [(20e3, 34e3), (20e3, 12e3)] {
+        let corner = f64::min(beam, column);
+        let moment = Sections { beam, column };
+        let frame = |sway_load| {
+            Portal::of_sections(SPAN, HEIGHT, moment, Sections::same(BENDING), Loads::Combined { beam_load, sway_load })
+        };
+        // λ of either: (m + M_b)/w = (M_c + M_b + m)/(w + s), s = w·M_c/(m + M_b); (M_c + m)/s = (M_c + M_b + m)/(w + s), s = w (M_c + m)/M_b.
+        let switches = [
+            (work * column / (corner + beam) / HEIGHT, Mechanism::Beam, Mechanism::Combined),
+            (work * (column + corner) / beam / HEIGHT, Mechanism::Combined, Mechanism::Sway),
+        ];
+        for (switch, below, above) in switches {
+            assert_eq!(
+                (frame(switch * 0.999).mechanism(), frame(switch * 1.001).mechanism()),
+                (below, above),
+                "{beam}, {column}"
+            );
+            let by_hand = |mechanism, sway_load: f64| {
+                let (on_beam, on_sway) = (work, sway_load * HEIGHT);
+                let factor = match mechanism {
+                    Mechanism::Beam => 2.0 * (corner + beam) / on_beam,
+                    Mechanism::Sway => 2.0 * (column + corner) / on_sway,
+                    Mechanism::Combined => 2.0 * (column + beam + corner) / (on_beam + on_sway),
+                };
+                factor * (beam_load + sway_load)
+            };
+            for (sway_load, mechanism) in [(switch * 0.999, below), (switch * 1.001, above)] {
+                let (found, by_hand) = (frame(sway_load).capacity(), by_hand(mechanism, sway_load));
+                assert!((found / by_hand - 1.0).abs() < 1e-12, "{mechanism:?}: {found} N is not {by_hand} N");
+            }
+        }
+    }
+}
+
 /// Largest λ with |M| ≤ Mp at feet A, E, corners B, D and midspan C, and equilibrium: beam −M_B + 2M_C − M_D = W₀L/2·λ, sway
 /// −M_A + M_B − M_D + M_E = H₀h·λ. A vertex has four of the moments at ±Mp: all are tried.
-fn by_lower_bound(beam_load: f64, sway_load: f64) -> f64 {
+fn by_lower_bound(sections: Sections, beam_load: f64, sway_load: f64) -> f64 {
+    let strong = strengths(sections);
     let beam = [0.0, -1.0, 2.0, -1.0, 0.0];
     let sway = [-1.0, 1.0, 0.0, -1.0, 1.0];
     let works = [beam_load * SPAN / 2.0, sway_load * HEIGHT];
@@ -60,7 +108,7 @@ fn by_lower_bound(beam_load: f64, sway_load: f64) -> f64 {
         for signs in 0..16_u32 {
             let mut moments = [0.0; 5];
             for (bit, section) in (0..5).filter(|section| *section != free).enumerate() {
-                moments[section] = if signs >> bit & 1 == 1 { MOMENT } else { -MOMENT };
+                moments[section] = if signs >> bit & 1 == 1 { strong[section] } else { -strong[section] };
             }
             let known = |row: [f64; 5]| row.iter().zip(moments).map(|(factor, moment)| factor * moment).sum::<f64>();
             // row·M_free − work·λ = −known, two equations.
@@ -70,7 +118,7 @@ fn by_lower_bound(beam_load: f64, sway_load: f64) -> f64 {
             }
             let moment = (known(beam) * works[1] - works[0] * known(sway)) / determinant;
             let load = (beam[free] * -known(sway) + known(beam) * sway[free]) / determinant;
-            if moment.abs() <= MOMENT * (1.0 + 1e-12) {
+            if moment.abs() <= strong[free] * (1.0 + 1e-12) {
                 best = best.max(load);
             }
         }
@@ -83,6 +131,7 @@ fn by_lower_bound(beam_load: f64, sway_load: f64) -> f64 {
 struct Frame {
     /// Hinged end of each member: near, far.
     hinged: [[bool; 2]; 4],
+    bending: Sections,
 }
 
 /// Members as near node, far node, along x or y, length.
@@ -96,8 +145,9 @@ const STRETCH: f64 = 1e7;
 impl Frame {
     /// Stiffness of a member in the plane: (along, across, turn) at near and far end, released by condensation.
     fn member(&self, index: usize) -> DMatrix<f64> {
-        let (_, _, _, length) = MEMBERS[index];
-        let (shear, couple, turn) = (12.0 * BENDING / length.powi(3), 6.0 * BENDING / length.powi(2), BENDING / length);
+        let (_, _, level, length) = MEMBERS[index];
+        let bending = if level { self.bending.beam } else { self.bending.column };
+        let (shear, couple, turn) = (12.0 * bending / length.powi(3), 6.0 * bending / length.powi(2), bending / length);
         let axial = STRETCH * BENDING / length;
         #[rustfmt::skip]
         let mut local = DMatrix::from_row_slice(6, 6, &[
@@ -162,8 +212,9 @@ impl Frame {
 }
 
 /// Load factor at which the frame becomes a mechanism, one hinge after the other; and W·δ + H·Δ of the elastic frame.
-fn hinge_by_hinge(beam_load: f64, sway_load: f64) -> (f64, f64) {
-    let mut frame = Frame { hinged: [[false; 2]; 4] };
+fn hinge_by_hinge(moment: Sections, bending: Sections, beam_load: f64, sway_load: f64) -> (f64, f64) {
+    let strong = strengths(moment);
+    let mut frame = Frame { hinged: [[false; 2]; 4], bending };
     let (mut factor, mut moments) = (0.0, [0.0; 5]);
     let mut elastic: Option<f64> = None;
     loop {
@@ -179,7 +230,7 @@ fn hinge_by_hinge(beam_load: f64, sway_load: f64) -> (f64, f64) {
             if frame.hinged[member][end] || rate.abs() < 1e-9 {
                 return f64::INFINITY;
             }
-            (MOMENT * rate.signum() - moments[section]) / rate
+            (strong[section] * rate.signum() - moments[section]) / rate
         };
         let next = (0..5).min_by(|a, b| room(*a).total_cmp(&room(*b))).expect("five sections");
         let step = room(next);
@@ -195,10 +246,18 @@ fn hinge_by_hinge(beam_load: f64, sway_load: f64) -> (f64, f64) {
 /// From nearly no sway to nearly no beam load, through both switches.
 #[test]
 fn two_other_methods_find_the_same_collapse_and_the_same_stiffness() {
-    for share in [0.02, 0.1, 0.2, 0.24, 0.26, 0.3, 0.4, 0.5, 0.55, 0.57, 0.6, 0.75, 0.9, 0.99] {
+    let (one, other) = (Sections::same(MOMENT), Sections::same(BENDING));
+    let stout_columns = Sections { beam: MOMENT, column: 1.7 * MOMENT };
+    let weak_columns = Sections { beam: MOMENT, column: 0.6 * MOMENT };
+    let stiff_beam = Sections { beam: 2.5 * BENDING, column: BENDING };
+    let soft_beam = Sections { beam: 0.4 * BENDING, column: BENDING };
+    let frames = [(one, other), (stout_columns, soft_beam), (weak_columns, stiff_beam), (weak_columns, other)];
+    let shares = [0.02, 0.1, 0.2, 0.24, 0.26, 0.3, 0.4, 0.5, 0.55, 0.57, 0.6, 0.75, 0.9, 0.99];
+    for ((moment, bending), share) in frames.into_iter().flat_map(|frame| shares.map(|share| (frame, share))) {
         let (beam_load, sway_load) = (10e3 * (1.0 - share), 10e3 * share);
-        let frame = combined(beam_load, sway_load);
-        let (lower, (hinges, work)) = (by_lower_bound(beam_load, sway_load), hinge_by_hinge(beam_load, sway_load));
+        let frame = Portal::of_sections(SPAN, HEIGHT, moment, bending, Loads::Combined { beam_load, sway_load });
+        let lower = by_lower_bound(moment, beam_load, sway_load);
+        let (hinges, work) = hinge_by_hinge(moment, bending, beam_load, sway_load);
         let factor = frame.capacity() / 10e3;
         assert!((lower / factor - 1.0).abs() < 1e-9, "share {share}: {lower} by the lower bound, {factor}");
         assert!((hinges / factor - 1.0).abs() < 1e-6, "share {share}: {hinges} hinge by hinge, {factor}");
@@ -216,8 +275,9 @@ fn two_other_methods_find_the_same_collapse_and_the_same_stiffness() {
 /// stout columns is built in, between slender ones simply supported: 192 and 48 EI/L³.
 #[test]
 fn slope_deflection_has_its_limits() {
-    let sway = |span| Portal::of_section(span, 3.0, MOMENT, BENDING, Loads::Sway).stiffness * 27.0 / BENDING;
+    let (moment, bending) = (Sections::same(MOMENT), Sections::same(BENDING));
+    let sway = |span| Portal::of_sections(span, 3.0, moment, bending, Loads::Sway).stiffness * 27.0 / BENDING;
     assert!((sway(1e-6) - 24.0).abs() < 1e-4 && (sway(1e7) - 6.0).abs() < 1e-4);
-    let beam = |height| Portal::of_section(4.0, height, MOMENT, BENDING, Loads::Beam).stiffness * 64.0 / BENDING;
+    let beam = |height| Portal::of_sections(4.0, height, moment, bending, Loads::Beam).stiffness * 64.0 / BENDING;
     assert!((beam(1e-6) - 192.0).abs() < 1e-3 && (beam(1e8) - 48.0).abs() < 1e-4);
 }

@@ -1,0 +1,184 @@
+//! What the calibration of the rig and the errors of its readings make of the results of a `cycle`. In: what was recorded.
+//! Out: what each source contributes: the loops are reckoned again from readings with one source moved at a time, by ±u, and
+//! from readings with drawn errors. What is fitted to the backbone has its own scatter, and is not touched here.
+
+use super::cycle::results;
+use super::inputs::Inputs;
+use super::propagation::draws_of;
+use crate::formula::ResultValue;
+use crate::mechanics::cyclic::loop_of;
+use crate::mechanics::recorded_path::{Distortion, Noise};
+use crate::plan::Calibration;
+use crate::record::{CycleHistory, NamedResult};
+use crate::rig::DeclaredNoise;
+use crate::uncertainty::{Contribution, Source, combined};
+
+/// Results that follow from the loops.
+const OF_LOOPS: [&str; 6] =
+    ["dissipated_energy", "max_force", "min_force", "equivalent_damping_ratio", "stiffness", "last_stiffness"];
+
+/// Readings with a source moved by so much.
+type Moving = fn(f64) -> Distortion;
+
+/// Gives the results of the loops their contributions.
+pub(super) fn propagate(
+    history: &CycleHistory,
+    samples: u32,
+    calibration: &Calibration,
+    inputs: &Inputs<'_>,
+    declared: &DeclaredNoise,
+    told: &mut [NamedResult],
+) {
+    let procedure = inputs.procedure();
+    let moved = |distortion| values(&distorted(history, distortion));
+    let nominal = values(history);
+    let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); OF_LOOPS.len()];
+    let at: [(Source, f64, Moving); 3] = [
+        (Source::ForceScale, calibration.force_uncertainty, |by| Distortion { force_scale: 1.0 + by, ..Distortion::NONE }),
+        (Source::DisplacementScale, calibration.displacement_uncertainty, |by| Distortion {
+            displacement_scale: 1.0 + by,
+            ..Distortion::NONE
+        }),
+        (Source::ForceZero, calibration.zero_uncertainty, |by| Distortion { zero: by, ..Distortion::NONE }),
+    ];
+    for (source, uncertainty, distortion) in at.into_iter().filter(|(_, uncertainty, _)| *uncertainty > 0.0) {
+        let (up, down) = (moved(distortion(uncertainty)), moved(distortion(-uncertainty)));
+        for (parts, (up, down)) in contributions.iter_mut().zip(up.into_iter().zip(down)) {
+            parts.push(Contribution::new(source, 0.5 * (up - down)));
+        }
+    }
+    if declared.force > 0.0 || declared.resolution > 0.0 {
+        let draws = draws_of(history.steps.len() as u64);
+        let averaged = f64::from(samples).sqrt();
+        let (force, displacement) = (declared.force / averaged, declared.resolution / 12.0_f64.sqrt());
+        for draw in 0..draws {
+            let noise = Some(Noise { force, displacement, draw });
+            let found = moved(Distortion { noise, ..Distortion::NONE });
+            for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(nominal) {
+                let amount = (found - nominal) / f64::from(draws).sqrt();
+                parts.push(Contribution::new(Source::Readings { procedure, draw }, amount));
+            }
+        }
+    }
+    for (name, parts) in OF_LOOPS.into_iter().zip(contributions) {
+        let Some(result) = told.iter_mut().find(|result| result.name == name) else { continue };
+        if let ResultValue::Number { value: Some(_), uncertainty } = &mut result.value
+            && parts.iter().all(|part| part.amount.is_finite())
+        {
+            result.contributions = parts.into_iter().filter(|part| part.amount != 0.0).collect();
+            *uncertainty = combined(&result.contributions);
+        }
+    }
+}
+
+/// In the order of [`OF_LOOPS`]; NaN of what does not exist.
+fn values(history: &CycleHistory) -> [f64; OF_LOOPS.len()] {
+    let results = results(history);
+    OF_LOOPS.map(|name| match results.iter().find(|result| result.name == name).map(|result| &result.value) {
+        Some(ResultValue::Number { value: Some(value), .. }) => *value,
+        _ => f64::NAN,
+    })
+}
+
+/// The record as other readings would have made it.
+fn distorted(history: &CycleHistory, distortion: Distortion) -> CycleHistory {
+    let Distortion { force_scale, displacement_scale, zero, noise } = distortion;
+    let mut other = CycleHistory { backbone: None, ..history.clone() };
+    for step in &mut other.steps {
+        let [of_force, of_displacement] = noise.map_or([0.0; 2], |noise| noise.errors(step.step));
+        step.displacement = displacement_scale * step.displacement + of_displacement;
+        step.restoring_force = force_scale * step.restoring_force + zero + of_force;
+    }
+    for cycle in &mut other.cycles {
+        // A cycle begins with the last reading of the one before it.
+        let first = other.steps.partition_point(|step| step.cycle < cycle.cycle);
+        let after = other.steps.partition_point(|step| step.cycle <= cycle.cycle);
+        let points: Vec<(f64, f64)> =
+            other.steps[first.saturating_sub(1)..after].iter().map(|step| (step.displacement, step.restoring_force)).collect();
+        if let Some(found) = loop_of(&points) {
+            cycle.found = found;
+        }
+    }
+    other
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::formula::Formula;
+    use crate::plan::{Behaviour, Calibration, Cycle, Level, Link, Plan, ProcedureKind, Sides, VirtualLink};
+    use crate::run::testing::{elastic_plan, number, run_unwatched};
+    use crate::uncertainty::Source;
+
+    const STIFFNESS: f64 = 1000.0;
+    const POINTS: u32 = 10;
+
+    fn plan(behaviour: Behaviour, link: VirtualLink, calibration: Calibration) -> Plan {
+        let cycle = Cycle {
+            specimen: 0,
+            levels: vec![Level { amplitude: Formula::Constant(0.02), cycles: 2 }],
+            sides: Sides::Both,
+            about: Formula::Constant(0.0),
+            points: POINTS,
+            samples: 4,
+            pause: Formula::Constant(0.0),
+            speed: None,
+            rate: None,
+            inspect: Vec::new(),
+            fit: None,
+        };
+        let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Cycle(cycle)]);
+        plan.specimens[0].behaviour = Some(behaviour);
+        plan.rig.link = Link::Virtual(link);
+        plan.rig.calibration = calibration;
+        plan
+    }
+
+    /// Energy goes with both factors, stiffness with their ratio, a ratio of energies with neither; a zero shifts forces.
+    #[test]
+    fn a_calibration_reaches_the_loops_by_its_powers() {
+        let behaviour = Behaviour::Bilinear { stiffness: STIFFNESS, yield_force: 10.0, hardening: 0.1 };
+        let calibration = Calibration {
+            force_uncertainty: 0.01,
+            displacement_uncertainty: 0.003,
+            zero_uncertainty: 0.5,
+            ..Calibration::default()
+        };
+        let record = run_unwatched(&plan(behaviour, VirtualLink::default(), calibration));
+        let cases = [
+            ("dissipated_energy", [1.0, 1.0], 0.0),
+            ("max_force", [1.0, 0.0], 0.5),
+            ("min_force", [1.0, 0.0], 0.5),
+            ("equivalent_damping_ratio", [0.0, 0.0], 0.0),
+            ("stiffness", [1.0, -1.0], 0.0),
+            ("last_stiffness", [1.0, -1.0], 0.0),
+        ];
+        for (name, [force, displacement], zero) in cases {
+            let value = number(&record, 0, name).0.unwrap();
+            let parts = &record.procedures[0].result(name).unwrap().contributions;
+            let of = |source| parts.iter().find(|part| part.source == source).map_or(0.0, |part| part.amount);
+            for (source, by_hand) in [
+                (Source::ForceScale, 0.01 * force * value),
+                (Source::DisplacementScale, 0.003 * displacement * value),
+                (Source::ForceZero, zero),
+            ] {
+                let found = of(source);
+                assert!((found - by_hand).abs() < 1e-4 * 0.01 * value.abs(), "{name}: {found}, by hand {by_hand}");
+            }
+        }
+    }
+
+    /// ∫R dX by the trapezoid has the weight (x₊ − x₋)/2 on each R: u = σ/√n·√Σ w², of uniform steps h of ways back and
+    /// forth h but for the turns, where it is 0, and the two ends of the whole, where it is h/2.
+    #[test]
+    fn noise_reaches_the_energy_of_a_loop_by_its_weights() {
+        let noise = 0.2;
+        let link = VirtualLink { noise, seed: 3, ..VirtualLink::default() };
+        let record = run_unwatched(&plan(Behaviour::Elastic { stiffness: STIFFNESS }, link, Calibration::default()));
+        let step = 0.02 / f64::from(POINTS);
+        // Two cycles of 40 steps: 81 readings, four of them turns, two ends, and the middle one passed twice over.
+        let weights = f64::from(81 - 4 - 2) + 2.0 * 0.25;
+        let by_hand = noise / 4.0_f64.sqrt() * step * weights.sqrt();
+        let u = number(&record, 0, "dissipated_energy").1.unwrap();
+        assert!((u / by_hand - 1.0).abs() < 3.0 / 128.0_f64.sqrt(), "{u}, by hand {by_hand}");
+    }
+}

@@ -1,0 +1,130 @@
+//! A frame of two storeys on a rig of two axes: whole runs as processes over a pseudo-terminal. In: a plan of its own. Out:
+//! the results of the virtual run, a record that proves itself, and after a kill the same end with no target twice.
+
+use std::fs;
+use std::path::Path;
+
+use rustix::process::Signal;
+
+use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, wait};
+
+/// Elastic, so that a force is that of its place to the last digit, whatever the clock cuts the way into.
+const PLAN: &str = r#"plan "Two storeys on two axes" {
+  edition     = 1
+  specimen_id = "SYS-2"
+}
+
+limits {
+  displacement = -50 mm .. 50 mm
+  force        = -20 kN .. 20 kN
+  speed        = 500 mm/s
+}
+
+rig bench {
+  link        = serial(port: "PORT", dialect: native, reply_timeout: 2 s)
+  settle      = within(0.01 mm, 5 kN/s, for: 0.01 s, timeout: 20 s)
+  safe_state  = hold
+  watchdog    = 30 s
+  rate        = 500 Hz
+  samples     = 1
+  speed       = 200 mm/s
+  resolution  = 1 nm
+  calibration = "UKAS 4711"
+  calibration_due = "2027-03-01"
+  axes        = [
+    axis(gate: probe(0.1 mm, stiffness: 450 kN/m .. 550 kN/m, zero: 20 N)),
+    axis(
+      sign: negative,
+      gate: probe(0.1 mm, stiffness: 180 kN/m .. 220 kN/m, zero: 20 N),
+      calibration: "UKAS 4712",
+    ),
+  ]
+}
+
+specimen frame {
+  storeys = [
+    storey(mass: 2 t, stiffness: 300 kN/m),
+    storey(mass: 1.5 t, stiffness: 200 kN/m),
+  ]
+}
+
+ground motion { record = "ground.csv" }
+
+shake quake {
+  ground        = motion
+  damping_ratio = 2 %
+  time_step     = 10 ms
+  duration      = 0.4 s
+}
+
+require "drift" max(quake.max_drift) < 30 mm
+
+report {
+  figures = []
+  formats = [html, csv]
+}
+"#;
+
+/// The stage of the plan, with its ground beside it.
+fn stage() -> Stage {
+    let plan = |text: &str| {
+        let port = text.split("port: \"").nth(1).and_then(|rest| rest.split('"').next()).expect("the port of the stage");
+        let ground = Path::new(port).with_file_name("ground.csv");
+        fs::write(ground, "time_s,acceleration_m_per_s2\n0,0\n0.1,2\n0.2,-3\n0.3,2\n0.4,0\n").expect("ground");
+        PLAN.replace("PORT", port)
+    };
+    Stage::of(plan, "")
+}
+
+/// Every number among the results of the shake, with the name of its result.
+fn results(folder: &Path) -> Vec<(String, f64)> {
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap();
+    let results = summary["procedures"]["quake"]["results"].as_object().expect("results");
+    let numbers = |value: &serde_json::Value| match value {
+        serde_json::Value::Array(values) => values.iter().filter_map(serde_json::Value::as_f64).collect(),
+        one => one.as_f64().into_iter().collect::<Vec<_>>(),
+    };
+    let named =
+        results.iter().flat_map(|(name, result)| numbers(&result["value"]).into_iter().map(|value| (name.clone(), value)));
+    named.collect()
+}
+
+fn succeeded(ended: &Ended) {
+    assert_eq!(ended.code, Some(0), "{}", ended.told);
+}
+
+#[test]
+fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end() {
+    let whole = stage();
+    let ran = wait(&mut whole.run_with(&["--yes"]));
+    succeeded(&ran);
+    for axis in ["gate passed by axis 1: ", "gate passed by axis 2: "] {
+        assert!(ran.told.contains(axis), "{}", ran.told);
+    }
+    let proven = whole.proven();
+    assert!(proven.contains("out of the record again, byte for byte"), "{proven}");
+    let certificate = fs::read_to_string(whole.path("run").join("certificate.html")).unwrap();
+    for told in ["displacement 1", "force 2", "UKAS 4711", "UKAS 4712"] {
+        assert!(certificate.contains(told), "{told} is not on the certificate");
+    }
+    let mut virtual_run = std::process::Command::new(PSD);
+    virtual_run.arg("run").arg(whole.path("plan.psd")).args(["--rig", "ideal", "--out"]).arg(whole.path("ideal"));
+    succeeded(&wait(&mut virtual_run));
+    let (real, ideal) = (results(&whole.path("run")), results(&whole.path("ideal")));
+    assert!(real.len() == ideal.len() && real.len() > 8);
+    // The wire resolves 1 nm and 1 mN; the energy error, nothing on an ideal rig, is a share of the input.
+    for ((name, real), (_, ideal)) in real.iter().zip(&ideal) {
+        let near = if name == "energy_error" { 1e-6 } else { 2e-8 + 1e-6 * ideal.abs() };
+        assert!((real - ideal).abs() <= near, "{name}: {real} is not {ideal}");
+    }
+
+    let cut_off = stage();
+    let mut running = start(&mut cut_off.run_with(&["--yes"]));
+    cut_off.after_moves(17);
+    signal(&running, Signal::KILL);
+    assert_eq!(code(&mut running), None);
+    finish(running);
+    cut_off.goes_on(&[]);
+    assert_eq!(cut_off.moves(), whole.moves(), "each of all targets once, in order");
+    assert_eq!(results(&cut_off.path("run")), results(&whole.path("run")));
+}
