@@ -36,6 +36,7 @@ mod sign;
 mod test;
 mod trial;
 mod verify;
+mod wall_clock;
 mod watch;
 
 use std::ffi::OsString;

@@ -205,6 +205,7 @@ fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
         host: header.host.clone(),
         began: header.began.clone(),
         ended: recovered.lines.iter().rev().find_map(wall),
+        jumps: super::wall_clock::jumps(&recovered.lines),
         sealed: Some((recovered.lines.len() as u64, recovered.head().to_owned())),
     }
 }

@@ -1,7 +1,9 @@
 //! Deviations from the plan as written, found in the record itself: what a reader of the certificate must know before
 //! the numbers. In: a run. Out: one sentence each, in the order they happened.
 
-use super::Run;
+use super::{ClockJump, Run, number};
+use crate::quantity::Dimension;
+use crate::quantity::display::trimmed;
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
 
@@ -38,6 +40,7 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
         let text = event.text.strip_prefix(LINE).unwrap_or(&event.text).trim();
         found.push(format!("{what}{}: {}.", place(event.procedure.as_deref(), event.step), text.trim_end_matches('.')));
     }
+    found.extend(run.provenance.real.iter().flat_map(|real| &real.jumps).map(jump));
     for (index, procedure) in run.plan.procedures.iter().enumerate() {
         match run.record.procedures.get(index) {
             None => found.push(format!("Procedure {} was not run.", procedure.name)),
@@ -46,6 +49,17 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
         }
     }
     found
+}
+
+/// `The wall clock jumped by −365 d …`
+fn jump(jump: &ClockJump) -> String {
+    let units = [(86_400.0, "d"), (3600.0, "h"), (60.0, "min"), (1.0, "s")];
+    let size = jump.seconds.abs();
+    let (unit, name) = units.into_iter().find(|(unit, _)| size >= *unit).unwrap_or((1.0, "s"));
+    let sign = if jump.seconds < 0.0 { '−' } else { '+' };
+    let by = trimmed(&format!("{:.1}", size / unit));
+    let at = number::text(jump.time, Dimension::TIME);
+    format!("The wall clock jumped by {sign}{by}\u{a0}{name} at {at} of rig time: durations are of a clock that does not.")
 }
 
 /// How a note begins that tells of frames sent again and readings taken again.

@@ -100,7 +100,7 @@ pub struct Build {
 }
 
 /// What the record of a real run says of people and place, and of itself. Times are UTC, ISO 8601.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RealRun {
     pub operator: Option<String>,
     /// The machine that drove the rig.
@@ -108,8 +108,19 @@ pub struct RealRun {
     pub began: Option<String>,
     /// When the last reading, target or fault was recorded.
     pub ended: Option<String>,
+    /// Where the wall clock and the rig's time parted.
+    pub jumps: Vec<ClockJump>,
     /// Records, and the hash of the last, which all others lead to; None where the record could not be kept.
     pub sealed: Option<(u64, String)>,
+}
+
+/// The wall clock was set, or stood still, between two readings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClockJump {
+    /// Rig time of the reading after it, s.
+    pub time: f64,
+    /// By which it is ahead of what passed on the rig, s; negative: behind.
+    pub seconds: f64,
 }
 
 /// A file of the run folder: path with `/`, relative to the folder.

@@ -20,6 +20,8 @@ pub struct Guard<'rig> {
     pub(super) settled: bool,
     /// Checked, and not yet carried out, m.
     proposed: Option<Vec<f64>>,
+    /// Rig time when the rig last answered, s.
+    pub(super) heard: f64,
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -43,7 +45,9 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// As [`Guard::new`].
     pub fn of_axes(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
-        let mut guard = Self { rig, limits, own, commanded: Vec::new(), going: Vec::new(), settled: false, proposed: None };
+        let heard = rig.time();
+        let (commanded, going) = (Vec::new(), Vec::new());
+        let mut guard = Self { rig, limits, own, commanded, going, settled: false, proposed: None, heard };
         guard.commanded = guard.read()?.displacement;
         Ok(guard)
     }
@@ -54,10 +58,11 @@ impl<'rig> Guard<'rig> {
         &self.commanded
     }
 
-    /// Rig time, s.
+    /// Rig time of the last reading, or of the fault after it, s: what the record knows too. A move or a pause that nothing was
+    /// read after has taken time that no record tells, so that no event may be told at a time within it.
     #[must_use]
-    pub fn time(&self) -> f64 {
-        self.rig.time()
+    pub const fn time(&self) -> f64 {
+        self.heard
     }
 
     #[must_use]
@@ -143,6 +148,7 @@ impl<'rig> Guard<'rig> {
     pub fn read(&mut self) -> Result<Reading, RigFault> {
         let reading = self.rig.read();
         let reading = self.or_hold(reading)?;
+        self.heard = reading.time;
         self.check_reading(&reading)?;
         if self.settled {
             let errors: Vec<f64> =
@@ -168,12 +174,15 @@ impl<'rig> Guard<'rig> {
         self.going.clear();
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
+        let mut heard = self.heard;
         // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
         let traversed = self.rig.traverse(targets, velocity, samples, &mut |reading| {
+            heard = reading.time;
             outside(&limits, &own, &reading).map_or(Ok(()), Err)?;
             readings.push(reading);
             Ok(())
         });
+        self.heard = heard;
         let fault = self.or_hold(traversed).err();
         if fault.is_none() {
             self.commanded.copy_from_slice(targets);
@@ -263,7 +272,11 @@ impl<'rig> Guard<'rig> {
     }
 
     pub(super) fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {
-        if outcome.is_err() {
+        if let Err(fault) = &outcome {
+            // A limit is the guard's own word.
+            if !matches!(fault, RigFault::LimitBreached { .. }) {
+                self.heard = self.rig.time();
+            }
             self.hold();
         }
         outcome
@@ -435,7 +448,8 @@ mod tests {
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
             let (commanded, own, going) = (vec![0.001], Vec::new(), Vec::new());
-            let mut guard = Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None };
+            let mut guard =
+                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None, heard: 0.0 };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

@@ -17,11 +17,14 @@ impl Guard<'_> {
         self.settled = false;
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
+        let mut heard = self.heard;
         let glided = self.rig.glide(paths, samples, &mut |reading| {
+            heard = reading.time;
             outside(&limits, &own, &reading).map_or(Ok(()), Err)?;
             readings.push(reading);
             Ok(())
         });
+        self.heard = heard;
         let fault = self.or_hold(glided).err();
         if fault.is_none() {
             self.commanded = paths.iter().map(|path| path.to).collect();

@@ -3,8 +3,11 @@
 
 mod amended;
 mod certificate;
+mod clock;
 mod disk;
+mod ended;
 mod faults;
+mod floors;
 mod frame;
 mod golden;
 mod hand;

@@ -39,6 +39,15 @@ pub fn paper() -> bool {
     version("qpdf", "--version") && version("pdftotext", "-v")
 }
 
+/// The library of the `faketime` package, which sets the wall clock of one process.
+pub const FAKETIME: &str = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1";
+
+/// Whether the wall clock of a process can be set.
+pub fn faketime() -> bool {
+    std::path::Path::new(FAKETIME).exists()
+        && able("faketime", "set a clock", Command::new("faketime").args(["-f", "-1y", "true"]))
+}
+
 fn able(program: &str, what: &str, proof: &mut Command) -> bool {
     let proven = proof.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
     let missing = match proven {

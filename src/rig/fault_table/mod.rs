@@ -20,12 +20,14 @@
 //! | 24 | spike | `device::a_spike_does_not_move_the_median` |
 //! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
 //! | 26 | targets beyond limits, no numbers | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
-//! | 27 | energy error | `motion::an_energy_error_beyond_its_limit_holds_the_rig` |
+//! | 27 | energy error, also of tracking | `motion::an_energy_error_beyond_its_limit_holds_the_rig`, `motion::tracking_that_changes_the_energy_holds_the_rig` |
 //! | 18–22 | the same of one axis of two | `axes::*` |
-//! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration` |
+//! | 29 | panic, abort | `tests/system/ended.rs`, for this table is of one process |
+//! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
 
 mod axes;
+mod control_points;
 mod device;
 mod gate;
 mod line;

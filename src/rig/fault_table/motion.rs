@@ -4,6 +4,7 @@
 use super::stage::{STIFFNESS, plan, plan_of, run, run_without};
 use crate::formula::Formula;
 use crate::plan::{Impact, InspectTrigger, Interval, Plan, ProcedureKind};
+use crate::record::journal::EntryKind;
 use crate::record::{EventKind, Outcome};
 use crate::rig::failpoint::Guarding;
 use crate::run::testing::impact;
@@ -81,4 +82,24 @@ fn an_energy_error_beyond_its_limit_holds_the_rig() {
     );
     assert!(ended.log.contains("actuator > !") && !ended.stand.stand().bench().moving());
     assert!(run_without(Guarding::EnergyError, &plan(0.01), "").completed());
+}
+
+/// A ram that reaches 80 % of each of its ways, inside a band that lets it: the work of the force along the targets is then not
+/// what it is along the places (physics, section 11).
+#[test]
+fn tracking_that_changes_the_energy_holds_the_rig() {
+    let mut plan = blow(Vec::new());
+    plan.rig.settle.band = 5e-3;
+    let short = "after 2 moves: reach 80 %";
+    let ended = run(&plan, short);
+    let stopped =
+        matches!(&ended.record.outcome, Outcome::Aborted { reason } if reason.starts_with("tracking energy error 0.05"));
+    assert!(stopped, "{}", ended.reason());
+    let held = ended.log.find("actuator > !").expect("the rig was told to hold");
+    assert!(!ended.log[held..].contains(" bench move ") && !ended.stand.stand().bench().moving(), "{}", ended.tail());
+    let warned = ended.events(EventKind::Remark);
+    assert!(warned.iter().any(|text| text.starts_with("tracking ") && text.ends_with("% of the input")), "{warned:?}");
+    assert!(run(&plan, "").completed());
+    let missed = run_without(Guarding::Tracking, &plan, short);
+    assert!(missed.completed() && missed.count(EntryKind::Step) > ended.count(EntryKind::Step), "{}", missed.reason());
 }

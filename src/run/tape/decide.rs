@@ -157,7 +157,7 @@ pub fn decide(
     let before = place_before(&lines[..at], found.displacement.len())?;
     let target = intent.to;
     if intent.samples.is_some() && lines[at..].iter().all(|line| line.kind != EntryKind::Stroke) {
-        return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before[0] }));
+        return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before[0], others: before[1..].to_vec() }));
     }
     if at + 1 < lines.len() {
         place.expect(&target)?;
@@ -165,7 +165,7 @@ pub fn decide(
         return Ok(decision(last.seq + 1, Doubt::None));
     }
     if let Some(Doubt::Stroke { .. }) = played.doubt {
-        return Ok(decision(last.seq + 1, played.doubt.unwrap_or(Doubt::None)));
+        return Ok(decision(last.seq + 1, played.doubt.clone().unwrap_or(Doubt::None)));
     }
     let doubt = match (&rig.last_move, intent.id) {
         (Some(moved), Some(id)) if moved.id >= id && place.is(&moved.targets) && place.is(&target) => Doubt::Executed,

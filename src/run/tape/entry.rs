@@ -254,7 +254,7 @@ pub struct ResumeBody {
 }
 
 /// What became of a target that was recorded and perhaps sent.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "target")]
 pub enum Doubt {
     /// The record ended at rest: nothing was in doubt.
@@ -265,8 +265,13 @@ pub enum Doubt {
     NotExecuted,
     /// It was held on the way: the same absolute target is sent anew.
     HeldOnTheWay,
-    /// A stroke was cut off: the rig goes back to where it began (m), and the stroke begins anew.
-    Stroke { back_to: f64 },
+    /// A stroke was cut off: the rig goes back to where it began (m; the axes after the first in `others`), and the stroke
+    /// begins anew.
+    Stroke {
+        back_to: f64,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        others: Vec<f64>,
+    },
 }
 
 /// The bytes of a frame as text that any log can hold.

@@ -14,6 +14,8 @@ mod entry;
 mod measured;
 mod observer;
 mod played;
+#[cfg(test)]
+mod resume_tests;
 mod rig;
 mod state;
 #[cfg(test)]

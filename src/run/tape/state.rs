@@ -60,7 +60,7 @@ impl State {
     }
 
     pub(super) fn resuming(played: Played, journal: Journal, wall: Wall) -> Self {
-        Self { journal: Some(journal), wall, doubt: played.doubt, ..Self::replaying(played) }
+        Self { journal: Some(journal), wall, doubt: played.doubt.clone(), ..Self::replaying(played) }
     }
 
     fn empty() -> Self {
@@ -97,7 +97,7 @@ impl State {
         self.journal.is_some()
     }
 
-    pub(super) const fn take_doubt(&mut self) -> Option<Doubt> {
+    pub(super) fn take_doubt(&mut self) -> Option<Doubt> {
         self.doubt.take()
     }
 

@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use super::measured::measured;
 use super::*;
+use crate::mechanics::path::Path;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
 use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness};
@@ -18,18 +19,18 @@ use crate::run::{Inspection, StepReport};
 
 /// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
 #[derive(Clone)]
-struct Standing(Rc<RefCell<Stand>>, u64);
+pub(super) struct Standing(pub(super) Rc<RefCell<Stand>>, u64);
 
-struct Stand {
+pub(super) struct Stand {
     rig: Box<dyn Rig>,
     offered: Option<Vec<f64>>,
     last: LastMove,
-    /// Every target that was carried out, m.
-    carried_out: Vec<Vec<f64>>,
+    /// Every target that was carried out, of each axis, m.
+    pub(super) carried_out: Vec<Vec<f64>>,
 }
 
 impl Standing {
-    fn new(plan: &Plan) -> Self {
+    pub(super) fn new(plan: &Plan) -> Self {
         let rig = virtual_rig(plan);
         let last = LastMove { id: 0, targets: vec![0.0; rig.degrees_of_freedom()] };
         Self(Rc::new(RefCell::new(Stand { rig, offered: None, last, carried_out: Vec::new() })), 0)
@@ -74,6 +75,9 @@ impl Rig for Standing {
             if due.is_multiple_of(5) { Ok(()) } else { each(reading) }
         })
     }
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.0.borrow_mut().rig.glide(paths, samples, each)
+    }
     fn hold(&mut self) {
         self.0.borrow_mut().rig.hold();
     }
@@ -89,7 +93,7 @@ impl Rig for Standing {
 }
 
 /// Answers every inspection with a name.
-struct Witness;
+pub(super) struct Witness;
 
 impl Observer for Witness {
     fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
@@ -156,7 +160,7 @@ fn journal(storage: impl Storage + 'static) -> Journal {
 }
 
 /// Records the plan on a fresh rig; the rig, the record and the journal's bytes.
-fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
+pub(super) fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
     let (mut rig, disk) = (Standing::new(plan), PowerLoss::new());
     let mut journal = journal(disk.clone());
     begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
@@ -164,7 +168,7 @@ fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
     (rig, recorded, disk.written())
 }
 
-fn played(bytes: &[u8]) -> (Recovered, Played) {
+pub(super) fn played(bytes: &[u8]) -> (Recovered, Played) {
     let recovered = recover(bytes).unwrap();
     let played = Played::of(&recovered).unwrap();
     (recovered, played)
@@ -221,8 +225,10 @@ fn killed_at_every_write_a_blow_on_a_storey_goes_on_to_the_same_end() {
     killed_everywhere(&struck_frame(), 60);
 }
 
-fn killed_everywhere(plan: &Plan, least: usize) {
+/// Kills the run at every call on its disk, before and after the bytes are there, and goes on each time: more often than `least`.
+pub(super) fn killed_everywhere(plan: &Plan, least: usize) {
     let (whole_rig, whole, _) = recorded(plan);
+    assert_eq!(whole.record.outcome, Outcome::Completed, "{:?}", whole.record.events);
     let once = whole_rig.0.borrow().carried_out.clone();
     let mut kills = 0;
     for call in 4.. {
@@ -262,7 +268,7 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
         from: decision.from,
         by: "A. Witness".to_owned(),
         reason: "power".to_owned(),
-        doubt: decision.doubt,
+        doubt: decision.doubt.clone(),
         found: (found.displacement, found.force),
         recorded: decision.recorded,
         t: before.time,

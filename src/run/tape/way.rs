@@ -64,8 +64,9 @@ impl TapedRig<'_> {
         }
         self.rig()?;
         let doubt = self.state.borrow_mut().take_doubt();
-        if let Some(Doubt::Stroke { back_to }) = doubt {
-            self.send_again(&[back_to], None)?;
+        if let Some(Doubt::Stroke { back_to, others }) = doubt {
+            let back: Vec<f64> = std::iter::once(back_to).chain(others).collect();
+            self.send_again(&back, None)?;
         }
         self.record_intent(&mut intent)?;
         self.rig()?;

@@ -47,6 +47,7 @@ fn real() -> Finished {
         host: Some("rig-pc".into()),
         began: Some("2027-02-28T23:58:00.000Z".into()),
         ended: Some("2027-03-01T00:04:00.000Z".into()),
+        jumps: Vec::new(),
         sealed: Some((1234, "c0ffee".repeat(10) + "abcd")),
     });
     finished

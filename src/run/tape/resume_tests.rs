@@ -1,0 +1,174 @@
+//! Every procedure that moves the rig, killed at every write and every sync and gone on with: the same end, no target carried
+//! out twice, and what both parts left plays back. And a run that nobody records is told at the times of one on record.
+
+use super::tests::{Standing, Witness, killed_everywhere, played, recorded};
+use super::*;
+use crate::formula::Formula::Constant;
+use crate::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::plan::{
+    Behaviour, Between, Comparison, Condition, Cycle, Escalate, Frame, Ground, Impact, InspectTrigger, Integrator, Level, Mode,
+    Move, ProcedureKind, Shake, ShakeDamping, Sides, StiffnessRamp, Storey, Test, Unload, Until,
+};
+use crate::quantity::Dimension;
+use crate::run::testing::{elastic_plan, impact, ramp, result_of};
+
+const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
+
+fn to(place: f64) -> ProcedureKind {
+    ProcedureKind::Move(Move { to: Constant(place), speed: None })
+}
+
+/// K 300 N/m; yields at 3 N, 10 mm.
+fn yielding(procedures: Vec<ProcedureKind>) -> Plan {
+    let mut plan = elastic_plan(300.0, procedures);
+    plan.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 300.0, yield_force: 3.0, hardening: 0.1 });
+    plan
+}
+
+/// Five steps.
+fn short(mode: Mode) -> Impact {
+    Impact { mode, duration: Constant(0.05), until: Until::Duration, ..impact(Constant(300.0)) }
+}
+
+fn cycle(rate: Option<f64>) -> Cycle {
+    Cycle {
+        specimen: 0,
+        levels: vec![Level { amplitude: Constant(0.02), cycles: 1 }],
+        sides: Sides::Both,
+        about: Constant(0.001),
+        points: 3,
+        samples: 2,
+        pause: Constant(0.1),
+        speed: rate.map(|_| Constant(0.01)),
+        rate: rate.map(Constant),
+        inspect: Vec::new(),
+        fit: None,
+    }
+}
+
+/// Two floors on a ground that shakes, and stops for a look. Where they never stop they do not yield: a way that is gone twice
+/// is rounded otherwise on a specimen with a memory.
+fn shaken(mode: Mode) -> Plan {
+    let behaviour = |stiffness| match mode {
+        Mode::StepAndPause => Behaviour::Bilinear { stiffness, yield_force: stiffness * 0.002, hardening: 0.1 },
+        Mode::Continuous { .. } => Behaviour::Elastic { stiffness },
+    };
+    let storey =
+        |mass, stiffness| Storey { mass, stiffness, height: None, behaviour: behaviour(stiffness), damping: 0.0, coulomb: 0.0 };
+    let mut plan = elastic_plan(300.0, Vec::new());
+    plan.specimens[0].behaviour = None;
+    plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey(2000.0, 3e6), storey(1500.0, 2e6)]));
+    plan.grounds = vec![Ground {
+        name: "quake".to_owned(),
+        file: "quake.csv".to_owned(),
+        scale: 1.0,
+        times: vec![0.0, 0.02, 0.04, 0.06],
+        accelerations: vec![0.0, 8.0, -6.0, 0.0],
+    }];
+    let shake = Shake {
+        specimen: 0,
+        ground: 0,
+        damping: ShakeDamping::Rayleigh(Constant(0.02)),
+        integrator: Integrator::Explicit,
+        allow_unstable: false,
+        i_modification: false,
+        mode,
+        max_tangent_ratio: Constant(2.0),
+        time_step: Constant(0.01),
+        scale: Constant(1.0),
+        duration: None,
+        pause: Constant(0.0),
+        inspect: if mode == Mode::StepAndPause { vec![InspectTrigger::Every(4)] } else { Vec::new() },
+    };
+    plan.procedures = elastic_plan(300.0, vec![ProcedureKind::Shake(shake)]).procedures;
+    plan
+}
+
+fn escalating() -> Plan {
+    let value = Formula::Result(ResultReference { procedure: ProcedureId(0), name: "max_displacement", part: Part::Value });
+    let below = Condition {
+        text: String::new(),
+        value,
+        test: Test::Compare { comparison: Comparison::Less, limit: Constant(0.012) },
+        dimension: Dimension::LENGTH,
+    };
+    yielding(vec![ProcedureKind::Escalate(Escalate {
+        own: ProcedureId(0),
+        blow: Impact { duration: Constant(0.03), ..short(Mode::StepAndPause) },
+        velocities: [0.2, 0.4, 0.6].map(Constant).to_vec(),
+        condition: vec![below],
+        between: Between::Unload,
+        inspect_between: true,
+    })])
+}
+
+fn unloading() -> Plan {
+    let unload = Unload { specimen: 0, stiffness: Constant(500.0), within: None, speed: None };
+    yielding(vec![to(0.03), ProcedureKind::Unload(unload)])
+}
+
+/// Every plan here, by what it shows.
+fn plans() -> Vec<(&'static str, Plan)> {
+    vec![
+        ("continuous", elastic_plan(300.0, vec![ProcedureKind::Impact(short(CONTINUOUS))])),
+        ("cycle", yielding(vec![ProcedureKind::Cycle(cycle(None))])),
+        ("cycle without a stop", elastic_plan(300.0, vec![ProcedureKind::Cycle(cycle(Some(2.0)))])),
+        ("escalate", escalating()),
+        ("shake", shaken(Mode::StepAndPause)),
+        ("shake without a stop", shaken(CONTINUOUS)),
+        ("unload", unloading()),
+    ]
+}
+
+fn killed(name: &str) {
+    let plan = plans().into_iter().find(|(own, _)| *own == name).unwrap().1;
+    killed_everywhere(&plan, 30);
+}
+
+#[test]
+fn a_continuous_blow() {
+    killed("continuous");
+}
+
+#[test]
+fn cycles() {
+    killed("cycle");
+    killed("cycle without a stop");
+}
+
+#[test]
+fn rising_blows() {
+    killed("escalate");
+}
+
+#[test]
+fn a_shake_of_two_floors() {
+    killed("shake");
+    killed("shake without a stop");
+}
+
+#[test]
+fn an_unloading() {
+    killed("unload");
+}
+
+#[test]
+fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_record() {
+    let ramped = StiffnessRamp { pause: Constant(0.1), ..ramp(1e-4) };
+    let looked = vec![
+        ProcedureKind::StiffnessRamp(ramped),
+        ProcedureKind::Inspect { note: "look".to_owned() },
+        ProcedureKind::Impact(Impact { stiffness: result_of(0, "stiffness"), ..short(Mode::StepAndPause) }),
+        to(0.0),
+    ];
+    for (name, plan) in plans().into_iter().chain([("a look after a way home", elastic_plan(300.0, looked))]) {
+        let (_, whole, bytes) = recorded(&plan);
+        assert_eq!(whole.record.outcome, Outcome::Completed, "{name}: {:?}", whole.record.events);
+        let replayed = replay(&plan, played(&bytes).1);
+        assert_eq!(replayed.mismatch, None, "{name}");
+        assert_eq!(format!("{:?}", replayed.record), format!("{:?}", whole.record), "{name}: played back");
+        let plain = run(&plan, &mut Standing::new(&plan), &mut Witness);
+        // What the rig mended is counted from its first reading on in either.
+        assert_eq!(format!("{plain:?}"), format!("{:?}", whole.record), "{name}: not recorded");
+    }
+}
