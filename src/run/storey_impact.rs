@@ -10,6 +10,7 @@ use super::impact::{law, remark};
 use super::inputs::Inputs;
 use super::session::Session;
 use super::shake::{damping, steps_in};
+use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::storey_summary::{StoreySummary, of_floor, results};
 use super::triggers::Triggers;
@@ -188,6 +189,13 @@ impl Striking<'_> {
         let unloaded = vec![0.0; properties.matrices.order()];
         let mut solver = self.solver(plan, &start, &reading, &unloaded)?;
         let mut monitors = Monitors::new(&start, &reading);
+        let mut stiffer = StifferStoreys::new(
+            &self.setting.properties.matrices,
+            plan.integrator,
+            self.setting.time_step,
+            session.guard.declared_noise(),
+            &reading,
+        );
         let mut gliding = match plan.mode {
             Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, self.setting.time_step)),
             Mode::StepAndPause => None,
@@ -203,8 +211,12 @@ impl Striking<'_> {
                 session.guard.pause(*pause)?;
                 session.guard.read()?
             };
-            let tracking = monitors.take(solver.predict(&unloaded), &reading);
-            let (state, striker) = solver.complete(&reading.displacement, &reading.force);
+            if gliding.is_none() {
+                stiffer.take(&reading, session);
+            }
+            solver.complete(&reading.displacement, &reading.force);
+            let (state, striker) = (solver.frame(), solver.striker());
+            let tracking = monitors.take(&state.target, &reading, solver.taken(&reading.force));
             let told = self.take(state, striker, tracking, session);
             self.watch.judge(told.tracking_energy_error, session);
             session.guard.check_energy_error(told.energy_error)?;
