@@ -53,7 +53,7 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     let text = format!("{ran} ran on the rig; {predicted} did not run and was predicted on a virtual specimen");
     part.particulars.push((REHEARSAL, text));
     part.requirements.clear();
-    part.report.figures.retain(|figure| figure.procedure.0 < ramps);
+    part.report.figures.retain(|figure| figure.procedures().all(|procedure| procedure.0 < ramps));
     Ok(part)
 }
 
