@@ -244,9 +244,11 @@ fn of_another_build(journal: &[u8]) -> Vec<u8> {
             body.as_object_mut().unwrap().shift_remove("format");
             (body["build"], body["toolchain"]) = ("0".repeat(64).into(), "riscv64, another compiler".into());
         }
-        anew.append(line.kind, &body).unwrap();
+        match line.kind {
+            EntryKind::End => anew.end(&body).unwrap(),
+            kind => anew.append(kind, &body).unwrap(),
+        }
     }
-    anew.promise().unwrap();
     drop(anew);
     std::fs::read(path).unwrap()
 }
