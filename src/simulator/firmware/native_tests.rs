@@ -203,7 +203,10 @@ fn two_axes_are_moved_by_one_request_and_read_by_one() {
     assert!(reading.contains(" 0x0040 ") && reading.ends_with(" MOVING"), "{reading}");
     rig.1.advance(2.1);
     let reading = ask(&mut rig, "MEAS 4 3");
-    assert!(reading.contains(" 1.000000 1.000 ") && reading.contains(" 2.000000 2.000 ") && reading.ends_with(" IDLE"), "{reading}");
+    assert!(
+        reading.contains(" 1.000000 1.000 ") && reading.contains(" 2.000000 2.000 ") && reading.ends_with(" IDLE"),
+        "{reading}"
+    );
     assert_eq!(ask(&mut rig, "MOVE 5 1 1.000000 2.000000 1.000000"), "ACK 5 7F3A IDLE", "the same move again");
     assert_eq!(ask(&mut rig, "MOVE 6 1 1.000000 2.100000 1.000000"), "ERR 6 7F3A ID");
     assert_eq!(rig.1.moves().len(), 1);
