@@ -99,9 +99,25 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
 }
 
 fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
-    let conditions: Vec<_> = requirement.conditions.iter().map(|condition| assess_condition(condition, rule, record)).collect();
+    let assess = |condition: &Condition| cut_short(condition, assess_condition(condition, rule, record), record);
+    let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
     RequirementOutcome { label: requirement.label.clone(), verdict, conditions }
+}
+
+/// What a procedure came to that did not run to its end decides nothing: a largest value may still have grown.
+fn cut_short(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    let read = references.iter().filter_map(|reference| record.procedures.get(reference.procedure.0));
+    match read.into_iter().find(|procedure| !procedure.complete) {
+        Some(procedure) => ConditionOutcome {
+            verdict: Verdict::Inconclusive,
+            reason: outcome.reason.or_else(|| Some(format!("{} did not run to its end", procedure.name))),
+            ..outcome
+        },
+        None => outcome,
+    }
 }
 
 /// k of the expanded uncertainty U = k·u: about 95 % of a normal distribution.

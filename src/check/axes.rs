@@ -64,6 +64,16 @@ pub fn hold_device(checker: &mut Checker, block: usize, axes: usize, dialect: &D
     if axes <= most { Some(()) } else { checker.fail(fault::too_many(axes, most, dialect, alone, written.value.span)) }
 }
 
+/// A control point for every axis, and no axis without one.
+pub fn hold_control_points(checker: &mut Checker, axes: usize, dialect: &Dialect, at: Span) -> Option<()> {
+    match dialect {
+        Dialect::Nees { control_points } if control_points.len() != axes => {
+            checker.fail(fault::control_points(control_points.len(), axes, at))
+        }
+        _ => Some(()),
+    }
+}
+
 /// A rig of as many axes as its specimen has storeys: no storey without an actuator, and no actuator without a storey.
 pub fn hold_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen: &Specimen) {
     let Some(CheckedRig { plan, block: Some(block), .. }) = rig else { return };

@@ -3,7 +3,7 @@
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::device::line_text;
-use super::faults::{names, values};
+use super::faults::{names, rigs, values};
 use crate::plan::{Dialect, ModbusMap, ModbusNumber};
 
 pub fn dialect<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<Dialect> {
@@ -20,9 +20,21 @@ pub fn dialect<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place)
         "mark10" => Dialect::Mark10,
         "mark10_gauge" => Dialect::Mark10Gauge,
         "modbus" => Dialect::Modbus(modbus(checker, chosen, place)?),
-        "nees" => Dialect::Nees { control_point: line_text(checker, chosen, "control_point")?? },
+        "nees" => Dialect::Nees { control_points: control_points(checker, chosen)? },
         _ => Dialect::Native,
     })
+}
+
+/// Names divided by commas, none of them twice: a reply says which of them it is of.
+fn control_points<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Vec<String>> {
+    let text = line_text(checker, chosen, "control_point")??;
+    let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
+    let is_name = |name: &String| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_graphic());
+    let twice = names.iter().enumerate().any(|(at, name)| names[..at].contains(name));
+    match chosen.span("control_point") {
+        Some(span) if twice || !names.iter().all(is_name) => checker.fail(rigs::bad_line_text("control_point", span)),
+        _ => Some(names),
+    }
 }
 
 fn not_zero(checker: &mut Checker, chosen: &Chosen, name: &str, value: f64) -> Option<()> {

@@ -47,6 +47,7 @@ mod striker;
 mod table_file;
 #[cfg(test)]
 mod tests;
+pub mod tracking;
 mod unload;
 mod warnings;
 
@@ -195,7 +196,8 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     }
     let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();
     settings.extend(options.settings.iter().cloned());
-    Some(Plan {
+    let rig_block = rig.as_ref().and_then(|rig| rig.block);
+    let plan = Plan {
         title: title.unwrap_or_else(|| stem(name).to_owned()),
         parameters,
         specimens: specimens.into_iter().collect::<Option<_>>()?,
@@ -212,7 +214,12 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         rehearses: None,
         files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),
-    })
+    };
+    if !checker.faults.iter().any(Diagnostic::is_error) {
+        let blocks: Vec<usize> = procedures.iter().map(|(block, _)| *block).collect();
+        tracking::warn(checker, &plan, &blocks, rig_block);
+    }
+    Some(plan)
 }
 
 /// `plans/beam.psd` is `beam`.

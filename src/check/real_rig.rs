@@ -45,6 +45,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     if !axes.is_empty() {
         axes::hold_device(checker, block, axes.len(), &actuator.link.dialect, load_cell.is_none())?;
     }
+    axes::hold_control_points(checker, axes.len().max(1), &actuator.link.dialect, actuator.at)?;
     Some(RealLink {
         actuator: actuator.link,
         load_cell: load_cell.map(|device| device.link),

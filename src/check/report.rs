@@ -4,9 +4,10 @@ use super::checker::Checker;
 use super::faults::{names, types};
 use super::scope::Meaning;
 use crate::formula::ProcedureId;
-use crate::plan::{Figure, FigureKind, Format, Procedure, Report};
+use crate::plan::{Figure, FigureKind, Format, MOST_TOGETHER, Procedure, Report};
 use crate::schema::Kind;
-use crate::syntax::ast::{Expr, ExprKind};
+use crate::source::Span;
+use crate::syntax::ast::{Argument, Expr, ExprKind};
 
 const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
 
@@ -45,7 +46,7 @@ fn format(name: &str) -> Format {
 fn every_figure(procedures: &[Option<Procedure>]) -> Vec<Figure> {
     let of = |(index, procedure): (usize, &Option<Procedure>)| {
         let kinds = procedure.as_ref().map_or(&[][..], |procedure| FigureKind::of(&procedure.kind));
-        kinds.iter().map(move |kind| Figure { kind: *kind, procedure: ProcedureId(index) })
+        kinds.iter().map(move |kind| Figure { kind: *kind, procedure: ProcedureId(index), beside: Vec::new() })
     };
     procedures.iter().enumerate().flat_map(of).collect()
 }
@@ -60,7 +61,7 @@ fn figures(checker: &mut Checker, block: usize, procedures: &[Option<Procedure>]
     checked.into_iter().collect()
 }
 
-/// `energy(hit)`
+/// `energy(hit)`, or `displacement(paused, moving)`: several on one chart.
 fn figure(checker: &mut Checker, written: &Expr, procedures: &[Option<Procedure>]) -> Option<Figure> {
     let ExprKind::Call { name, arguments } = &written.kind else {
         return match written.kind {
@@ -71,13 +72,30 @@ fn figure(checker: &mut Checker, written: &Expr, procedures: &[Option<Procedure>
     let Some(kind) = FigureKind::ALL.into_iter().find(|kind| kind.name() == name.node) else {
         return checker.fail(names::unknown_figure(&name.node, name.span, FigureKind::ALL.map(FigureKind::name)));
     };
-    let [argument] = arguments.as_slice() else {
+    if arguments.is_empty() {
         return checker.fail(types::figure_wanted(written.span, checker.text(written.span)));
+    }
+    let drawn: Vec<Option<ProcedureId>> =
+        arguments.iter().map(|argument| drawn_of(checker, kind, written.span, &argument.value, procedures)).collect();
+    let drawn: Vec<ProcedureId> = drawn.into_iter().collect::<Option<_>>()?;
+    if drawn.len() > 1 {
+        together(checker, kind, &drawn, arguments, procedures)?;
+    }
+    Some(Figure { kind, procedure: drawn[0], beside: drawn[1..].to_vec() })
+}
+
+/// The procedure that a figure names, if it draws such a figure.
+fn drawn_of(
+    checker: &mut Checker,
+    kind: FigureKind,
+    figure: Span,
+    argument: &Expr,
+    procedures: &[Option<Procedure>],
+) -> Option<ProcedureId> {
+    let ExprKind::Name(of) = &argument.kind else {
+        return checker.fail(types::figure_wanted(figure, checker.text(figure)));
     };
-    let ExprKind::Name(of) = &argument.value.kind else {
-        return checker.fail(types::figure_wanted(written.span, checker.text(written.span)));
-    };
-    let span = argument.value.span;
+    let span = argument.span;
     let block = match checker.scope.meaning(of) {
         Some(Meaning::Poisoned) => return None,
         Some(Meaning::Block(block)) => block,
@@ -93,12 +111,39 @@ fn figure(checker: &mut Checker, written: &Expr, procedures: &[Option<Procedure>
     let drawn = FigureKind::of(&procedures.get(procedure.0)?.as_ref()?.kind);
     if !drawn.contains(&kind) {
         let words = checker.scope.blocks[block].kind.words();
-        return checker.fail(names::figure_of_other_procedure(
-            kind.name(),
-            &words,
-            written.span,
-            drawn.iter().map(|kind| kind.name()),
-        ));
+        let drawn = drawn.iter().map(|kind| kind.name());
+        return checker.fail(names::figure_of_other_procedure(kind.name(), &words, figure, drawn));
     }
-    Some(Figure { kind, procedure })
+    Some(procedure)
+}
+
+/// Whether these procedures can stand on one chart: one curve of each, all of one kind, none twice, few enough.
+fn together(
+    checker: &mut Checker,
+    kind: FigureKind,
+    drawn: &[ProcedureId],
+    arguments: &[Argument],
+    procedures: &[Option<Procedure>],
+) -> Option<()> {
+    let of = |procedure: &ProcedureId| procedures.get(procedure.0).and_then(Option::as_ref).map(|procedure| &procedure.kind);
+    let first = of(&drawn[0])?;
+    let keyword = first.keyword();
+    let at = |place: usize| arguments[place].value.span;
+    if !kind.is_shared(first) {
+        let shared = FigureKind::of(first).iter().filter(|kind| kind.is_shared(first)).map(|kind| kind.name());
+        return checker.fail(names::figure_of_one(kind.name(), keyword, at(1), shared));
+    }
+    for (place, procedure) in drawn.iter().enumerate().skip(1) {
+        let kinds = of(procedure)?;
+        if kinds.keyword() != keyword {
+            return checker.fail(names::figure_of_two_kinds(kind.name(), (keyword, at(0)), (kinds.keyword(), at(place))));
+        }
+        if let Some(before) = drawn[..place].iter().position(|other| other == procedure) {
+            return checker.fail(names::figure_drawn_twice(at(before), at(place)));
+        }
+    }
+    if drawn.len() > MOST_TOGETHER {
+        return checker.fail(names::too_many_together(drawn.len(), MOST_TOGETHER, at(MOST_TOGETHER)));
+    }
+    Some(())
 }

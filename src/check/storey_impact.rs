@@ -158,7 +158,7 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &StoreyImpact, frame: 
     }
 }
 
-/// In an impact or a row of them on one degree of freedom: what only a frame has.
+/// In an impact on one degree of freedom: what only a frame has.
 pub fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Option<()> {
     let mut sound = Some(());
     if let Some((_, entry)) = checker.given(block, "damping_ratio") {
@@ -166,16 +166,9 @@ pub fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) ->
         sound = checker.fail(fault::of_a_frame_only("damping_ratio", at, "write `damping = 50 N*s/m`"));
     }
     if let (Some((_, entry)), Some(specimen)) = (checker.given(block, "storey"), specimen) {
-        let at = entry.key.span;
-        let (this, tested) = (&checker.scope.blocks[block], &checker.scope.blocks[specimen]);
+        let (at, tested) = (entry.key.span, &checker.scope.blocks[specimen]);
         let (name, declared) = (tested.name.map_or("", |name| name.node.as_str()), tested.block.head);
-        let keyword = this.kind.words();
-        sound = match frame::frame(checker, specimen) {
-            Some(frame) => {
-                checker.fail(fault::one_degree_of_freedom(&keyword, name, frame.degrees_of_freedom(), at, Some(declared)))
-            }
-            None => checker.fail(fault::storey_of_none(name, at, declared)),
-        };
+        sound = checker.fail(fault::storey_of_none(name, at, declared));
     }
     sound
 }

@@ -177,6 +177,10 @@ pub struct ServeArguments {
     /// The constant stiffness that a generic client is told [default: the specimen's initial one]
     #[arg(long, value_name = "STIFFNESS")]
     pub stiffness: Option<String>,
+    /// Names of a frame's floors for a NEES coordinator, the lowest first, with commas between [default: MDL-00-01, MDL-00-02, …;
+    /// of one axis any name]
+    #[arg(long, value_name = "NAMES")]
+    pub control_points: Option<String>,
     /// Ends after the first session
     #[arg(long)]
     pub once: bool,

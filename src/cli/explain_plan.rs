@@ -110,12 +110,13 @@ impl<'a> DryRun<'a> {
             }
         }
         section("What moves", self.motions());
-        for (procedure, planned) in self.record.procedures.iter().zip(&self.plan.procedures) {
+        for (index, (procedure, planned)) in self.record.procedures.iter().zip(&self.plan.procedures).enumerate() {
             if let (History::Impact(history), ProcedureKind::Impact(blow)) = (&procedure.history, &planned.kind)
                 && !history.steps.is_empty()
             {
                 let foretold = explain_tracking::rows(self.plan, blow, procedure, history);
-                section(&format!("{}, impact", procedure.name), [impact(history), foretold].concat());
+                let energy = explain_tracking::energy(self.plan, index);
+                section(&format!("{}, impact", procedure.name), [impact(history), foretold, energy].concat());
             }
             if let History::StoreyImpact(history) = &procedure.history
                 && !history.floors.is_empty()
@@ -125,12 +126,12 @@ impl<'a> DryRun<'a> {
                 let heading = format!("{}, impact on storey {}", procedure.name, history.struck + 1);
                 section(&heading, [impact(&history.blow), explain_shake::floors(history)].concat());
             }
-            if let History::Shake(history) = &procedure.history {
-                section(
-                    &format!("{}, modes", procedure.name),
-                    explain_shake::modes(history.modes.as_ref(), &history.damping_ratios),
-                );
-                section(&format!("{}, shake", procedure.name), explain_shake::steps(history));
+            if let (History::Shake(history), ProcedureKind::Shake(shake)) = (&procedure.history, &planned.kind) {
+                let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
+                section(&format!("{}, modes", procedure.name), modes);
+                let foretold = explain_tracking::shake_rows(self.plan, shake, history);
+                let energy = explain_tracking::energy(self.plan, index);
+                section(&format!("{}, shake", procedure.name), [explain_shake::steps(history), foretold, energy].concat());
             }
         }
         section("Limits", self.limits());
@@ -218,7 +219,7 @@ impl<'a> DryRun<'a> {
             low: finite(allowed.low),
             high: finite(allowed.high),
             reached: reached.filter(|reached| reached.low.is_finite()).map(ends),
-            margin: reached.and_then(|reached| finite(left(allowed, reached))),
+            margin: reached.and_then(|reached| finite(left(name, allowed, reached))),
         });
         let required = self.assessment.requirements.iter();
         Prediction {
@@ -246,13 +247,13 @@ impl<'a> DryRun<'a> {
         let mut rows = vec![row(["limit", "allowed", "reached", "margin"])];
         for (name, allowed, dimension, reached) in self.reached(&self.plan.limits) {
             if allowed.is_bounded() {
-                let left = reached.map(|reached| left(allowed, reached));
                 let name = if name == "nrms_error" { "NRMS tracking error".to_owned() } else { name.replace('_', " ") };
+                let margin = reached.map_or_else(|| "–".to_owned(), |reached| margin(&name, allowed, reached, dimension));
                 rows.push(vec![
                     name,
                     span(allowed, dimension),
                     reached.map_or_else(|| "–".to_owned(), |reached| span(reached, dimension)),
-                    left.map_or_else(|| "–".to_owned(), |left| readable(left, dimension)),
+                    margin,
                 ]);
             }
         }
@@ -286,6 +287,24 @@ impl<'a> DryRun<'a> {
     }
 }
 
+/// What is left to the nearer end. What is a size has one end, and an end of 0 at which the run stands at rest is not run into.
+fn margin(name: &str, allowed: Interval, reached: Interval, dimension: Dimension) -> String {
+    let above = allowed.high - reached.high;
+    let below = reached.low - allowed.low;
+    let is_size = !["displacement", "force"].contains(&name);
+    let rests = |allowed: f64, reached: f64| allowed == 0.0 && reached == 0.0;
+    let (low, high) = (!is_size && rests(allowed.low, reached.low), rests(allowed.high, reached.high));
+    match (low, high) {
+        // Where nothing asks for less the rig goes as fast as it may.
+        _ if name == "speed" && above == 0.0 => "none: as fast as allowed".to_owned(),
+        (true, true) => "none, and it rests there".to_owned(),
+        (true, false) => format!("{}; it begins at 0", readable(above, dimension)),
+        (false, true) if !is_size => format!("{}; it begins at 0", readable(below, dimension)),
+        _ if is_size => readable(above, dimension),
+        _ => readable(above.min(below), dimension),
+    }
+}
+
 /// The steps of an impact and its predicted peaks.
 fn impact(history: &ImpactHistory) -> Vec<Vec<String>> {
     let peak = |of: fn(&crate::record::ImpactStep) -> f64, dimension| {
@@ -311,9 +330,10 @@ fn impact(history: &ImpactHistory) -> Vec<Vec<String>> {
     ]
 }
 
-/// What is left to the nearer end; negative: past it.
-fn left(allowed: Interval, reached: Interval) -> f64 {
-    (allowed.high - reached.high).min(reached.low - allowed.low)
+/// What is left to the nearer end; negative: past it. What is a size has one end.
+fn left(name: &str, allowed: Interval, reached: Interval) -> f64 {
+    let above = allowed.high - reached.high;
+    if ["displacement", "force"].contains(&name) { above.min(reached.low - allowed.low) } else { above }
 }
 
 /// `0 .. 1.000 mm`: both ends in the unit that suits the larger one.
@@ -343,6 +363,19 @@ mod tests {
         assert_eq!(span(Interval { low: -2e-3, high: 25e-3 }, Dimension::LENGTH), "−2.000 .. 25.00 mm");
         assert_eq!(span(Interval { low: f64::NEG_INFINITY, high: 12e3 }, Dimension::FORCE), "up to 12.00 kN");
         assert_eq!(span(Interval { low: 0.0, high: 0.01 }, Dimension::NUMBER), "0 .. 0.01000");
+    }
+
+    #[test]
+    fn a_limit_that_starts_at_nothing_has_the_margin_of_its_other_end() {
+        let at = |name, allowed: (f64, f64), reached: (f64, f64)| {
+            let interval = |(low, high)| Interval { low, high };
+            margin(name, interval(allowed), interval(reached), Dimension::LENGTH)
+        };
+        assert_eq!(at("displacement", (-1e-3, 0.1), (0.0, 0.04)), "1.000 mm");
+        assert_eq!(at("displacement", (0.0, 0.1), (0.0, 0.04)), "60.00 mm; it begins at 0");
+        assert_eq!(at("displacement", (-0.1, 0.0), (-0.04, 0.0)), "60.00 mm; it begins at 0");
+        assert_eq!(at("increment", (0.0, 5e-3), (0.0, 4e-3)), "1.000 mm");
+        assert_eq!(at("speed", (0.0, 0.02), (0.0, 0.02)), "none: as fast as allowed");
     }
 
     /// Example 1 of Melo et al. 2006, with the actuator allowed to go to `farthest`.

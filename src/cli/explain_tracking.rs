@@ -1,5 +1,6 @@
-//! What an actuator that misses its targets would do to an impact: the growth of its amplitude, foretold. In: what the rig
-//! declares, the steps of a dry run. Out: rows of text. Closed forms, not a run.
+//! What an actuator that misses its targets would do to an impact, or to each mode of a frame: the growth of its amplitude,
+//! foretold by closed forms, and the energy, foretold step by step. In: what the rig declares, the steps of a dry run. Out:
+//! rows of text.
 //!
 //! A place that is late by D of virtual time is felt as the damper −K·D, and an amplitude grows by exp(πωD) a cycle. An
 //! actuator that falls short of its increments by the share t, which it takes from where it stands, is late by D =
@@ -8,15 +9,19 @@
 //! every step: δ in all, and an amplitude A grows by 4δ a cycle, at worst. (The published numbers are those of ten cycles at 50
 //! steps: 10 % short ×1.55, δ = 2 % of A ×1.79.)
 
-use crate::plan::{Impact, Link, Mode, Plan};
+use crate::check::tracking;
+use crate::plan::{Impact, Link, Mode, Plan, Shake};
 use crate::quantity::Dimension;
-use crate::quantity::display::{readable, significant};
-use crate::record::{ImpactHistory, ProcedureRecord};
+use crate::quantity::display::{minus, readable, significant};
+use crate::record::{ImpactHistory, ProcedureRecord, ShakeHistory};
 
 /// What is foretold of one impact; nothing where the rig declares nothing that it misses.
 pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, history: &ImpactHistory) -> Vec<Vec<String>> {
-    let late = delay(plan, impact, history);
-    let unsettled = uncertain(plan, impact);
+    let pause = impact.pause.constant().unwrap_or(0.0);
+    let ends = history.steps.first().zip(history.steps.last());
+    let wall = ends.map_or(0.0, |(first, last)| last.wall_time - first.wall_time);
+    let run = Ran { mode: impact.mode, pause, time_step: history.time_step, wall, steps: ends.map_or(0, |(_, last)| last.step) };
+    let (late, unsettled) = (delay(plan, &run), uncertain(plan, impact.mode));
     let input = |name: &str| procedure.inputs.iter().find(|(field, ..)| *field == name).map(|(_, estimate, _)| estimate.value);
     let (Some(mass), Some(stiffness)) = (input("mass"), input("stiffness")) else { return Vec::new() };
     let amplitude = history.steps.iter().map(|step| step.computed.abs()).fold(0.0, f64::max);
@@ -25,16 +30,12 @@ pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, hi
         return Vec::new();
     }
     if impact.i_modification {
-        let text = "none to first order: the I-modification corrects the force to the target".to_owned();
-        return vec![vec!["growth by tracking".to_owned(), text]];
+        return vec![vec!["growth by tracking".to_owned(), CORRECTED.to_owned()]];
     }
     let growth = Growth { omega: (stiffness / mass).sqrt(), late, relative: unsettled / amplitude };
     let cycles = last * growth.omega / std::f64::consts::TAU;
     vec![
-        vec![
-            "late by".to_owned(),
-            format!("{} of virtual time, ± {}", readable(late, Dimension::TIME), readable(unsettled, Dimension::LENGTH)),
-        ],
+        late_by(late, unsettled),
         vec![
             "growth by tracking".to_owned(),
             format!(
@@ -65,22 +66,83 @@ impl Growth {
     }
 }
 
+/// The same of a frame: what a delay is to each mode, and how the largest displacement may grow in it. Beside it stands the damping
+/// of the mode, which works the other way.
+pub(super) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> Vec<Vec<String>> {
+    let pause = shake.pause.constant().unwrap_or(0.0);
+    let ends = history.steps.first().zip(history.steps.last());
+    let wall = ends.map_or(0.0, |(first, last)| last.wall_time - first.wall_time);
+    let run = Ran { mode: shake.mode, pause, time_step: history.time_step, wall, steps: ends.map_or(0, |(_, last)| last.step) };
+    let (late, unsettled) = (delay(plan, &run), uncertain(plan, shake.mode));
+    let sizes = history.steps.iter().flat_map(|step| &step.computed).map(|place| place.abs());
+    let amplitude = sizes.fold(0.0, f64::max);
+    let Some(modes) = history.modes.as_ref().filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
+        return Vec::new();
+    };
+    if shake.i_modification {
+        return vec![vec!["growth by tracking".to_owned(), CORRECTED.to_owned()]];
+    }
+    let mut rows = vec![late_by(late, unsettled)];
+    for (mode, period) in modes.periods.iter().enumerate() {
+        let omega = modes.angular_frequency(mode);
+        let damping = history.damping_ratios.get(mode).copied().unwrap_or(0.0);
+        let growth = Growth { omega, late, relative: unsettled / amplitude };
+        let percent = |ratio: f64| format!("{} %", minus(&significant(100.0 * ratio, 3)));
+        rows.push(vec![
+            if mode == 0 { "growth by tracking".to_owned() } else { String::new() },
+            format!(
+                "mode {}, {}: amplitude ×{} a cycle at worst, as a damping ratio of {}; its own is {}",
+                mode + 1,
+                readable(*period, Dimension::TIME),
+                significant(growth.over(1.0), 4),
+                percent(-growth.over(1.0).ln() / std::f64::consts::TAU),
+                percent(damping),
+            ),
+        ]);
+    }
+    rows
+}
+
+/// What tracking is to make of the energy of a run, from the share that the rig misses of its increments.
+pub(super) fn energy(plan: &Plan, procedure: usize) -> Vec<Vec<String>> {
+    let Some((foretold, _)) = tracking::foretold(plan, procedure) else { return Vec::new() };
+    let share = significant(100.0 * foretold.share.abs(), 2);
+    let does = if foretold.share < 0.0 { "put in" } else { "taken out" };
+    let held = foretold.passed.map_or_else(String::new, |time| format!("; held at about {}", readable(time, Dimension::TIME)));
+    vec![vec!["energy by tracking".to_owned(), format!("up to {share} % of the input {does}{held}")]]
+}
+
+const CORRECTED: &str = "none to first order: the I-modification corrects the force to the target";
+
+fn late_by(late: f64, unsettled: f64) -> Vec<String> {
+    let text = format!("{} of virtual time, ± {}", readable(late, Dimension::TIME), readable(unsettled, Dimension::LENGTH));
+    vec!["late by".to_owned(), text]
+}
+
+/// How a procedure went from target to target in the dry run.
+struct Ran {
+    mode: Mode,
+    /// s
+    pause: f64,
+    /// s
+    time_step: f64,
+    /// Rig time of all steps, s.
+    wall: f64,
+    steps: u64,
+}
+
 /// D, s of virtual time.
-fn delay(plan: &Plan, impact: &Impact, history: &ImpactHistory) -> f64 {
+fn delay(plan: &Plan, run: &Ran) -> f64 {
     let Link::Virtual(link) = &plan.rig.link else { return 0.0 };
-    let short = if link.tracking < 1.0 { history.time_step * link.tracking / (1.0 - link.tracking) } else { f64::INFINITY };
-    let lagging = match impact.mode {
+    let short = if link.tracking < 1.0 { run.time_step * link.tracking / (1.0 - link.tracking) } else { f64::INFINITY };
+    let lagging = match run.mode {
         Mode::Continuous { time_scale } => link.lag / time_scale,
         Mode::StepAndPause if link.lag > 0.0 && plan.rig.settle.band == 0.0 => {
-            let pause = impact.pause.constant().unwrap_or(0.0);
-            let wall =
-                history.steps.first().zip(history.steps.last()).map_or(0.0, |(first, last)| last.wall_time - first.wall_time);
-            let steps = history.steps.last().map_or(0, |last| last.step).max(1);
             #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-            let moving = (wall / steps as f64 - pause).max(0.0);
+            let moving = (run.wall / run.steps.max(1) as f64 - run.pause).max(0.0);
             let ratio = link.lag / moving;
             let behind = if moving > 0.0 { ratio * (1.0 - (-1.0 / ratio).exp()) } else { 1.0 };
-            history.time_step * behind * (-pause / link.lag).exp()
+            run.time_step * behind * (-run.pause / link.lag).exp()
         }
         Mode::StepAndPause => 0.0,
     };
@@ -88,13 +150,13 @@ fn delay(plan: &Plan, impact: &Impact, history: &ImpactHistory) -> f64 {
 }
 
 /// δ, m: what settling lets pass, and half a quantum.
-fn uncertain(plan: &Plan, impact: &Impact) -> f64 {
+fn uncertain(plan: &Plan, mode: Mode) -> f64 {
     let resolution = match &plan.rig.link {
         Link::Virtual(link) => link.resolution,
         Link::Real(link) => link.readings.resolution,
     };
     let lags = plan.rig.link.as_virtual().is_none_or(|link| link.lag > 0.0);
-    let settles = lags && impact.mode == Mode::StepAndPause;
+    let settles = lags && mode == Mode::StepAndPause;
     0.5 * resolution + if settles { plan.rig.settle.band } else { 0.0 }
 }
 

@@ -12,7 +12,7 @@ use super::settings::Settings;
 use super::watch::Attendance;
 use crate::diagnostic::excerpt::escape;
 use crate::output::Prediction;
-use crate::plan::{Behaviour, Plan};
+use crate::plan::{Behaviour, Frame, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Outcome, Record};
@@ -55,7 +55,7 @@ pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
 /// On what it is predicted.
 fn told(plan: &Plan, stand_in: &Plan) -> String {
     let specimen = VirtualRig::specimen_of(stand_in);
-    let storeys = specimen.and_then(|specimen| specimen.frame.as_ref()).map(|frame| frame.degrees_of_freedom());
+    let storeys = specimen.and_then(|specimen| specimen.frame.as_ref()).map(Frame::degrees_of_freedom);
     let stiffness = specimen.and_then(|specimen| specimen.behaviour.as_ref()).map(Behaviour::initial_stiffness);
     let stiffness = stiffness.map_or_else(|| "unknown".to_owned(), |stiffness| readable(stiffness, Dimension::STIFFNESS));
     let noise = stand_in.rig.link.as_virtual().map_or(0.0, |link| link.noise);

@@ -54,13 +54,18 @@ fn curves(sides: &[Side], drawn: &[(usize, FigureCurve)]) -> Vec<Curve> {
         let one = |(run, curve): &(usize, FigureCurve)| Curve {
             label: format!("{} {}", run + 1, sides[*run].name),
             points: curve.line(),
+            dots: curve.dots,
             place: Some(*run),
         };
         return drawn.iter().map(one).collect();
     }
     let label = |index: usize| if index == 0 { format!("each of {} runs", drawn.len()) } else { String::new() };
-    let each =
-        drawn.iter().enumerate().map(|(index, (_, curve))| Curve { label: label(index), points: curve.line(), place: None });
+    let each = drawn.iter().enumerate().map(|(index, (_, curve))| Curve {
+        label: label(index),
+        points: curve.line(),
+        dots: curve.dots,
+        place: None,
+    });
     each.chain(mean(drawn)).collect()
 }
 
@@ -75,7 +80,7 @@ fn mean(drawn: &[(usize, FigureCurve)]) -> Option<Curve> {
         Some((first.points[place].0, Spread::of_values(&heights)?.mean))
     };
     let points = (0..first.points.len()).map(at).collect::<Option<Vec<_>>>()?;
-    same.then(|| Curve { label: "mean".to_owned(), points, place: Some(0) })
+    same.then(|| Curve { label: "mean".to_owned(), points, dots: false, place: Some(0) })
 }
 
 #[cfg(test)]

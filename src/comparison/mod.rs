@@ -67,7 +67,10 @@ pub struct Comparison {
 impl Comparison {
     #[must_use]
     pub fn of(sides: &[Side]) -> Self {
-        let (shared, partial) = rows(sides).into_iter().partition(|row| row.cells.iter().all(Option::is_some));
+        let (mut shared, partial): (Vec<Row>, Vec<Row>) =
+            rows(sides).into_iter().partition(|row| row.cells.iter().all(Option::is_some));
+        // What no run has says nothing of any.
+        shared.retain(|row| row.cells.iter().flatten().any(|cell| cell.value.is_some()));
         Self {
             names: sides.iter().map(|side| side.name.clone()).collect(),
             verdicts: sides.iter().map(|side| text(&side.summary["verdict"])).collect(),

@@ -1,6 +1,7 @@
 //! Results as rows of text, for people and as CSV. In: a comparison. Out: cells; a person's in readable units, CSV in SI.
 
 use super::{Cell, Comparison, Difference, Row, Spread};
+use crate::inert::cell;
 use crate::quantity::Dimension;
 use crate::quantity::display::{join, minus, readable, readable_beside, si_unit, significant, unit};
 
@@ -17,7 +18,9 @@ pub fn cells(row: &Row) -> Vec<String> {
     let largest = values().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut cells: Vec<String> = row.cells.iter().map(|cell| value(*cell, largest, row.dimension)).collect();
     if row.cells.len() == 2 {
-        cells.extend(Difference::of(row).map_or_else(|| vec![String::new(); 3], |difference| differs(difference, row.dimension)));
+        cells.extend(
+            Difference::of(row).map_or_else(|| vec![String::new(); 3], |difference| differs(difference, largest, row.dimension)),
+        );
     } else {
         cells.extend(Spread::of(row).map_or_else(|| vec![String::new(); 4], |spread| spreads(spread, largest, row.dimension)));
     }
@@ -29,20 +32,24 @@ fn value(cell: Option<Cell>, largest: f64, dimension: Dimension) -> String {
         None => String::new(),
         Some(Cell { value: None, .. }) => "no value".to_owned(),
         Some(Cell { value: Some(value), u }) => {
-            let number = readable_beside(value, largest, dimension);
-            match u {
-                Some(u) => format!("{number} ± {}", significant(u / unit(largest, dimension).1, 2)),
-                None => number,
-            }
+            let Some(u) = u.filter(|u| *u > 0.0) else { return readable_beside(value, largest, dimension) };
+            let (unit, factor) = unit(largest, dimension);
+            // Both to the uncertainty's second digit.
+            let decimals = (1.0 - (u / factor).log10().floor()).clamp(0.0, 9.0);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 9")]
+            let decimals = decimals as usize;
+            join(&minus(&format!("{:.decimals$} ± {:.decimals$}", value / factor, u / factor)), &unit)
         }
     }
 }
 
-fn differs(difference: Difference, dimension: Dimension) -> Vec<String> {
+/// In the unit of the values, and where that would be a row of zeros in its own.
+fn differs(difference: Difference, largest: f64, dimension: Dimension) -> Vec<String> {
     let absolute = if difference.absolute == 0.0 {
         "0".to_owned()
     } else {
-        let (unit, factor) = unit(difference.absolute, dimension);
+        let beside = if (difference.absolute / unit(largest, dimension).1).abs() >= 1e-3 { largest } else { difference.absolute };
+        let (unit, factor) = unit(beside, dimension);
         join(&signed(difference.absolute / factor), &unit)
     };
     let relative = difference.relative.map_or_else(String::new, percent);
@@ -72,16 +79,16 @@ fn signed(value: f64) -> String {
 pub fn csv(comparison: &Comparison) -> String {
     let mut text = String::from("result,unit");
     for name in &comparison.names {
-        let name = inert(name);
+        let name = cell(name);
         text = text + "," + &quoted(&name) + "," + &quoted(&format!("{name} u"));
     }
     text.push_str(",n,mean,standard_deviation,difference\n");
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     for row in comparison.shared.iter().chain(&comparison.partial) {
-        let mut cells = vec![quoted(&row.name), quoted(&si_unit(row.dimension))];
-        for cell in &row.cells {
-            cells.push(number(cell.and_then(|cell| cell.value)));
-            cells.push(number(cell.and_then(|cell| cell.u)));
+        let mut cells = vec![quoted(&cell(&row.name)), quoted(&si_unit(row.dimension))];
+        for run in &row.cells {
+            cells.push(number(run.and_then(|run| run.value)));
+            cells.push(number(run.and_then(|run| run.u)));
         }
         let spread = Spread::of(row);
         cells.push(spread.map_or_else(|| "0".to_owned(), |spread| spread.count.to_string()));
@@ -92,11 +99,6 @@ pub fn csv(comparison: &Comparison) -> String {
         text.push('\n');
     }
     text
-}
-
-/// A name that no spreadsheet takes for a formula.
-fn inert(text: &str) -> String {
-    if text.starts_with(['=', '+', '-', '@']) { format!("'{text}") } else { text.to_owned() }
 }
 
 fn quoted(text: &str) -> String {
@@ -115,7 +117,7 @@ mod tests {
     #[test]
     fn two_runs_have_a_difference_and_more_a_spread() {
         let two = cells(&row(&[(0.008, Some(3e-5)), (0.0081, Some(4e-5))]));
-        assert_eq!(two, ["8.000 mm ± 0.030", "8.100 mm ± 0.040", "+0.1000 mm", "+1.25 %", "+2.00 u"]);
+        assert_eq!(two, ["8.000 ± 0.030 mm", "8.100 ± 0.040 mm", "+0.1000 mm", "+1.25 %", "+2.00 u"]);
         let three = cells(&row(&[(0.001, None), (0.002, None), (0.003, None)]));
         assert_eq!(three[3..], ["3", "2.000 mm", "1.000 mm", "50.0 %"]);
         assert_eq!(cells(&row(&[(1.0, None), (1.0, None)]))[2..], ["0", "0 %", ""]);

@@ -126,6 +126,7 @@ codes! {
     E648 ConditionWithoutBlow Error;
     E649 BreaksTwice Error;
     E650 RelaxationWithoutHold Error;
+    E651 NotTogether Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -142,6 +143,7 @@ codes! {
     W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
+    W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
 }

@@ -165,15 +165,20 @@ impl<S: Scheme> Step<S> {
         self.scheme.predict(&self.bodies, &start)
     }
 
+    /// r* = r_m − K_I(d_m − d̃), N. Without it not even a rounding changes.
+    #[inline]
+    fn felt(&self, target: f64, measured_displacement: f64, restoring_force: f64) -> f64 {
+        match self.modification {
+            0.0 => restoring_force,
+            stiffness => restoring_force - stiffness * (measured_displacement - target),
+        }
+    }
+
     #[inline]
     fn accept(&mut self, prediction: &S::Prediction, measured_displacement: f64, restoring_force: f64) {
         self.tangent.take(measured_displacement, restoring_force);
         let target = self.scheme.target(prediction);
-        // r* = r_m − K_I(d_m − d̃). Without it not even a rounding changes.
-        let felt = match self.modification {
-            0.0 => restoring_force,
-            stiffness => restoring_force - stiffness * (measured_displacement - target),
-        };
+        let felt = self.felt(target, measured_displacement, restoring_force);
         let advance: Advance = self.scheme.complete(&self.bodies, &self.start(), prediction, felt);
         let before = &self.state;
         let Motion { displacement, velocity, acceleration, restoring_force: force_at_computed } = advance.structure;
@@ -247,6 +252,12 @@ impl ImpactSolver {
         let start = step.start();
         let prediction = self.predicted.get_or_insert_with(|| step.predict());
         (step.scheme.velocity(&step.bodies, &start, prediction), step.scheme.struck(&start, prediction))
+    }
+
+    /// What the recursion takes for the force at the target of this step where this is measured, N.
+    pub fn taken(&mut self, measured_displacement: f64, restoring_force: f64) -> f64 {
+        let target = self.predict();
+        self.step.felt(target, measured_displacement, restoring_force)
     }
 
     /// Ends the step with what was measured at its end.

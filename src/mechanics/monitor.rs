@@ -11,6 +11,9 @@
 //! peak error          max |d_m − d_c|                          m
 //! ```
 //!
+//! Where the recursion takes another force r* than the one read, as under the I-modification, E_err = ∫ r* dd_c − ∫ r_m dd_m: what
+//! a correction has taken back is no error.
+//!
 //! **Energy error** (Thewalt and Roman 1994; Mosqueda, Stojadinović and Mahin 2007): the recursion believes that the
 //! specimen took ∫ r_m dd_c, it took ∫ r_m dd_m. Negative: tracking puts energy into the test, and its amplitudes grow;
 //! positive: it takes energy out, as damping would. A share of the input, it is the one number to stop a test by.
@@ -53,6 +56,8 @@ pub struct Monitor {
     commanded: f64,
     measured: f64,
     force: f64,
+    /// r* − r_m at the last step, N.
+    corrected: f64,
     errors: f64,
     commands: f64,
     tracking: Tracking,
@@ -62,18 +67,25 @@ impl Monitor {
     /// From what was asked for (m), measured (m) and read (N) before the first step.
     #[must_use]
     pub fn new(commanded: f64, measured: f64, force: f64) -> Self {
-        let mut monitor = Self { commanded, measured, force, errors: 0.0, commands: 0.0, tracking: Tracking::default() };
+        let mut monitor =
+            Self { commanded, measured, force, corrected: 0.0, errors: 0.0, commands: 0.0, tracking: Tracking::default() };
         monitor.size(commanded, measured);
         monitor
     }
 
     /// Takes the end of a step.
     pub fn take(&mut self, commanded: f64, measured: f64, force: f64) -> Tracking {
+        self.take_as(commanded, measured, force, force)
+    }
+
+    /// The same, where the recursion takes `taken` (N) for the force at the command.
+    pub fn take_as(&mut self, commanded: f64, measured: f64, force: f64, taken: f64) -> Tracking {
+        let corrected = taken - force;
         let (asked, went) = (commanded - self.commanded, measured - self.measured);
         let tracking = &mut self.tracking;
-        tracking.energy_error += 0.5 * (self.force + force) * (asked - went);
+        tracking.energy_error += 0.5 * (self.force + force) * (asked - went) + 0.5 * (self.corrected + corrected) * asked;
         tracking.indicator += 0.25 * ((self.measured + measured) * asked - (self.commanded + commanded) * went);
-        (self.commanded, self.measured, self.force) = (commanded, measured, force);
+        (self.commanded, self.measured, self.force, self.corrected) = (commanded, measured, force, corrected);
         self.size(commanded, measured);
         self.tracking
     }
@@ -132,6 +144,25 @@ mod tests {
         let found = cycle(0.01, |angle| 0.009 * angle.sin());
         assert!(found.energy_error.abs() < 1e-12 && found.indicator.abs() < 1e-15);
         assert!((found.nrms_error - 0.1).abs() < 1e-12 && (found.peak_error - 0.001).abs() < 1e-12);
+    }
+
+    /// A lag whose force is corrected to the command by the spring's own K: ½K(d_c² − d_m²) is all that is left, and over a
+    /// cycle nothing.
+    #[test]
+    fn what_a_correction_takes_back_is_no_error() {
+        let (amplitude, phase) = (0.01, 0.1);
+        let at = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
+        let place = |angle: f64| amplitude * (angle - phase).sin();
+        let mut monitor = Monitor::new(0.0, place(0.0), STIFFNESS * place(0.0));
+        for step in 1..=STEPS {
+            let (commanded, measured) = (amplitude * at(step).sin(), place(at(step)));
+            let found = monitor.take_as(commanded, measured, STIFFNESS * measured, STIFFNESS * commanded);
+            let stored = |from: f64, to: f64| 0.5 * STIFFNESS * (to * to - from * from);
+            let left = stored(0.0, commanded) - stored(place(0.0), measured);
+            // The first step begins with a force that nothing has corrected yet.
+            let first = 0.5 * STIFFNESS * place(0.0) * amplitude * at(1).sin();
+            assert!((found.energy_error - left - first).abs() < 1e-12, "step {step}: {found:?}, {left} J");
+        }
     }
 
     /// By hand: from rest to 2 mm asked, 1 mm gone, 10 N read: ½·10 N·1 mm; ¼(1·2 − 2·1) mm² is nothing on the first step.

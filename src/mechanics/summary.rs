@@ -36,7 +36,7 @@ pub struct ImpactSummary {
     pub energy_error: f64,
     /// The structure was still on its way: the largest X is not a peak.
     pub peak_is_final: bool,
-    /// The step at which the striker stopped had a contact force.
+    /// The striker has stopped, and the run ended with a contact force.
     pub last_blow_cut: bool,
 }
 
@@ -62,6 +62,8 @@ pub struct SummaryBuilder {
     first_blow: FirstBlow,
     last_state: StepState,
     last_velocity: f64,
+    /// N
+    last_contact_force: f64,
     summary: ImpactSummary,
 }
 
@@ -73,6 +75,7 @@ impl SummaryBuilder {
             first_blow: FirstBlow::ToCome { closing: input.striker_velocity },
             last_state: StepState::Free,
             last_velocity: 0.0,
+            last_contact_force: 0.0,
             summary: ImpactSummary {
                 max_displacement: f64::NEG_INFINITY,
                 time_of_max_displacement: 0.0,
@@ -112,7 +115,6 @@ impl SummaryBuilder {
         }
         if summary.stop_time.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
             summary.stop_time = Some(state.time);
-            summary.last_blow_cut = state.contact_force > 0.0;
         }
         let touching = state.state != StepState::Free;
         if touching && self.last_state == StepState::Free {
@@ -121,6 +123,7 @@ impl SummaryBuilder {
         self.follow_first_blow(state, touching);
         self.last_state = state.state;
         self.last_velocity = state.velocity;
+        self.last_contact_force = state.contact_force;
     }
 
     /// A blow is over at the end of the free step that follows it: the tensile step, taken again as a free one.
@@ -144,7 +147,10 @@ impl SummaryBuilder {
             (_, FirstBlow::Over { restitution }) => restitution,
             _ => None,
         };
-        self.summary.peak_is_final = self.last_velocity > 0.0;
+        // A run that goes on past its largest X has seen a peak, whichever way the structure moves as it ends.
+        self.summary.peak_is_final =
+            self.last_velocity > 0.0 && self.summary.residual_displacement >= self.summary.max_displacement;
+        self.summary.last_blow_cut = self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
         if self.summary.max_displacement == f64::NEG_INFINITY {
             self.summary.max_displacement = 0.0;
         }

@@ -1,10 +1,12 @@
 //! A comparison as one HTML file that needs no other. In: the comparison, and its figures drawn. Out: text.
 
+use super::document::POLICY;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::comparison::{Comparison, Row, cells, heads};
+use crate::inert;
 
 const STYLE: &str = "body{font:15px/1.45 'DejaVu Sans',Verdana,sans-serif;color:#222;max-width:1100px;margin:2em auto;padding:0 1em}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}table{border-collapse:collapse;font-variant-numeric:tabular-nums}\
@@ -20,7 +22,7 @@ pub fn page(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head { meta charset="utf-8"; meta name="viewport" content="width=device-width, initial-scale=1"; title { "Comparison of runs" } style { (PreEscaped(STYLE)) } }
+            head { meta charset="utf-8"; meta http-equiv="Content-Security-Policy" content=(POLICY); meta name="viewport" content="width=device-width, initial-scale=1"; title { "Comparison of runs" } style { (PreEscaped(STYLE)) } }
             body {
                 h1 { "Comparison of " (runs) " runs" }
                 table {
@@ -57,7 +59,7 @@ pub fn page(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
             }
         }
     };
-    page.into_string()
+    inert::page(&page.into_string())
 }
 
 fn head(runs: usize, more: &[&str]) -> Markup {

@@ -171,6 +171,7 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         }
     }
     files.push(summary_file(run)?);
+    files.extend(run.provenance.prediction.as_ref().map(prediction::file).transpose()?);
     files.extend(tables);
     for figure in figures {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
@@ -188,7 +189,6 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
 /// A table or a summary that cannot be encoded.
 pub fn numbers(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let mut files = vec![summary_file(run)?];
-    files.extend(run.provenance.prediction.as_ref().map(prediction::file).transpose()?);
     files.extend(tables::all(run)?);
     tell_apart(&mut files);
     Ok(files)

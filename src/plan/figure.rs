@@ -3,10 +3,22 @@
 use super::ProcedureKind;
 use crate::formula::ProcedureId;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Procedures on one chart, at most: more curves cannot be told apart.
+pub const MOST_TOGETHER: usize = 6;
+
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
     pub kind: FigureKind,
     pub procedure: ProcedureId,
+    /// Others of the same kind on the same axes.
+    pub beside: Vec<ProcedureId>,
+}
+
+impl Figure {
+    /// Every procedure it draws, in the order written.
+    pub fn procedures(&self) -> impl Iterator<Item = ProcedureId> {
+        std::iter::once(self.procedure).chain(self.beside.iter().copied())
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -89,6 +101,19 @@ impl FigureKind {
             Self::StiffnessDegradation => "stiffness_degradation",
             Self::Relaxation => "relaxation",
             Self::Blows => "blows",
+        }
+    }
+
+    /// Whether several procedures of this kind can stand on one chart of it: it is one curve of each.
+    #[must_use]
+    pub const fn is_shared(self, kind: &ProcedureKind) -> bool {
+        match kind {
+            ProcedureKind::Impact(_) => matches!(
+                self,
+                Self::Displacement | Self::Velocity | Self::StrikerVelocity | Self::ContactForce | Self::ForceDisplacement
+            ),
+            ProcedureKind::Shake(_) => matches!(self, Self::Displacement | Self::Drift | Self::Hysteresis | Self::BaseShear),
+            _ => false,
         }
     }
 

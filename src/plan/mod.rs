@@ -20,7 +20,7 @@ use crate::quantity::Dimension;
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
-pub use figure::{Figure, FigureKind};
+pub use figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, StiffnessRamp, WatchedHold};

@@ -252,7 +252,10 @@ pub enum Dialect {
     /// Modbus RTU with its register map: moves, reads what the map has.
     Modbus(ModbusMap),
     /// NEES "LabVIEW plugin" ASCII, psd as coordinator: moves, reads both.
-    Nees { control_point: String },
+    Nees {
+        /// One an axis, the lowest storey first.
+        control_points: Vec<String>,
+    },
 }
 
 impl Dialect {
@@ -277,7 +280,7 @@ impl Dialect {
     #[must_use]
     pub const fn most_axes(&self) -> usize {
         match self {
-            Self::Native => 6,
+            Self::Native | Self::Nees { .. } => 6,
             _ => 1,
         }
     }

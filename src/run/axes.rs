@@ -15,10 +15,11 @@ impl Monitors {
         Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
     }
 
-    /// What each axis has come to.
-    pub(super) fn take(&mut self, commanded: &[f64], reading: &Reading) -> Vec<Tracking> {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        self.0.iter_mut().zip(axes).map(|(monitor, (to, (measured, force)))| monitor.take(*to, *measured, *force)).collect()
+    /// What each axis has come to; `taken` is what the recursion takes for the forces at the commands, N.
+    pub(super) fn take(&mut self, commanded: &[f64], reading: &Reading, taken: &[f64]) -> Vec<Tracking> {
+        let read = reading.displacement.iter().zip(&reading.force).zip(taken);
+        let axes = self.0.iter_mut().zip(commanded).zip(read);
+        axes.map(|((monitor, to), ((measured, force), taken))| monitor.take_as(*to, *measured, *force, *taken)).collect()
     }
 }
 

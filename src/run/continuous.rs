@@ -31,7 +31,8 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
             Passing { place, velocity, struck }
         };
         let (measured, force) = first(&gliding.step(|| vec![foretell()], session)?);
-        let tracking = monitor.take(solver.predict(), measured, force);
+        let (target, taken) = (solver.predict(), solver.taken(measured, force));
+        let tracking = monitor.take_as(target, measured, force, taken);
         let state = *solver.complete(measured, force);
         strike.step(&state, tracking, session)?;
         if solver.over(plan.until) {

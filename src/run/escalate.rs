@@ -8,7 +8,7 @@ use super::propagation::Doubts;
 use super::results::{measured, result};
 use super::session::Session;
 use super::stop::Stop;
-use super::unload::to_rest;
+use super::unload::{MOST_TARGETS, to_rest};
 use crate::formula::{ProcedureId, ResultReference, ResultValue, Results};
 use crate::mechanics::impact::ImpactInput;
 use crate::plan::{Between, Escalate, Plan};
@@ -97,6 +97,15 @@ fn bring(between: Between, home: f64, setting: &Setting, done: &mut u64, session
             *done += steps.len() as u64;
             Ok((rest.displacement, rest.force))
         }
+    }
+}
+
+/// Moves from one blow to the next, at most.
+pub(super) const fn most_moves(between: Between) -> u64 {
+    match between {
+        Between::Stay => 0,
+        Between::Home => 1,
+        Between::Unload => MOST_TARGETS,
     }
 }
 

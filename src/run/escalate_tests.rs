@@ -3,9 +3,11 @@
 use super::testing::{elastic_plan, impact, number, run_unwatched};
 use crate::formula::Formula::{self, Constant};
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
-use crate::plan::{Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Test, Unload};
+use crate::plan::{Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Test, Unload, Until};
 use crate::quantity::Dimension;
 use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
+use crate::rig::VirtualRig;
+use crate::run::{Inspection, Observer, StepReport};
 
 fn below(limit: f64) -> Condition {
     let value = Formula::Result(ResultReference { procedure: ProcedureId(0), name: "max_displacement", part: Part::Value });
@@ -127,4 +129,44 @@ fn a_limit_in_a_blow_ends_it_and_keeps_what_there_is() {
     let blows = &history(&record).blows;
     assert_eq!((blows.len(), blows[0].held, blows[1].held), (2, Some(true), None));
     assert_eq!(number(&record, 0, "passed").0, Some(1.0));
+}
+
+/// Remembers the bound that it was told, and the steps that came.
+#[derive(Default)]
+struct Counting {
+    bound: Option<u64>,
+    last: u64,
+}
+
+impl Observer for Counting {
+    fn procedure_started(&mut self, _: &str, _: &str, steps: Option<u64>) {
+        self.bound = steps;
+    }
+    fn step_done(&mut self, report: &StepReport) {
+        self.last = report.step;
+    }
+    fn procedure_finished(&mut self, _: &str) {}
+    fn stop_requested(&self) -> bool {
+        false
+    }
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::go_on()
+    }
+}
+
+/// The moves between blows are steps too: with blows that go on to their duration the bound is met, never passed.
+#[test]
+fn no_more_steps_come_than_were_foretold() {
+    for (between, exact) in [(Between::Home, true), (Between::Unload, false), (Between::Stay, true)] {
+        let mut rising = rising(&[0.1, 0.2, 0.3], 1.0, between);
+        rising.blow.until = Until::Duration;
+        rising.blow.duration = Constant(0.02);
+        let plan = yielding(vec![ProcedureKind::Escalate(rising)]);
+        let mut counting = Counting::default();
+        let record = crate::run::run(&plan, &mut VirtualRig::of_plan(&plan), &mut counting);
+        assert_eq!(record.outcome, Outcome::Completed);
+        let bound = counting.bound.unwrap();
+        assert!(counting.last <= bound && (!exact || counting.last == bound), "{between:?}: {} of {bound}", counting.last);
+        assert!(counting.last >= 300);
+    }
 }

@@ -54,7 +54,7 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     part.particulars.push((REHEARSAL, text));
     part.rehearses = Some(Box::new(plan.clone()));
     part.requirements.clear();
-    part.report.figures.retain(|figure| figure.procedure.0 < ramps);
+    part.report.figures.retain(|figure| figure.procedures().all(|procedure| procedure.0 < ramps));
     Ok(part)
 }
 

@@ -1,6 +1,7 @@
 //! One run as it goes: the guarded rig, who watches, and the events so far. In: what procedures do. Out: events.
 //! It knows no procedure's physics.
 
+use super::escalate::most_moves;
 use super::shake;
 use super::stop::Stop;
 use super::storey_impact;
@@ -234,7 +235,8 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) => None,
         ProcedureKind::Impact(impact) => steps_of_blow(impact),
         ProcedureKind::Escalate(escalate) => {
-            Some(steps_of_blow(&escalate.blow)?.saturating_mul(escalate.velocities.len() as u64))
+            let blow = steps_of_blow(&escalate.blow)?.saturating_add(most_moves(escalate.between));
+            Some(blow.saturating_mul(escalate.velocities.len() as u64))
         }
         ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan),
         ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),

@@ -73,8 +73,9 @@ impl Shaking<'_> {
                 session.guard.pause(*pause)?;
                 session.guard.read()?
             };
-            let tracking = together(&monitors.take(solver.predict(&load), &reading));
-            let state = solver.complete(&reading.displacement, &reading.force);
+            solver.complete(&reading.displacement, &reading.force);
+            let state = solver.state();
+            let tracking = together(&monitors.take(&state.target, &reading, solver.taken(&reading.force)));
             let told = self.take(state, acceleration, tracking, session);
             self.watch.judge(told.tracking_energy_error, session);
             session.guard.check_energy_error(told.energy_error)?;

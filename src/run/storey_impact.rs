@@ -203,8 +203,9 @@ impl Striking<'_> {
                 session.guard.pause(*pause)?;
                 session.guard.read()?
             };
-            let tracking = monitors.take(solver.predict(&unloaded), &reading);
-            let (state, striker) = solver.complete(&reading.displacement, &reading.force);
+            solver.complete(&reading.displacement, &reading.force);
+            let (state, striker) = (solver.frame(), solver.striker());
+            let tracking = monitors.take(&state.target, &reading, solver.taken(&reading.force));
             let told = self.take(state, striker, tracking, session);
             self.watch.judge(told.tracking_energy_error, session);
             session.guard.check_energy_error(told.energy_error)?;

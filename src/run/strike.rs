@@ -53,7 +53,8 @@ impl Strike {
             session.guard.move_to(&[target], None)?;
             session.guard.pause(pause)?;
             let (measured, restoring_force) = session.read()?;
-            let tracking = monitor.take(target, measured, restoring_force);
+            let taken = solver.taken(measured, restoring_force);
+            let tracking = monitor.take_as(target, measured, restoring_force, taken);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;
             if solver.over(plan.until) {

@@ -14,7 +14,7 @@ use crate::quantity::display::readable;
 use crate::record::{EventKind, History, RampStep};
 
 /// Targets on the way, at most: a specimen that bends as it is expected to needs one or two.
-const MOST_TARGETS: u64 = 50;
+pub(super) const MOST_TARGETS: u64 = 50;
 /// A stiffness shown by a move is believed within this factor of the expected one.
 const BELIEVED: f64 = 4.0;
 /// Of the force at the start: as near to none as is asked for where nothing else bounds it.

@@ -59,7 +59,8 @@ const DIALECTS: &[Variant] = &[
     Variant::with("modbus", MODBUS, "Modbus RTU: moves and reads what has a register"),
     Variant::with(
         "nees",
-        &[Field::text("control_point", "what moves").required("\"MDL-00-01\"")],
+        &[Field::text("control_point", "what moves; of several axes one each, the lowest storey first, with commas between")
+            .required("\"MDL-00-01\"")],
         "NEES `LabVIEW plugin` text, psd as coordinator: moves, reads both",
     ),
 ];

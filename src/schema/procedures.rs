@@ -144,7 +144,7 @@ pub(super) const IMPACT: BlockKind = BlockKind {
     fields: &[
         Field::reference("striker", Kind::Striker, "what strikes").required("striker = pendulum"),
         SPECIMEN,
-        Field::count("storey", 1.0, 64.0, "the floor of a frame that is struck, from the ground up; a frame needs it"),
+        Field::count("storey", 1.0, 64.0, "the floor that is struck, from the ground up; a frame needs it").of_frames(),
         Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5").above_zero().or_said("the specimen's"),
         Field::quantity("stiffness", Dimension::STIFFNESS, "K0, before the first tangent").above_zero().required_on(
             RigKind::Real,
@@ -155,10 +155,11 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         Field::quantities(
             "damping_ratio",
             Dimension::NUMBER,
-            "of a frame, one: Rayleigh damping with this ratio in the first two modes; a list: each mode its own",
+            "one: Rayleigh damping with this ratio in the first two modes; a list: each mode its own",
         )
         .within(0.0, 1.0)
-        .or(0.0, ""),
+        .or(0.0, "")
+        .of_frames(),
         Field::choice("contact", CONTACTS, "contact law").or_said("rigid"),
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,

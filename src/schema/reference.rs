@@ -36,7 +36,11 @@ fn write_block(text: &mut String, block: &BlockKind) {
     let _ = writeln!(text, "{}\n", if block.procedure { " A procedure." } else { "" });
     let _ = writeln!(text, "| field | takes | if absent | |\n|---|---|---|---|");
     for field in block.fields.iter().filter(|field| field.available) {
-        let real = if field.real_rig_only { "; real rigs only" } else { "" };
+        let real = match (field.real_rig_only, field.of_frames) {
+            (true, _) => "; real rigs only",
+            (_, true) => "; of frames only",
+            _ => "",
+        };
         let _ = writeln!(text, "| `{}` | {} | {} | {}{real} |", field.name, takes(field), absent(field), field.doc);
     }
     let mut written = Vec::new();

@@ -9,7 +9,8 @@ pub(super) const REPORT: BlockKind = BlockKind {
     procedure: false,
     fields: &[
         Field::text("title", "title of the certificate").or_said("the plan's"),
-        Field::figures("figures", "what is drawn, each as `figure(procedure)`").or_said("every figure"),
+        Field::figures("figures", "what is drawn, each as `figure(procedure)`, or `figure(one, other)` for several on one chart")
+            .or_said("every figure"),
         Field::choices(
             "formats",
             &[

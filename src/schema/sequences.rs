@@ -52,11 +52,27 @@ const OWN: [Field; 6] = [
     Field::choice("inspect_between", TRUTH, "whether a person looks at the specimen between two blows").or_said("false"),
 ];
 
-const FIELDS: [Field; OWN.len() + IMPACT.fields.len()] = {
-    let mut all = [OWN[0]; OWN.len() + IMPACT.fields.len()];
-    let mut at = 0;
-    while at < all.len() {
-        all[at] = if at < OWN.len() { OWN[at] } else { IMPACT.fields[at - OWN.len()] };
+/// Fields of an impact that say something of one degree of freedom.
+const OF_ONE: usize = {
+    let (mut count, mut at) = (0, 0);
+    while at < IMPACT.fields.len() {
+        if !IMPACT.fields[at].of_frames {
+            count += 1;
+        }
+        at += 1;
+    }
+    count
+};
+
+const FIELDS: [Field; OWN.len() + OF_ONE] = {
+    let mut all = [OWN[0]; OWN.len() + OF_ONE];
+    let (mut at, mut next) = (0, 0);
+    while at < OWN.len() + IMPACT.fields.len() {
+        let field = if at < OWN.len() { OWN[at] } else { IMPACT.fields[at - OWN.len()] };
+        if !field.of_frames {
+            all[next] = field;
+            next += 1;
+        }
         at += 1;
     }
     all

@@ -70,6 +70,8 @@ pub struct Field {
     pub available: bool,
     /// Whether it says something of a real rig only, so that it has no use on a virtual one.
     pub real_rig_only: bool,
+    /// Whether it says something of a frame only.
+    pub of_frames: bool,
 }
 
 /// What a field takes.
@@ -226,7 +228,17 @@ impl BlockKind {
 
 impl Field {
     const fn new(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
-        Self { name, ty, need: Need::Optional, range: Range::ANY, example: "", doc, available: true, real_rig_only: false }
+        Self {
+            name,
+            ty,
+            need: Need::Optional,
+            range: Range::ANY,
+            example: "",
+            doc,
+            available: true,
+            real_rig_only: false,
+            of_frames: false,
+        }
     }
 
     pub(super) const fn of_type(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
@@ -307,6 +319,11 @@ impl Field {
 
     pub(super) const fn of_real_rigs(mut self) -> Self {
         self.real_rig_only = true;
+        self
+    }
+
+    pub(super) const fn of_frames(mut self) -> Self {
+        self.of_frames = true;
         self
     }
 

@@ -25,6 +25,7 @@ use crate::run::Parting;
 pub use crate::run::driven::Driven;
 use crate::run::driven::Specimen;
 use connection::{Broken, Connection};
+pub use nees::usual_names;
 
 /// How often a wait looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(100);
@@ -32,11 +33,10 @@ const LOOK: Duration = Duration::from_millis(100);
 /// What the client speaks.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Protocol {
-    Nees,
+    /// With the names of its control points, one an axis; none: of one axis, and any name is it.
+    Nees { control_points: Vec<String> },
     /// With the constant stiffness it is told, N/m: of n axes n·n numbers, row by row.
-    GenericClient {
-        stiffness: Vec<f64>,
-    },
+    GenericClient { stiffness: Vec<f64> },
 }
 
 /// How a session ended. The rig holds in every case.
@@ -175,7 +175,7 @@ pub fn session(
         Ok(()) => match Connection::new(stream, specimen.wait(LOOK), stop) {
             Err(error) => Ended::Lost(error.to_string()),
             Ok(mut connection) => match protocol {
-                Protocol::Nees => nees::session(&mut connection, specimen),
+                Protocol::Nees { control_points } => nees::session(&mut connection, specimen, control_points),
                 Protocol::GenericClient { stiffness } => generic_client::session(&mut connection, specimen, stiffness),
             },
         },

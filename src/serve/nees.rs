@@ -1,32 +1,38 @@
 //! The NEES "LabVIEW plugin" protocol, psd as the rig. In: a coordinator's connection. Out: motion through the guard, one
 //! answer a line. What a limit stands in the way of is refused when it is proposed, before anything moves.
 //!
-//! A rig of several axes is none for this protocol here. Any control point is taken for the one degree of freedom and echoed as it was written; control points of cameras and
-//! the like (`MDL-AUX`) move nothing. Answers end as the client ends its lines.
+//! Every axis is a control point with a name, of the form `MDL-00-01` or `MDL-00-01:floor`; on a rig of one axis any name is taken
+//! for it. One proposal may name several: they are proposed, refused, moved and settled together, and an axis that it does not
+//! name stays where it was sent last. Control points of cameras and the like (`MDL-AUX`) move nothing. Names and directions are echoed as they were
+//! written; answers end as the client ends its lines.
 
 use super::Ended;
 use super::connection::Connection;
-use super::nees_message::{self, Point, Refusal, Request, Why};
+use super::nees_message::{self, Refusal, Request, Why};
 use crate::rig::RigFault;
 use crate::run::driven::Specimen;
 
 /// Longest line taken, bytes.
 const LONGEST: usize = 4096;
 
-/// Serves a coordinator until one of the two has enough.
-pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>) -> Ended {
-    let axes = specimen.degrees_of_freedom();
-    if axes != 1 {
-        return Ended::Misspoken(format!("psd drives one control point for NEES, and this rig has {axes} axes"));
-    }
-    talk(connection, specimen).unwrap_or_else(|ended| ended)
+/// Serves a coordinator until one of the two has enough. `names` are the control points, one an axis; none: any is taken for the
+/// one axis.
+pub fn session(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, names: &[String]) -> Ended {
+    talk(connection, specimen, names).unwrap_or_else(|ended| ended)
+}
+
+/// What control points are called where nobody says: none where there is one axis.
+#[must_use]
+pub fn usual_names(axes: usize) -> Vec<String> {
+    if axes == 1 { Vec::new() } else { (1..=axes).map(|axis| format!("MDL-00-{axis:02}")).collect() }
 }
 
 /// What the coordinator and the rig have agreed on.
-#[derive(Default)]
-struct State {
+struct State<'a> {
     open: bool,
-    axis: String,
+    names: &'a [String],
+    /// The direction in which the client moved each control point, as it was written.
+    directions: Vec<String>,
     proposed: Option<Proposed>,
 }
 
@@ -47,8 +53,9 @@ impl From<String> for Answer {
     }
 }
 
-fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>) -> Result<Ended, Ended> {
-    let mut state = State { axis: "x".to_owned(), ..State::default() };
+fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, names: &[String]) -> Result<Ended, Ended> {
+    let directions = vec!["x".to_owned(); specimen.degrees_of_freedom()];
+    let mut state = State { open: false, names, directions, proposed: None };
     let mut begun: Vec<u8> = Vec::new();
     let mut buffer = [0; 1024];
     loop {
@@ -70,7 +77,11 @@ fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>) -> Res
     }
 }
 
-impl State {
+impl State<'_> {
+    fn place_of(&self, name: &str) -> Option<usize> {
+        if self.names.is_empty() { Some(0) } else { nees_message::place_of(self.names, name) }
+    }
+
     fn answer(&mut self, line: &str, specimen: &mut Specimen<'_, '_>) -> Answer {
         let answered = nees_message::parse(line).and_then(|request| self.request(&request, specimen));
         answered.unwrap_or_else(|refusal| refusal.line().into())
@@ -90,27 +101,24 @@ impl State {
             Request::Propose { transaction, points } => {
                 self.proposed = None;
                 let refused = |reason: &str| Refusal::new(Why::Message, transaction, reason);
-                let moving: Vec<&Point<'_>> = points.iter().filter(|point| !point.is_auxiliary()).collect();
-                match *moving.as_slice() {
-                    [] => {}
-                    [point] => {
-                        let [wish] = point.wishes.as_slice() else {
-                            return Err(refused("psd drives one degree of freedom"));
-                        };
-                        if wish.kind != "displacement" {
-                            return Err(refused("psd moves by displacement only"));
-                        }
-                        match specimen.propose(&[wish.value]) {
-                            Ok(()) => wish.axis.clone_into(&mut self.axis),
-                            Err(fault @ RigFault::LimitBreached { .. }) => {
-                                return Err(Refusal::new(Why::Limit, transaction, fault.to_string()));
-                            }
-                            Err(fault) => return Ok(failed(transaction, fault)),
-                        }
+                let wishes = nees_message::wishes(points, |name| self.place_of(name)).map_err(refused)?;
+                if !wishes.is_empty() {
+                    let mut targets = specimen.commanded().to_vec();
+                    for (axis, wish) in &wishes {
+                        targets[*axis] = wish.value;
                     }
-                    _ => return Err(refused("psd drives one control point")),
+                    match specimen.propose(&targets) {
+                        Ok(()) => {}
+                        Err(fault @ RigFault::LimitBreached { .. }) => {
+                            return Err(Refusal::new(Why::Limit, transaction, fault.to_string()));
+                        }
+                        Err(fault) => return Ok(failed(transaction, fault)),
+                    }
                 }
-                self.proposed = Some(Proposed { transaction: (*transaction).to_owned(), moves: !moving.is_empty() });
+                for (axis, wish) in &wishes {
+                    wish.axis.clone_into(&mut self.directions[*axis]);
+                }
+                self.proposed = Some(Proposed { transaction: (*transaction).to_owned(), moves: !wishes.is_empty() });
                 Ok(nees_message::done(transaction).into())
             }
             Request::Execute { transaction } => {
@@ -127,11 +135,14 @@ impl State {
                 Ok(nees_message::done(transaction).into())
             }
             Request::GetControlPoint { transaction, point } => {
+                let no_such = || Refusal::new(Why::Message, transaction, "no such control point");
+                let axis = self.place_of(point).ok_or_else(no_such)?;
                 if let Err(fault) = specimen.read() {
                     return Ok(failed(transaction, fault));
                 }
                 let felt = specimen.felt();
-                Ok(nees_message::control_point(transaction, point, &self.axis, felt.displacement[0], felt.force[0]).into())
+                let (displacement, force) = (felt.displacement[axis], felt.force[axis]);
+                Ok(nees_message::control_point(transaction, point, &self.directions[axis], displacement, force).into())
             }
             Request::Cancel { transaction } => {
                 if self.proposed.take_if(|proposed| proposed.transaction == *transaction).is_some() {

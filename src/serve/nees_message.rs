@@ -87,6 +87,37 @@ impl<'a> Refusal<'a> {
     }
 }
 
+/// The control point among `names` that a client means: by its whole name, or by what stands before a `:`.
+#[must_use]
+pub fn place_of(names: &[String], name: &str) -> Option<usize> {
+    let model = name.split(':').next();
+    names.iter().position(|known| known == name).or_else(|| names.iter().position(|known| Some(known.as_str()) == model))
+}
+
+/// What a proposal wants of each axis that it names: one displacement of one control point each, and of none twice. Nothing
+/// where it is for auxiliary devices alone. `place_of` finds a control point.
+///
+/// # Errors
+/// What of it cannot be done, for the client.
+pub fn wishes<'a>(
+    points: &[Point<'a>],
+    place_of: impl Fn(&str) -> Option<usize>,
+) -> Result<Vec<(usize, Wish<'a>)>, &'static str> {
+    let mut wishes: Vec<(usize, Wish<'a>)> = Vec::new();
+    for point in points.iter().filter(|point| !point.is_auxiliary()) {
+        let place = place_of(point.name).ok_or("no such control point")?;
+        let [wish] = *point.wishes.as_slice() else { return Err("a control point has one degree of freedom") };
+        if wish.kind != "displacement" {
+            return Err("a control point moves by displacement only");
+        }
+        if wishes.iter().any(|(other, _)| *other == place) {
+            return Err("a control point stands twice in it");
+        }
+        wishes.push((place, wish));
+    }
+    Ok(wishes)
+}
+
 /// Reads one line.
 ///
 /// # Errors

@@ -32,6 +32,9 @@ fn spring() -> VirtualRig {
     VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0)
 }
 
+/// One control point, whatever it is called.
+const NEES: Protocol = Protocol::Nees { control_points: Vec::new() };
+
 /// Serves the spring once while `client` talks, and gives what both say.
 #[expect(clippy::needless_pass_by_value, reason = "each test makes its own")]
 fn served<T: Send>(protocol: Protocol, limits: Limits, client: impl FnOnce(SocketAddr) -> T + Send) -> (T, Session) {
@@ -246,7 +249,7 @@ fn coordinator(address: SocketAddr, lines: &[&str]) -> Vec<String> {
 
 #[test]
 fn a_nees_session_refuses_a_proposal_beyond_a_limit_and_goes_on() {
-    let (answers, session) = served(Protocol::Nees, LIMITS, |address| {
+    let (answers, session) = served(NEES, LIMITS, |address| {
         let lines = [
             "propose\tt0\tMDL-00-01\tx\tdisplacement\t1.0E-03\n",
             "open-session\tOpenFresco\n",
@@ -295,7 +298,7 @@ fn a_nees_session_refuses_a_proposal_beyond_a_limit_and_goes_on() {
 #[test]
 fn a_nees_reading_beyond_a_limit_is_told_and_ends_the_session() {
     let limits = Limits { force: Interval { low: -2e3, high: 2e3 }, ..LIMITS };
-    let (answers, session) = served(Protocol::Nees, limits, |address| {
+    let (answers, session) = served(NEES, limits, |address| {
         coordinator(address, &["open-session\tc\n", "propose\tt1\tMDL-00-01\tx\tdisplacement\t0.01\n", "execute\tt1\n"])
     });
     assert!(answers[2].starts_with("NOT OK\t1\tt1\tforce 3 kN is outside"), "{answers:?}");
@@ -304,14 +307,14 @@ fn a_nees_reading_beyond_a_limit_is_told_and_ends_the_session() {
 
 #[test]
 fn a_line_without_end_is_not_gathered_for_ever_and_what_is_no_message_is_answered() {
-    let (closed, session) = served(Protocol::Nees, LIMITS, |address| {
+    let (closed, session) = served(NEES, LIMITS, |address| {
         let mut stream = TcpStream::connect(address).unwrap();
         // The other side may close before all is written.
         let _ = stream.write_all(&vec![b'A'; 100_000]);
         !matches!(stream.read(&mut [0; 8]), Ok(1..))
     });
     assert!(closed && matches!(session.ended, Ended::Misspoken(_)), "{session:?}");
-    let (answers, session) = served(Protocol::Nees, LIMITS, |address| coordinator(address, &["\u{1b}[2Jhello\n", "\n"]));
+    let (answers, session) = served(NEES, LIMITS, |address| coordinator(address, &["\u{1b}[2Jhello\n", "\n"]));
     assert!(answers.iter().all(|answer| answer.starts_with("NOT OK\t2\t")), "{answers:?}");
     assert_eq!(session, Session { ended: Ended::HungUp, driven: Driven::default() });
 }

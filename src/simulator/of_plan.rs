@@ -114,7 +114,7 @@ fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench, 
         Dialect::Mark10 => Box::new(Mark10::new(1.0)),
         Dialect::Mark10Gauge => Box::new(Mark10Gauge::new(1.0)),
         Dialect::Modbus(map) => Box::new(Modbus::new(*map)),
-        Dialect::Nees { control_point } => Box::new(Nees::new(control_point.as_str(), link.own_speed)),
+        Dialect::Nees { control_points } => Box::new(Nees::new(control_points.clone(), link.own_speed)),
     }
 }
 
@@ -246,7 +246,7 @@ move to_half {
             (Dialect::Mark10, b"p", "S"),
             (Dialect::Mark10Gauge, b"?\r\n", "N"),
             (Dialect::Modbus(map), &[1, 3, 0, 0, 0, 2, 0xc4, 0x0b], "\u{1}\u{3}\u{4}"),
-            (Dialect::Nees { control_point: "MDL-00-01".to_owned() }, b"open-session\tpsd\n", "OK\t0\t"),
+            (Dialect::Nees { control_points: vec!["MDL-00-01".to_owned()] }, b"open-session\tpsd\n", "OK\t0\t"),
         ];
         for (dialect, question, answer) in asked {
             let plan = plan(dialect.clone(), None);

@@ -188,13 +188,22 @@ fn a_session_on_a_frame_is_on_record_floor_by_floor() {
 }
 
 #[test]
-fn a_frame_is_none_for_a_nees_coordinator() {
+fn a_coordinator_drives_the_floors_of_a_frame() {
     let mut server = Server::start_on(FRAME, "nees");
     let mut client = server.connect();
-    client.read_to_string(&mut String::new()).unwrap();
+    let messages = "open-session\tc\npropose\tt1\tMDL-00-02\tx\tdisplacement\t0.003\tMDL-00-01\tx\tdisplacement\t0.001\n\
+        execute\tt1\nget-control-point\tt1\tMDL-00-01\nget-control-point\tt1\tMDL-00-02\nclose-session\tc\n";
+    client.write_all(messages.as_bytes()).unwrap();
+    let mut answers = String::new();
+    client.read_to_string(&mut answers).unwrap();
+    // V₂ = 2 MN/m · 2 mm, V₁ = 3 MN/m · 1 mm.
+    for floor in ["1.0000000000E-03\tx\tforce\t-1.0000000000E+03", "3.0000000000E-03\tx\tforce\t4.0000000000E+03"] {
+        assert!(answers.contains(floor), "{answers}");
+    }
     let (printed, code) = server.end();
-    assert!(printed.contains("psd drives one control point for NEES, and this rig has 2 axes"), "{printed}");
-    assert_eq!(code, 3);
+    assert!(code == 0 && printed.contains("targets: 1\n"), "{printed}");
+    let (told, code) = server.verified();
+    assert_eq!(code, 0, "{told}");
 }
 
 #[test]

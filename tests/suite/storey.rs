@@ -1,6 +1,7 @@
 //! An impact on one storey of a frame, from the text of a plan: against a frame that yields and was integrated by a method of
 //! its own, with one storey against the impact of one degree of freedom, and as a record that is enough.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -75,7 +76,8 @@ fn yielding_by(fields: &str, blows: &[&str]) -> Record {
         storeys.join(", ")
     );
     for name in blows {
-        text += &format!(
+        let _ = write!(
+            text,
             "impact {name} {{\n  striker = truck\n  storey = 2\n  contact = hertz(stiffness: {HERTZ} N/m^1.5)\n  duration = 0.4 s\n  until = duration\n{fields}\n}}\n"
         );
     }
@@ -145,6 +147,23 @@ fn a_frame_that_yields_is_the_one_of_central_differences() {
     assert!(coarse > 3.0 * fine, "{coarse} at 1 ms, {fine} at a quarter of it");
 }
 
+/// A run that ends on the way out has no peak, and one that ends in a blow has cut it; both are said.
+#[test]
+fn a_run_that_is_cut_says_what_is_missing() {
+    let cut = |duration: &str, contact: &str| {
+        let plan = format!(
+            "specimen post {{ storeys = [storey(mass: 1 kg, stiffness: 300 N/m)] }}\nstriker s {{\n  mass = 10 kg\n  velocity = 1 m/s\n}}\nimpact hit {{\n  striker = s\n  storey = 1\n  contact = {contact}\n  time_step = 1 ms\n  duration = {duration}\n}}\n"
+        );
+        record(&plan).events.into_iter().map(|event| event.text).collect::<Vec<_>>().join("; ")
+    };
+    // Joined, the two turn after a quarter of 2π√((M + Ms)/K) = 1.2032 s.
+    let early = cut("0.2 s", "restitution(0)");
+    assert!(early.contains("is not a peak") && early.contains("did not stop") && !early.contains("blow is cut"), "{early}");
+    // They stand still together, in contact.
+    let still = cut("0.5 s", "restitution(0)");
+    assert!(still.contains("blow is cut") && !still.contains("is not a peak"), "{still}");
+}
+
 /// A second blow meets the frame as the first one left it: bent, and with the memory of its storeys.
 #[test]
 fn a_second_blow_meets_the_damage_of_the_first() {
@@ -194,6 +213,8 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
 fn results_say_of_each_storey_what_the_balance_says_of_all() {
     let record = yielding("  time_step = 0.5 ms\n  damping_ratio = 2 %");
     let last = history(&record).blow.steps.last().expect("steps").energies;
+    // It ran past its peaks and past its blow: neither is cut.
+    assert!(record.events.is_empty(), "{:?}", record.events);
     let storeys: f64 = list(&record, "storey_energy").iter().sum();
     assert!((storeys - last.restoring).abs() < 1e-9 * last.restoring, "{storeys} and {}", last.restoring);
     let sum = last.striker + last.structure + last.restoring + last.damping + last.contact_loss + last.error;

@@ -7,6 +7,7 @@ mod clock;
 mod disk;
 mod ended;
 mod faults;
+mod floors;
 mod frame;
 mod golden;
 mod hand;

@@ -11,8 +11,8 @@ use rustix::process::Signal;
 use crate::stage::{Stage, code, signal, until};
 
 /// `psd rig serve` on a stage's rig, ready for clients.
-struct Served {
-    stage: Stage,
+pub struct Served {
+    pub stage: Stage,
     program: Child,
     stdout: BufReader<ChildStdout>,
     address: String,
@@ -27,11 +27,15 @@ impl Served {
         Self::start(script, "generic-client", &[])
     }
 
-    fn start(script: &str, protocol: &str, more: &[&str]) -> Self {
+    pub fn start(script: &str, protocol: &str, more: &[&str]) -> Self {
         let quick = |plan: &str| {
             plan.replace("reply_timeout: 2 s", "reply_timeout: 0.5 s").replace("watchdog   = 30 s", "watchdog   = 4 s")
         };
-        let stage = Stage::of(quick, script);
+        Self::start_on(Stage::of(quick, script), protocol, more)
+    }
+
+    /// The rig of a stage of its own.
+    pub fn start_on(stage: Stage, protocol: &str, more: &[&str]) -> Self {
         let mut command = stage.recorded_tool("serve", &["--protocol", protocol, "--listen", "127.0.0.1:0", "--yes"]);
         let told = std::fs::File::create(stage.path("serve.told")).unwrap();
         let mut program = command.args(more).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(told).spawn().unwrap();
@@ -45,7 +49,7 @@ impl Served {
         Self { stage, program, stdout, address }
     }
 
-    fn connect(&self) -> TcpStream {
+    pub fn connect(&self) -> TcpStream {
         let stream = TcpStream::connect(&self.address).unwrap();
         stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
         stream
@@ -57,7 +61,7 @@ impl Served {
     }
 
     /// Its end: the code, and what it printed. The rig is held, and the record proven.
-    fn ended(&mut self) -> (Option<i32>, String) {
+    pub fn ended(&mut self) -> (Option<i32>, String) {
         let code = code(&mut self.program);
         let mut printed = String::new();
         self.stdout.read_to_string(&mut printed).unwrap();
@@ -65,7 +69,7 @@ impl Served {
         (code, printed)
     }
 
-    fn held(&self) {
+    pub fn held(&self) {
         let requests = self.stage.requests();
         let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
         assert!(last(">STOP").max(last("!")) > last(">MOVE"), "not held: {requests:#?}");
@@ -86,13 +90,13 @@ impl Drop for Served {
 }
 
 /// A coordinator of the NEES protocol.
-struct Coordinator {
+pub struct Coordinator {
     lines: BufReader<TcpStream>,
     transactions: u32,
 }
 
 impl Coordinator {
-    fn come(served: &Served) -> Self {
+    pub fn come(served: &Served) -> Self {
         let mut coordinator = Self { lines: BufReader::new(served.connect()), transactions: 0 };
         assert_eq!(coordinator.ask("open-session\ttest"), "OK\t0\tsession opened");
         coordinator
@@ -102,7 +106,7 @@ impl Coordinator {
         self.lines.get_mut().write_all(format!("{line}\n").as_bytes()).unwrap();
     }
 
-    fn ask(&mut self, line: &str) -> String {
+    pub fn ask(&mut self, line: &str) -> String {
         self.send(line);
         let mut answer = String::new();
         self.lines.read_line(&mut answer).unwrap();
@@ -130,7 +134,7 @@ impl Coordinator {
         (words[6].parse().unwrap(), words[9].parse().unwrap())
     }
 
-    fn close(mut self) {
+    pub fn close(mut self) {
         assert_eq!(self.ask("close-session\ttest"), "OK\t0\tsession closed");
     }
 }

@@ -97,7 +97,13 @@ impl Stage {
 
     /// A stage with a plan of its own, and a script of faults.
     pub fn of(plan: impl Fn(&str) -> String, script: &str) -> Self {
+        Self::laid_out(plan, script, |_| {})
+    }
+
+    /// [`Self::of`] with more files in its folder.
+    pub fn laid_out(plan: impl Fn(&str) -> String, script: &str, files: impl FnOnce(&Path)) -> Self {
         let folder = tempfile::tempdir().unwrap();
+        files(folder.path());
         let port = folder.path().join("rig");
         fs::write(folder.path().join("plan.psd"), plan(&PLAN.replace("PORT", port.to_str().unwrap()))).unwrap();
         let mut stage = Self { folder, simulator: None, logs: 0 };
@@ -123,8 +129,8 @@ impl Stage {
         command.arg("--script").arg(self.path("script"));
         let told = File::create(self.path("simulator.told")).unwrap();
         self.simulator = Some(command.stdin(Stdio::null()).stderr(told).spawn().unwrap());
-        let (port, told) = (self.path("rig"), self.path("simulator.told"));
-        until("the simulator stands in", || port.exists() && fs::read_to_string(&told).unwrap().contains("stands in"));
+        let told = self.path("simulator.told");
+        until("the simulator stands in", || fs::read_to_string(&told).unwrap().contains("stands in"));
     }
 
     fn log_path(&self) -> PathBuf {

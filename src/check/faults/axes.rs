@@ -23,6 +23,18 @@ pub fn another_number(rig: &str, axes: usize, specimen: &str, storeys: usize, at
         .help(help)
 }
 
+pub fn control_points(points: usize, axes: usize, at: Span) -> Diagnostic {
+    let named = if points == 1 { "one control point".to_owned() } else { format!("{points} control points") };
+    let names: Vec<String> = (1..=axes.max(2)).map(|axis| format!("MDL-00-{axis:02}")).collect();
+    let help = format!(
+        "name one an axis, the lowest storey first, with commas between, as in `nees(\"{}\")`, and list as many `axes`",
+        names.join(", ")
+    );
+    Diagnostic::new(Code::AxesDiffer, format!("{named} cannot drive {}: every axis has its own", axes_of(axes)))
+        .at(at, named)
+        .help(help)
+}
+
 pub fn too_many(axes: usize, most: usize, dialect: &Dialect, alone: bool, at: Span) -> Diagnostic {
     let name = dialect.name();
     let text = if alone {
@@ -32,7 +44,7 @@ pub fn too_many(axes: usize, most: usize, dialect: &Dialect, alone: bool, at: Sp
     };
     Diagnostic::new(Code::TooManyAxes, text)
         .at(at, axes_of(axes))
-        .help("several axes need one controller behind one `link`, which moves them together: `native` does")
+        .help("several axes need one controller behind one `link`, which moves them together: `native` and `nees` do")
 }
 
 pub fn frame_on_one_axis(specimen: &str, storeys: usize, rig: &str, span: Span) -> Diagnostic {

@@ -4,6 +4,7 @@ use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Integrator;
 use crate::quantity::Dimension;
+use crate::quantity::display::significant;
 use crate::source::Span;
 
 pub fn law_needs_the_tangent(integrator: &str, named: Span, law: &str, struck: Span) -> Diagnostic {
@@ -46,4 +47,42 @@ pub fn damping_twice(computed: Span, felt: Span) -> Diagnostic {
         .at(computed, "computed here")
         .at(felt, "and felt here, at the speed of the actuator")
         .help("leave the procedure's damping out, or make it what the specimen's does not show: its damping is felt divided by the time scale")
+}
+
+/// A run that tracking would stop.
+pub struct Stops<'a> {
+    pub name: &'a str,
+    /// Energy error over the input energy, signed.
+    pub share: f64,
+    /// At which a run is held.
+    pub bound: f64,
+    /// Of each increment.
+    pub missed: f64,
+    /// Virtual time at which the bound is passed, s.
+    pub time: f64,
+    /// A step that is short enough, s; none where the force is corrected already.
+    pub shorter: Option<f64>,
+}
+
+pub fn tracking_stops(stops: &Stops, head: Span, link: Span) -> Diagnostic {
+    let percent = |share: f64| format!("{} %", significant(100.0 * share.abs(), 2));
+    let does = if stops.share < 0.0 { "into" } else { "out of" };
+    let Stops { name, share, bound, missed, time, shorter } = stops;
+    let message = format!(
+        "tracking would stop `{name}`: what the actuator misses would bring {} of its energy {does} the test, and a run is held at {}",
+        percent(*share),
+        percent(*bound)
+    );
+    let wider = format!("bear it: `tracking_energy_error = {}` in `limits`", percent(1.25 * share));
+    let help = match shorter {
+        Some(step) => format!(
+            "write `i_modification = true`, which corrects the force to the target; or take a `time_step` of at most {}; or {wider}",
+            shown(*step, Dimension::TIME)
+        ),
+        None => format!("take a `time_step` that is shorter, an actuator that misses less, or {wider}"),
+    };
+    Diagnostic::new(Code::TrackingStops, message)
+        .at(head, format!("held at about {}", shown(*time, Dimension::TIME)))
+        .at(link, format!("misses {} of each increment", percent(*missed)))
+        .help(help)
 }

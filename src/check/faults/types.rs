@@ -133,7 +133,7 @@ pub fn procedure_wanted(name: &str, span: Span) -> Diagnostic {
 pub fn figure_wanted(span: Span, text: &str) -> Diagnostic {
     Diagnostic::new(Code::WrongType, format!("`{text}` is not a figure of a procedure"))
         .at(span, "not a figure")
-        .help("a figure names its procedure, as in `energy(hit)`")
+        .help("a figure names its procedure, as in `energy(hit)`, or several, as in `displacement(first, second)`")
 }
 
 pub fn choice_wanted(field: &str, variants: &[Variant], span: Span, text: &str) -> Diagnostic {

@@ -11,11 +11,13 @@ use rayon::prelude::*;
 use super::check::{Finding, examine};
 use super::folder::{Folder, Held, MANIFEST};
 use super::keys::KnownKey;
-use super::rebuilt::Rebuilt;
+use super::rebuilt::{PlayedBack, Rebuilt};
 use super::signature::{self, Statement};
 use crate::cli::Exit;
-use crate::cli::record_file::JOURNAL;
+use crate::cli::provenance::{BUILD, TOOLCHAIN};
+use crate::cli::record_file::{self, JOURNAL};
 use crate::output::manifest_with;
+use crate::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 
 /// A few steps, and every kind of file.
 const PLAN: &str = r#"plan "A few steps" {
@@ -228,6 +230,43 @@ fn a_manifest_written_anew_hides_nothing() {
             assert!(unsigned_found.iter().any(|part| *part != "manifest"), "{name} at {at}: {unsigned_found:?}");
         }
     }
+}
+
+/// The record as another program would have begun it.
+fn of_another_build(journal: &[u8]) -> Vec<u8> {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join(JOURNAL);
+    let mut anew = Journal::create(Box::new(FileStorage::create(&path).unwrap()), Durability::Buffered);
+    for line in recover(journal).unwrap().lines {
+        let mut body = line.body.clone();
+        if line.kind == EntryKind::Header {
+            (body["build"], body["toolchain"]) = ("0".repeat(64).into(), "riscv64, another compiler".into());
+        }
+        anew.append(line.kind, &body).unwrap();
+    }
+    anew.promise().unwrap();
+    drop(anew);
+    std::fs::read(path).unwrap()
+}
+
+#[test]
+fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_report() {
+    let own = folder(run());
+    let journal = of_another_build(&run()[JOURNAL]);
+    let read = record_file::from_bytes(JOURNAL.as_ref(), &journal).unwrap();
+    let files = PlayedBack::of(read, None).unwrap().results().unwrap();
+    let page = files.iter().find(|file| file.path == "certificate.html").unwrap();
+    let page = String::from_utf8(page.bytes.clone()).unwrap();
+    assert!(page.contains(&"0".repeat(64)) && page.contains("riscv64, another compiler"));
+    assert!(!page.contains(BUILD) && !page.contains(TOOLCHAIN));
+    // And nothing else of the results knows of it.
+    let others = files.iter().filter(|file| !file.path.starts_with("certificate."));
+    let moved: Vec<&str> = others.filter(|file| run()[&file.path] != file.bytes).map(|file| file.path.as_str()).collect();
+    assert_eq!(moved, [""; 0]);
+    let told = Rebuilt::of(&with(&own, JOURNAL, Some(journal))).report.unwrap().other_build.unwrap();
+    assert!(told.contains("build 0000"), "{told}");
+    let page = String::from_utf8(run()["certificate.html"].clone()).unwrap();
+    assert!(page.contains(BUILD) && page.contains(TOOLCHAIN), "a run names the program that makes it");
 }
 
 fn rebuilt_of(folder: &Folder, signed: &Signed) -> Rebuilt {

@@ -155,7 +155,10 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
         ServedProtocol::Nees if given.is_some() => {
             Err(Failure::command_line("NEES has no question for a stiffness: `--stiffness` is for generic-client"))
         }
-        ServedProtocol::Nees => Ok(Protocol::Nees),
+        ServedProtocol::Nees => Ok(Protocol::Nees { control_points: control_points(arguments, plan)? }),
+        ServedProtocol::GenericClient if arguments.control_points.is_some() => {
+            Err(Failure::command_line("a generic client numbers its axes: `--control-points` is for nees"))
+        }
         ServedProtocol::GenericClient => {
             let specimen = VirtualRig::specimen_of(plan);
             if let Some(frame) = specimen.and_then(|specimen| specimen.frame.as_ref()) {
@@ -175,6 +178,21 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
             Ok(Protocol::GenericClient { stiffness: vec![stiffness] })
         }
     }
+}
+
+/// The names of the rig's axes, for a coordinator.
+fn control_points(arguments: &ServeArguments, plan: &Plan) -> Result<Vec<String>, Failure> {
+    let axes = plan.degrees_of_freedom();
+    let Some(given) = &arguments.control_points else { return Ok(serve::usual_names(axes)) };
+    let names: Vec<String> = given.split(',').map(|name| name.trim().to_owned()).collect();
+    let is_name = |name: &String| name.starts_with("MDL-") && name.bytes().all(|byte| byte.is_ascii_graphic());
+    let twice = names.iter().enumerate().any(|(at, name)| names[..at].contains(name));
+    if names.len() != axes || twice || !names.iter().all(is_name) {
+        let example: Vec<String> = (1..=axes).map(|axis| format!("MDL-00-{axis:02}")).collect();
+        return Err(Failure::command_line(format!("--control-points {given}: {axes} names that begin with MDL-, none twice"))
+            .help(format!("write them as \"{}\", the lowest storey first", example.join(", "))));
+    }
+    Ok(names)
 }
 
 /// `300 kN/m`, in N/m.

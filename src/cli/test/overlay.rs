@@ -40,8 +40,8 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
             let label = |which: &str, curve: &FigureCurve| {
                 if curve.label.is_empty() { which.to_owned() } else { format!("{which}: {}", curve.label) }
             };
-            curves.push(Curve { label: label("this run", new), points: new.line(), place: Some(2 * place) });
-            curves.push(Curve { label: label("blessed", old), points: old.line(), place: Some(2 * place + 1) });
+            curves.push(Curve { label: label("this run", new), points: new.line(), dots: new.dots, place: Some(2 * place) });
+            curves.push(Curve { label: label("blessed", old), points: old.line(), dots: new.dots, place: Some(2 * place + 1) });
         }
         if !curves.is_empty() {
             sheets.push((
@@ -80,12 +80,12 @@ fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> 
             let points = old.iter().zip(&new).map(|(old, new)| (new.0, new.1 - old.1)).collect();
             let label = "this run less the blessed".to_owned();
             let y = PlainAxis { name: format!("Difference of {column}"), ..y.clone() };
-            let curves = vec![Curve { label, points, place: Some(0) }];
+            let curves = vec![Curve { label, points, dots: false, place: Some(0) }];
             sheets.push((format!("{table}_{column}_difference"), Curves { x: x.clone(), y, curves }));
         }
         let curves = vec![
-            Curve { label: "this run".to_owned(), points: new, place: Some(0) },
-            Curve { label: "blessed".to_owned(), points: old, place: Some(1) },
+            Curve { label: "this run".to_owned(), points: new, dots: false, place: Some(0) },
+            Curve { label: "blessed".to_owned(), points: old, dots: false, place: Some(1) },
         ];
         sheets.push((format!("{table}_{column}"), Curves { x, y, curves }));
     }

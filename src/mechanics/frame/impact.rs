@@ -333,6 +333,12 @@ impl FrameImpactSolver {
         self.frame.state()
     }
 
+    /// What the recursion took for the forces at the targets of the last step, where `read` was read, N.
+    #[must_use]
+    pub fn taken<'a>(&'a self, read: &'a [f64]) -> &'a [f64] {
+        self.frame.taken(read)
+    }
+
     #[must_use]
     pub const fn striker(&self) -> &StrikerState {
         &self.now

@@ -264,6 +264,12 @@ impl FrameSolver {
         &self.state
     }
 
+    /// What the recursion took for the forces at the targets of the last step, where `read` was read, N.
+    #[must_use]
+    pub fn taken<'a>(&'a self, read: &'a [f64]) -> &'a [f64] {
+        if self.modification.is_some() { &self.felt } else { read }
+    }
+
     /// Contact force of the last step, N.
     pub(super) fn contact_force(&self) -> f64 {
         self.schemes.contact_force()

@@ -9,7 +9,8 @@ use super::text::Piece;
 use super::{Block, Document, Figure, Mark, Style, Table, Text};
 
 /// Only inline style and embedded pictures: a label that smuggled markup in would still load and run nothing.
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
+pub(in crate::output) const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
 /// The whole page.
 pub(in crate::output) fn html(document: &Document) -> String {

@@ -9,6 +9,7 @@ mod world;
 
 use serde::Serialize;
 
+pub(super) use html::POLICY;
 pub(super) use text::{Style, Text, printable};
 
 /// A whole report.

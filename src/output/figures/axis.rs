@@ -15,6 +15,9 @@ pub(super) struct Axis {
     pub factor: f64,
 }
 
+/// Share of an axis that a line covers.
+const TRIFLE: f64 = 0.004;
+
 impl Axis {
     /// An axis that holds every finite one of `values` (SI), with about `wanted` ticks.
     pub fn over(quantity: &Quantity, values: impl Iterator<Item = f64>, wanted: u32) -> Self {
@@ -29,6 +32,10 @@ impl Axis {
             // One value only: a range around it, so that it stands in the middle.
             let half = if high == 0.0 { 1.0 } else { 0.5 * high.abs() };
             (low, high) = (low - half, high + half);
+        }
+        // Less below zero than the width of a line is no reason for a tick there.
+        if quantity.from_zero && low < 0.0 && -low < TRIFLE * high {
+            low = 0.0;
         }
         let step = nice_step((high - low) / f64::from(wanted));
         let step = if quantity.end == End::Whole { step.max(1.0) } else { step };
@@ -96,6 +103,13 @@ mod tests {
         assert_eq!(Axis::over(&force, [2_300.0].into_iter(), 5).title, "Force (kN)");
         assert_eq!(labels(&Quantity::time(), 0.0, 0.0134), ["0", "5", "10"]);
         assert_eq!(labels(&Quantity::of("Share", Dimension::NUMBER), 0.0, 0.47), ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
+    }
+
+    #[test]
+    fn a_trifle_below_zero_has_no_tick_of_its_own() {
+        let energy = Quantity::of("Energy", Dimension::ENERGY);
+        assert_eq!(labels(&energy, -0.01, 5.0)[0], "0");
+        assert_eq!(labels(&energy, -0.1, 5.0)[0], "−2");
     }
 
     #[test]

@@ -123,6 +123,7 @@ impl Style {
 
 pub(super) const SOLID: &[f64] = &[];
 pub(super) const DASHED: &[f64] = &[9.0, 4.0];
+pub(super) const SPARSE: &[f64] = &[6.0, 9.0];
 pub(super) const DOTTED: &[f64] = &[2.0, 3.0];
 pub(super) const DASH_DOT: &[f64] = &[10.0, 3.5, 2.0, 3.5];
 pub(super) const LONG: &[f64] = &[16.0, 4.0];

@@ -58,6 +58,9 @@ pub struct FigureCurve {
     pub points: Vec<(f64, f64)>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corners: Vec<[(f64, f64); 2]>,
+    /// Drawn as dots that no line joins.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub dots: bool,
 }
 
 impl FigureCurve {
@@ -66,7 +69,7 @@ impl FigureCurve {
         let points: Vec<(f64, f64)> = points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
         let (label, count) = (label.to_owned(), points.len());
         if count <= WHOLE {
-            return Self { label, count, points, corners: Vec::new() };
+            return Self { label, count, points, corners: Vec::new(), dots: false };
         }
         let runs = || (0..RUNS).map(|run| &points[run * count / RUNS..(run + 1) * count / RUNS]);
         let corner = |run: &[(f64, f64)], pick: fn(f64, f64) -> f64| {
@@ -74,7 +77,7 @@ impl FigureCurve {
         };
         let corners = runs().map(|run| [corner(run, f64::min), corner(run, f64::max)]).collect();
         let firsts = runs().map(|run| run[0]).chain(points.last().copied()).collect();
-        Self { label, count, points: firsts, corners }
+        Self { label, count, points: firsts, corners, dots: false }
     }
 
     /// Everything that is kept, to be held against another.
@@ -130,7 +133,8 @@ impl Figures {
 /// What one chart plots.
 pub(super) fn of(figure: String, procedure: &str, chart: &Chart) -> FigureData {
     let axis = |quantity: &Quantity| FigureAxis { name: quantity.name.to_string(), unit: si_unit(quantity.dimension) };
-    let curve = |series: &Series| FigureCurve::of(&series.label, &series.points);
+    let curve =
+        |series: &Series| FigureCurve { dots: series.style.line.is_none(), ..FigureCurve::of(&series.label, &series.points) };
     let band = |band: &Band| FigureBand { label: band.label.to_owned(), intervals: band.intervals.clone() };
     FigureData {
         figure,

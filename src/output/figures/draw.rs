@@ -92,11 +92,18 @@ impl Sheet<'_> {
         Ok(())
     }
 
+    /// Levels at the ticks, and the lines of zero where it lies inside.
     fn grid(&self) -> Result<(), String> {
+        const ZERO: (Colour, f64) = ((150, 150, 150), 0.9);
+        if self.x.low < 0.0 && self.x.high > 0.0 {
+            let (colour, width) = ZERO;
+            let (x, _) = self.point((0.0, 0.0));
+            self.canvas.polyline(&[(x, self.top), (x, BOTTOM)], Line { width, dash: &[] }, colour)?;
+        }
         for (tick, _) in &self.y.ticks {
             let y = BOTTOM - (tick - self.y.low) / (self.y.high - self.y.low) * (BOTTOM - self.top);
             let zero_inside = *tick == 0.0 && self.y.low < 0.0;
-            let (colour, width) = if zero_inside { ((150, 150, 150), 0.9) } else { (GRID, 0.7) };
+            let (colour, width) = if zero_inside { ZERO } else { (GRID, 0.7) };
             self.canvas.polyline(&[(LEFT, y), (RIGHT, y)], Line { width, dash: &[] }, colour)?;
         }
         Ok(())

@@ -15,11 +15,13 @@ mod raster;
 mod relaxation;
 mod shake;
 mod storey;
+mod together;
 mod vector;
 
 use rayon::prelude::*;
 
 use super::{OutputError, Run};
+use crate::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
 use crate::record::{History, ProcedureRecord, ShakeHistory};
 use chart::Chart;
@@ -41,7 +43,7 @@ pub(super) struct Drawn {
 /// Every figure of the report that this record can draw, in the report's order. A procedure that was stopped before
 /// it recorded anything has no figure.
 pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
-    run.plan.report.figures.par_iter().filter_map(|figure| one(run, *figure)).collect()
+    run.plan.report.figures.par_iter().filter_map(|figure| one(run, figure)).collect()
 }
 
 /// What the figures of a report plot, in the report's order.
@@ -49,24 +51,35 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
 pub fn data(run: &Run<'_>) -> Figures {
     let one = |figure: &Figure| {
         let procedure = run.record.procedures.get(figure.procedure.0)?;
-        let (chart, _) = chart_of(run, procedure, *figure)?;
-        Some(data::of(format!("{}_{}", procedure.name, figure.kind.name()), &procedure.name, &chart))
+        let (chart, _) = chart_of(run, procedure, figure)?;
+        Some(data::of(name_of(run, figure), &procedure.name, &chart))
     };
     Figures { figures: run.plan.report.figures.iter().filter_map(one).collect(), ..Figures::default() }
 }
 
-fn one(run: &Run<'_>, figure: Figure) -> Option<Result<Drawn, OutputError>> {
+fn one(run: &Run<'_>, figure: &Figure) -> Option<Result<Drawn, OutputError>> {
     let procedure = run.record.procedures.get(figure.procedure.0)?;
     let (chart, caption) = chart_of(run, procedure, figure)?;
     let drawn = draw::png(&chart).and_then(|png| draw::svg(&chart).map(|svg| (png, svg)));
     Some(match drawn {
-        Ok((png, svg)) => Ok(Drawn { path: format!("figures/{}_{}", procedure.name, figure.kind.name()), png, svg, caption }),
+        Ok((png, svg)) => Ok(Drawn { path: format!("figures/{}", name_of(run, figure)), png, svg, caption }),
         Err(reason) => Err(OutputError::Figure { figure: figure.kind.name(), procedure: procedure.name.clone(), reason }),
     })
 }
 
+/// `hit_displacement`, or `paused-moving_displacement`: no name of a procedure has a hyphen.
+fn name_of(run: &Run<'_>, figure: &Figure) -> String {
+    let name = |procedure: ProcedureId| run.record.procedures.get(procedure.0).map(|procedure| procedure.name.as_str());
+    let names: Vec<&str> = figure.procedures().filter_map(name).collect();
+    format!("{}_{}", names.join("-"), figure.kind.name())
+}
+
 /// The chart and its caption; None where the procedure does not draw this figure or has no steps.
-fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Option<(Chart, String)> {
+fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Option<(Chart, String)> {
+    if !figure.beside.is_empty() {
+        let drawn: Vec<_> = figure.procedures().filter_map(|procedure| run.record.procedures.get(procedure.0)).collect();
+        return together::chart(figure.kind, &drawn);
+    }
     let name = &procedure.name;
     Some(match (&procedure.history, figure.kind) {
         (History::Impact(history), _) if history.steps.is_empty() => return None,
@@ -147,11 +160,11 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: Figure) -> Optio
 }
 
 /// The charts of a frame on moving ground; None before its first step.
-fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: Figure, kind: FigureKind) -> Option<(Chart, String)> {
+fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: &Figure, kind: FigureKind) -> Option<(Chart, String)> {
     if history.steps.is_empty() {
         return None;
     }
-    let limits = |result| impact::limits_on(run, figure.procedure, result);
+    let limits = |result| shake::of_size(impact::limits_on(run, figure.procedure, result));
     let chosen = if shake::is_chosen(&history.steps) { "; not every one is drawn" } else { "" };
     Some(match kind {
         FigureKind::Modes => (

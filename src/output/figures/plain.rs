@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::chart::{Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, SOLID, Series, Style, palette};
+use super::chart::{Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Marker, Quantity, SOLID, Series, Style, palette};
 use super::draw;
 use crate::quantity::Dimension;
 
@@ -18,6 +18,8 @@ pub struct PlainAxis {
 pub struct Curve {
     pub label: String,
     pub points: Vec<(f64, f64)>,
+    /// Drawn as dots that no line joins.
+    pub dots: bool,
     /// Of the runs, from 0: gives colour and dash. None: one of many, drawn pale.
     pub place: Option<usize>,
 }
@@ -59,7 +61,12 @@ impl Curves {
         let x_end = if self.x.dimension == Dimension::TIME { End::Data } else { End::Air };
         let series = |curve: &Curve| {
             let (colour, width, dash) = curve.place.map_or((palette::CLOUD, 1.0, SOLID), |place| STYLES[place % STYLES.len()]);
-            Series { label: curve.label.clone(), points: curve.points.clone(), style: Style::line(colour, width, dash) }
+            let style = match curve.place {
+                Some(place) if curve.dots && place % 2 == 1 => Style::marker(colour, Marker::Ring(3.0)),
+                _ if curve.dots => Style::marker(colour, Marker::Disc(2.0)),
+                _ => Style::line(colour, width, dash),
+            };
+            Series { label: curve.label.clone(), points: curve.points.clone(), style }
         };
         draw::png(&Chart {
             x: axis(&self.x, x_end),

@@ -87,6 +87,15 @@ pub(super) fn modes(modes: &Modes) -> Chart {
     }
 }
 
+/// Bounds on the size of what swings to both sides stand on both: the words at the first.
+pub(super) fn of_size(limits: Vec<Reference>) -> Vec<Reference> {
+    let both = |limit: Reference| {
+        let other = (limit.y != 0.0).then(|| Reference { label: String::new(), y: -limit.y });
+        std::iter::once(limit).chain(other)
+    };
+    limits.into_iter().flat_map(both).collect()
+}
+
 /// Whether not every floor is drawn, for the caption.
 pub(super) fn is_chosen<S: Floors>(steps: &[S]) -> bool {
     floors(steps) > MOST_CURVES

@@ -13,7 +13,7 @@ pub(super) fn chart(
     run: &Run<'_>,
     name: &str,
     history: &StoreyImpactHistory,
-    figure: Figure,
+    figure: &Figure,
     kind: FigureKind,
 ) -> Option<(Chart, String)> {
     if history.floors.is_empty() {

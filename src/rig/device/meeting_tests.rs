@@ -194,8 +194,8 @@ fn modbus_drives_of_every_kind_of_number() {
 
 #[test]
 fn a_nees_rig() {
-    let controller = Controller::new(Box::new(firmware::Nees::new("MDL-00-01", 0.001)));
-    let mut device = Nees::new(controller.talk(), "MDL-00-01".to_owned(), 5.0);
+    let controller = Controller::new(Box::new(firmware::Nees::new(vec!["MDL-00-01".to_owned()], 0.001)));
+    let mut device = Nees::new(controller.talk(), vec!["MDL-00-01".to_owned()], 5.0);
     goes_there_and_back(&mut device, &controller, 1e-12);
     let beyond = device.encode(&[0.07], 0.001).unwrap();
     let targets = controller.shared.lock().unwrap().bench.targets().len();

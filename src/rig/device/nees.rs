@@ -2,8 +2,10 @@
 //! Out: a proposal that the rig may refuse, its execution, the reading of the control point. The rig answers an
 //! execution when its motion is done, and hears nothing before: `start` waits that long. There is no stop out of band:
 //! holding is `cancel`, heard when the rig next listens. The protocol has no speed: the rig's own is to be below it.
+//! Several axes are several control points of one session: proposed, executed and refused together in one transaction, and
+//! asked for one after the other.
 
-use super::{Answer, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
+use super::{Answer, Channel, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
 use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::nees::{self, Reply};
@@ -15,26 +17,42 @@ const ANNOUNCED_STEPS: u32 = 1_000_000;
 
 pub struct Nees {
     talk: Talk,
-    control_point: String,
+    /// One an axis.
+    control_points: Vec<String>,
     /// Longest time that the rig takes to settle after its motion, s.
     settling: f64,
     /// Begins every transaction of this session, so that none is one of an earlier session.
     prefix: String,
     transactions: u64,
-    /// m
-    last: Option<f64>,
+    /// Where the axes were read last, m; nothing before.
+    last: Vec<f64>,
     /// The transaction that was sent to be executed and has not been answered.
     executing: Option<String>,
     open: bool,
 }
 
 impl Nees {
-    /// A control point is `MDL-00-01` or `MDL-00-01:name`; an execution is waited for twice as long as its way takes,
+    /// A control point is `MDL-00-01` or `MDL-00-01:name`, one an axis; an execution is waited for twice as long as its way takes,
     /// and `settling` s more.
     #[must_use]
-    pub const fn new(talk: Talk, control_point: String, settling: f64) -> Self {
+    pub const fn new(talk: Talk, control_points: Vec<String>, settling: f64) -> Self {
         let prefix = String::new();
-        Self { talk, control_point, settling, prefix, transactions: 0, last: None, executing: None, open: false }
+        let last = Vec::new();
+        Self { talk, control_points, settling, prefix, transactions: 0, last, executing: None, open: false }
+    }
+
+    /// Displacement and force at a control point, and the reply that says so.
+    fn ask(&mut self, control_point: &str) -> Result<(f64, f64, Vec<u8>), DeviceFault> {
+        let transaction = self.next_transaction();
+        let wait = self.talk.reply_timeout();
+        let question = nees::get_control_point(&transaction, control_point);
+        let (fields, raw) = self.request(&question, Some(&transaction), wait)?;
+        let measured = fields.get(1..).and_then(|fields| nees::measured(fields, control_point));
+        let (Some(displacement), Some(force)) = measured.map_or((None, None), |at| (at.displacement, at.force)) else {
+            let reason = "no displacement and force along x".to_owned();
+            return Err(DeviceFault::NoReading { raw, reason });
+        };
+        Ok((displacement, force, raw))
     }
 
     fn next_transaction(&mut self) -> String {
@@ -93,7 +111,7 @@ impl Nees {
 
 impl Device for Nees {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
-        if !nees::is_field(&self.control_point) {
+        if !self.control_points.iter().all(|name| nees::is_field(name)) {
             return Err(DeviceFault::Unfit("the name of a control point has no blanks and no control characters".to_owned()));
         }
         self.prefix = self.talk.clock().wall().unwrap_or_default().chars().filter(char::is_ascii_digit).collect();
@@ -105,18 +123,28 @@ impl Device for Nees {
         self.request(&nees::steps(&transaction, ANNOUNCED_STEPS), None, wait)?;
         self.sample()?;
         let model = said.first().filter(|text| !text.is_empty()).map_or_else(String::new, |text| format!(": {text}"));
-        Ok(DeviceIdentity { model: format!("NEES control point {}{model}", self.control_point), ..DeviceIdentity::default() })
+        let points = if self.control_points.len() == 1 { "control point" } else { "control points" };
+        let model = format!("NEES {points} {}{model}", self.control_points.join(", "));
+        Ok(DeviceIdentity { model, ..DeviceIdentity::default() })
+    }
+
+    fn axes(&self) -> usize {
+        self.control_points.len()
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
-        let target = one_axis(targets)?;
+        if targets.len() != self.control_points.len() {
+            let (points, targets) = (self.control_points.len(), targets.len());
+            return Err(DeviceFault::Unfit(format!("{targets} targets for {points} control points")));
+        }
         if !(speed > 0.0 && speed.is_finite()) {
             return Err(DeviceFault::Unfit(format!("nothing moves at {speed} m/s")));
         }
         let transaction = self.next_transaction();
-        let (proposal, target) = nees::propose(&transaction, &self.control_point, target)
-            .ok_or_else(|| DeviceFault::Unfit(format!("{target} m is no target")))?;
-        Ok(Move { frames: vec![proposal, nees::execute(&transaction)], targets: vec![target], speed, id: None })
+        let points: Vec<(&str, f64)> = self.control_points.iter().map(String::as_str).zip(targets.iter().copied()).collect();
+        let (proposal, targets) =
+            nees::propose(&transaction, &points).ok_or_else(|| DeviceFault::Unfit(format!("{targets:?} m are no targets")))?;
+        Ok(Move { frames: vec![proposal, nees::execute(&transaction)], targets, speed, id: None })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -128,7 +156,7 @@ impl Device for Nees {
         };
         let wait = self.talk.reply_timeout();
         self.request(proposal, Some(&transaction), wait)?;
-        let way = self.last.map_or(0.0, |last| (going.targets[0] - last).abs());
+        let way = going.targets.iter().zip(&self.last).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
         let motion = 2.0 * way / going.speed + self.settling.max(wait);
         self.executing = Some(transaction.clone());
         self.request(execution, Some(&transaction), motion)?;
@@ -137,25 +165,18 @@ impl Device for Nees {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let transaction = self.next_transaction();
-        let wait = self.talk.reply_timeout();
-        let question = nees::get_control_point(&transaction, &self.control_point);
-        let (fields, raw) = self.request(&question, Some(&transaction), wait)?;
-        let measured = fields.get(1..).and_then(|fields| nees::measured(fields, &self.control_point));
-        let (Some(displacement), Some(force)) = measured.map_or((None, None), |at| (at.displacement, at.force)) else {
-            let reason = "no displacement and force along x".to_owned();
-            return Err(DeviceFault::NoReading { raw, reason });
-        };
-        self.last = Some(displacement);
-        Ok(Sample {
-            time: None,
-            displacement: Some(displacement),
-            force: Some(Force::Newtons(force)),
-            moving: Some(self.executing.is_some()),
-            flags: Flags::default(),
-            raw: vec![raw],
-            others: Vec::new(),
-        })
+        let (mut channels, mut last, mut raw) = (Vec::new(), Vec::new(), Vec::new());
+        for control_point in self.control_points.clone() {
+            let (displacement, force, reply) = self.ask(&control_point)?;
+            let (displacement_read, force) = (Some(displacement), Some(Force::Newtons(force)));
+            channels.push(Channel { displacement: displacement_read, force, flags: Flags::default() });
+            last.push(displacement);
+            raw.push(reply);
+        }
+        self.last = last;
+        let others = channels.split_off(1.min(channels.len()));
+        let Channel { displacement, force, flags } = channels.pop().unwrap_or_default();
+        Ok(Sample { time: None, displacement, force, moving: Some(self.executing.is_some()), flags, others, raw })
     }
 
     /// Cancels what is being executed; at rest there is nothing to say.

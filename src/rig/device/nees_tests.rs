@@ -12,7 +12,7 @@ fn session() -> (Nees, ScriptedPort, VirtualClock, Wish) {
     let (clock, wish) = (VirtualClock::default(), Wish::default());
     let port = ScriptedPort::new(&clock);
     let talk = Talk::new(Box::new(port.clone()), Box::new(clock.clone()), T).heeding(wish.clone());
-    (Nees::new(talk, POINT.to_owned(), 5.0), port, clock, wish)
+    (Nees::new(talk, vec![POINT.to_owned()], 5.0), port, clock, wish)
 }
 
 fn after(seconds: f64, text: &str) -> Say {
@@ -149,6 +149,6 @@ fn targets_and_names_that_cannot_be_said_are_refused() {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     let talk = Talk::new(Box::new(port.clone()), Box::new(clock), T);
-    let mut rig = Nees::new(talk, "MDL\tx".to_owned(), 1.0);
+    let mut rig = Nees::new(talk, vec!["MDL\tx".to_owned()], 1.0);
     assert!(matches!(rig.identify(), Err(DeviceFault::Unfit(_))) && port.sent().is_empty());
 }

@@ -27,7 +27,7 @@ pub fn open(link: &DeviceLink, port: Box<dyn Port>, clock: Box<dyn Clock>, wish:
         Dialect::Mark10 => Box::new(Mark10::new(talk)),
         Dialect::Mark10Gauge => Box::new(Mark10Gauge::new(talk)),
         Dialect::Modbus(map) => Box::new(Modbus::new(talk, map, baud)),
-        Dialect::Nees { control_point } => Box::new(Nees::new(talk, control_point, settling)),
+        Dialect::Nees { control_points } => Box::new(Nees::new(talk, control_points, settling)),
     }
 }
 

@@ -43,12 +43,15 @@ pub fn steps(transaction: &str, steps: u32) -> Vec<u8> {
     line(&["set-parameter", transaction, "nstep", &steps.to_string()])
 }
 
-/// Proposes a displacement (m), and says what its bytes say. None where it is no number.
+/// Proposes a displacement (m) of every control point in one transaction, and says what its bytes say. None where one is no
+/// number.
 #[must_use]
-pub fn propose(transaction: &str, control_point: &str, displacement: f64) -> Option<(Vec<u8>, f64)> {
-    let written = ten_digits(displacement)?;
-    let said = number::scientific(written.as_bytes())?;
-    Some((line(&["propose", transaction, control_point, DIRECTION, "displacement", &written]), said))
+pub fn propose(transaction: &str, displacements: &[(&str, f64)]) -> Option<(Vec<u8>, Vec<f64>)> {
+    let written: Vec<String> = displacements.iter().map(|(_, value)| ten_digits(*value)).collect::<Option<_>>()?;
+    let said = written.iter().map(|written| number::scientific(written.as_bytes())).collect::<Option<_>>()?;
+    let points = displacements.iter().zip(&written);
+    let fields = points.flat_map(|((point, _), written)| [point, DIRECTION, "displacement", written.as_str()]);
+    Some((line(&["propose", transaction].into_iter().chain(fields).collect::<Vec<_>>()), said))
 }
 
 #[must_use]
@@ -138,9 +141,13 @@ mod tests {
 
     #[test]
     fn requests_are_those_of_the_specification() {
-        let (bytes, said) = propose("t1", "MDL-00-01", 0.001_25).unwrap();
+        let (bytes, said) = propose("t1", &[("MDL-00-01", 0.001_25)]).unwrap();
         assert_eq!(bytes, b"propose\tt1\tMDL-00-01\tx\tdisplacement\t1.2500000000E-03\n");
-        assert_eq!(said, 0.001_25);
+        assert_eq!(said, [0.001_25]);
+        let (bytes, said) = propose("t1", &[("MDL-00-01", 0.001_25), ("MDL-00-02", -0.5)]).unwrap();
+        let expected =
+            b"propose\tt1\tMDL-00-01\tx\tdisplacement\t1.2500000000E-03\tMDL-00-02\tx\tdisplacement\t-5.0000000000E-01\n";
+        assert_eq!((bytes.as_slice(), said.as_slice()), (expected.as_slice(), [0.001_25, -0.5].as_slice()));
         assert_eq!(execute("t1"), b"execute\tt1\n");
         assert_eq!(cancel("t1"), b"cancel\tt1\n");
         assert_eq!(get_control_point("t1", "MDL-00-01:top"), b"get-control-point\tt1\tMDL-00-01:top\n");
@@ -153,10 +160,10 @@ mod tests {
 
     #[test]
     fn a_target_is_what_its_eleven_digits_say() {
-        let (_, said) = propose("t", "p", 1.0 / 3.0).unwrap();
-        assert_eq!(said, 0.333_333_333_33);
+        let (_, said) = propose("t", &[("p", 1.0 / 3.0)]).unwrap();
+        assert_eq!(said, [0.333_333_333_33]);
         for none in [f64::NAN, f64::INFINITY] {
-            assert_eq!(propose("t", "p", none), None);
+            assert_eq!(propose("t", &[("p", 0.0), ("q", none)]), None);
         }
     }
 

@@ -27,6 +27,7 @@
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
 
 mod axes;
+mod control_points;
 mod device;
 mod gate;
 mod line;

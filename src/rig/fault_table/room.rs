@@ -56,7 +56,7 @@ fn no_rig_writes_more_than_was_reckoned() {
         ("grbl and scpi", with_cell(Dialect::Grbl, Some(Dialect::Scpi { newtons_per_unit: 1.0 }))),
         ("instron", with_cell(Dialect::Instron, None)),
         ("mark10", coarse(with_cell(Dialect::Mark10, None))),
-        ("nees", with_cell(Dialect::Nees { control_point: "MDL-00-01".to_owned() }, None)),
+        ("nees", with_cell(Dialect::Nees { control_points: vec!["MDL-00-01".to_owned()] }, None)),
     ];
     for (name, plan) in rigs {
         let ended = run(&plan, "");

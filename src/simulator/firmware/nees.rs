@@ -4,7 +4,8 @@
 //!
 //! Where the published words leave it open, this rig does so: nothing is answered `OK` before `open-session`, and a
 //! second `open-session` is refused; a control point may have a `:name` behind it; the axis is x; `cancel` during a
-//! motion holds the rig, its `execute` is then answered `NOT OK`; a reading may be asked for during a motion.
+//! motion holds the rig, its `execute` is then answered `NOT OK`; a reading may be asked for during a motion. A control point that
+//! a proposal does not name stays where it was sent.
 
 use super::line_buffer::LineBuffer;
 use crate::serve::nees_message::{self, Point, Refusal, Request, Why};
@@ -14,7 +15,8 @@ const AXIS: &str = "x";
 
 #[derive(Debug)]
 pub struct Nees {
-    control_point: String,
+    /// One a ram.
+    control_points: Vec<String>,
     /// m/s
     speed: f64,
     lines: LineBuffer,
@@ -27,17 +29,18 @@ struct Session {
     open: bool,
     /// The client ends its lines with CR LF.
     carriage_return: bool,
-    /// Transaction and target (m; None: it moves nothing).
-    proposed: Option<(String, Option<f64>)>,
+    /// Transaction and targets (m, one a ram; None: it moves nothing).
+    proposed: Option<(String, Option<Vec<f64>>)>,
     /// The transaction that is being carried out.
     executing: Option<String>,
 }
 
 impl Nees {
-    /// A rig with one control point that moves at `speed` (m/s). It refuses what lies outside the bench's limits.
+    /// A rig with a control point for each ram, of which the one with the farthest way moves at `speed` (m/s). It refuses what
+    /// lies outside the bench's limits.
     #[must_use]
-    pub fn new(control_point: impl Into<String>, speed: f64) -> Self {
-        Self { control_point: control_point.into(), speed, lines: LineBuffer::default(), session: Session::default() }
+    pub fn new(control_points: Vec<String>, speed: f64) -> Self {
+        Self { control_points, speed, lines: LineBuffer::default(), session: Session::default() }
     }
 
     /// The answers to one line.
@@ -67,7 +70,7 @@ impl Nees {
                     return Err(Refusal::new(Why::Order, transaction, "still moving"));
                 }
                 session.proposed = None;
-                let target = self.target(points, bench).map_err(|(why, reason)| Refusal::new(why, transaction, reason))?;
+                let target = self.targets(points, bench).map_err(|(why, reason)| Refusal::new(why, transaction, reason))?;
                 self.session.proposed = Some(((*transaction).to_owned(), target));
                 Ok(vec![nees_message::done(transaction)])
             }
@@ -76,21 +79,21 @@ impl Nees {
                 let Some((_, target)) = proposed else {
                     return Err(Refusal::new(Why::Order, transaction, "not the transaction that was proposed last"));
                 };
-                if let Some(target) = target {
-                    bench.go(target, self.speed);
+                if let Some(targets) = target {
+                    bench.go_as(None, &targets, self.speed);
                 }
                 session.executing = Some((*transaction).to_owned());
                 Ok(self.arrived(bench))
             }
             Request::GetControlPoint { transaction, point } => {
-                if !self.has(point) {
+                let Some(ram) = nees_message::place_of(&self.control_points, point) else {
                     return Err(Refusal::new(Why::Message, transaction, "no such control point"));
-                }
-                let (displacement, force) = (bench.displacement(), bench.force());
+                };
+                let (displacement, force) = (bench.displacement_of(ram), bench.force_of(ram));
                 let line = nees_message::control_point(transaction, point, AXIS, displacement, force);
                 // The force is the last word.
                 let (before, ordinary) = line.rsplit_once('\t').unwrap_or((&line, ""));
-                Ok(vec![format!("{before}\t{}", bench.shown_force(0, ordinary.to_owned()))])
+                Ok(vec![format!("{before}\t{}", bench.shown_force(ram, ordinary.to_owned()))])
             }
             Request::Cancel { transaction } => {
                 session.proposed.take_if(|(proposed, _)| proposed == transaction);
@@ -104,29 +107,27 @@ impl Nees {
         }
     }
 
-    fn has(&self, point: &str) -> bool {
-        point == self.control_point || point.split_once(':').is_some_and(|(model, _)| model == self.control_point)
-    }
-
-    /// Where the proposal goes, m; None: nowhere, it is for an auxiliary device.
-    fn target(&self, points: &[Point<'_>], bench: &mut Bench) -> Result<Option<f64>, (Why, &'static str)> {
-        if points.iter().all(Point::is_auxiliary) {
+    /// Where the proposal sends each ram, m; None: nowhere, it is for an auxiliary device.
+    fn targets(&self, points: &[Point<'_>], bench: &mut Bench) -> Result<Option<Vec<f64>>, (Why, &'static str)> {
+        let refused = |reason| (Why::Message, reason);
+        let place_of = |name: &str| nees_message::place_of(&self.control_points, name);
+        let wishes = nees_message::wishes(points, place_of).map_err(refused)?;
+        if wishes.iter().any(|(_, wish)| wish.axis != AXIS) {
+            return Err(refused("this rig knows the direction x only"));
+        }
+        if wishes.is_empty() {
             return Ok(None);
         }
-        let [point] = points else { return Err((Why::Message, "this rig has one control point")) };
-        if !self.has(point.name) {
-            return Err((Why::Message, "no such control point"));
+        let mut targets: Vec<f64> = (0..bench.rams()).map(|ram| bench.commanded_of(ram)).collect();
+        for (ram, wish) in &wishes {
+            targets[*ram] = wish.value;
         }
-        let [wish] = point.wishes.as_slice() else { return Err((Why::Message, "this rig has one degree of freedom")) };
-        if (wish.axis, wish.kind) != (AXIS, "displacement") {
-            return Err((Why::Message, "this rig knows the displacement along x only"));
+        let inside = targets.iter().enumerate().all(|(ram, target)| bench.limits_of(ram).contains(*target));
+        if inside {
+            return Ok(Some(targets));
         }
-        if bench.settings().limits.contains(wish.value) {
-            Ok(Some(wish.value))
-        } else {
-            bench.refuse(wish.value);
-            Err((Why::Limit, "beyond the limits of this rig"))
-        }
+        bench.refuse_all(&targets);
+        Err((Why::Limit, "beyond the limits of this rig"))
     }
 
     /// The answer to `execute`, once the motion is done.
@@ -172,7 +173,7 @@ mod tests {
     }
 
     fn opened() -> (Nees, Bench) {
-        let (mut rig, mut bench) = (Nees::new("MDL-00-01", 0.01), spring());
+        let (mut rig, mut bench) = (Nees::new(vec!["MDL-00-01".to_owned()], 0.01), spring());
         assert_eq!(said(&mut rig, &mut bench, "open-session\tpsd\n"), "OK\t0\tsession opened\n");
         (rig, bench)
     }

@@ -265,7 +265,7 @@ fn sweep_pairs(steps: &[SweepStep]) -> Vec<(f64, f64)> {
 
 fn plan() -> Plan {
     let constant = Formula::Constant;
-    let figure = |procedure, kind| Figure { kind, procedure: ProcedureId(procedure) };
+    let figure = |procedure, kind| Figure { kind, procedure: ProcedureId(procedure), beside: Vec::new() };
     let result =
         |procedure, name| Formula::Result(ResultReference { procedure: ProcedureId(procedure), name, part: Part::Value });
     let compare = |text: &str, value, limit, dimension| Condition {
