@@ -52,6 +52,14 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Op
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
     let shortfall = assumed.map_or(0.0, |assumed| behaves - assumed);
     let limit = longest_stable_step(impact.integrator, stiffest / mass, shortfall / mass);
+    if let (Integrator::AlphaOs { .. }, Some(assumed)) = (impact.integrator, assumed)
+        && behaves > assumed * (1.0 + 1e-9)
+        && step <= limit
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker.given(block, "stiffness").map_or(head, |(_, entry)| entry.value.span);
+        checker.faults.push(fault::stiffer_than_operator(at, behaves, assumed, limit));
+    }
     if step <= limit || impact.allow_unstable {
         return;
     }

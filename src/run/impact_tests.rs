@@ -198,3 +198,26 @@ fn an_input_can_be_an_earlier_result_with_its_uncertainty() {
     let (_, stiffness, _) = record.procedures[1].inputs.iter().find(|(name, ..)| *name == "stiffness").unwrap();
     assert_eq!((Some(stiffness.value), stiffness.uncertainty.is_some()), (number(&record, 0, "stiffness").0, true));
 }
+
+/// A table that stiffens from 300 to 900 N/m at 20 mm: the check knows the first, the run measures the second.
+#[test]
+fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
+    let stiffening = |integrator| {
+        let mut plan = plan(Impact { integrator, time_step: constant(0.002), ..super::testing::impact(constant(310.0)) });
+        let points = vec![[-0.1, -90.0], [-0.02, -6.0], [0.0, 0.0], [0.02, 6.0], [0.1, 78.0]];
+        let unloading = crate::plan::Unloading::AlongTheCurve;
+        let table = crate::plan::Table { file: "points.csv".to_owned(), points, unloading, scale: 1.0 };
+        plan.specimens[0].behaviour = Some(crate::plan::Behaviour::Table(table));
+        let record = run_unwatched(&plan);
+        record.events.into_iter().filter(|event| event.text.starts_with("W718")).collect::<Vec<_>>()
+    };
+    let remarks = stiffening(crate::plan::Integrator::AlphaOs { alpha: 0.0 });
+    assert_eq!(remarks.len(), 1, "{remarks:?}");
+    // The first secant across the corner, or after it; 2/√(590) s = 82 ms is left.
+    assert!(
+        remarks[0].text.contains("K_I = 310.0 N/m") && remarks[0].text.contains("is within (2.000 ms)"),
+        "{}",
+        remarks[0].text
+    );
+    assert!(stiffening(crate::plan::Integrator::Tangent).is_empty());
+}

@@ -8,6 +8,7 @@ use super::gliding::{Gliding, Passing};
 use super::session::Session;
 use super::shake::Setting;
 use super::shake_results::ShakeSummary;
+use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::triggers::Triggers;
 use super::watch::Watch;
@@ -56,8 +57,15 @@ impl Shaking<'_> {
         })?;
         let mut monitors = Monitors::new(&start, &reading);
         let mut at_rest = solver.state().clone();
-        at_rest.measured_displacement = reading.displacement;
+        at_rest.measured_displacement.clone_from(&reading.displacement);
         self.take(&at_rest, ground_at(0.0), Tracking::default(), session);
+        let mut stiffer = StifferStoreys::new(
+            &self.setting.properties.matrices,
+            plan.integrator,
+            *time_step,
+            session.guard.declared_noise(),
+            &reading,
+        );
         let mut gliding = match plan.mode {
             Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, *time_step)),
             Mode::StepAndPause => None,
@@ -73,6 +81,9 @@ impl Shaking<'_> {
                 session.guard.pause(*pause)?;
                 session.guard.read()?
             };
+            if gliding.is_none() {
+                stiffer.take(&reading, session);
+            }
             solver.complete(&reading.displacement, &reading.force);
             let state = solver.state();
             let tracking = together(&monitors.take(&state.target, &reading, solver.taken(&reading.force)));

@@ -10,6 +10,7 @@ use super::impact::{law, remark};
 use super::inputs::Inputs;
 use super::session::Session;
 use super::shake::{damping, steps_in};
+use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::storey_summary::{StoreySummary, of_floor, results};
 use super::triggers::Triggers;
@@ -188,6 +189,13 @@ impl Striking<'_> {
         let unloaded = vec![0.0; properties.matrices.order()];
         let mut solver = self.solver(plan, &start, &reading, &unloaded)?;
         let mut monitors = Monitors::new(&start, &reading);
+        let mut stiffer = StifferStoreys::new(
+            &self.setting.properties.matrices,
+            plan.integrator,
+            self.setting.time_step,
+            session.guard.declared_noise(),
+            &reading,
+        );
         let mut gliding = match plan.mode {
             Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, self.setting.time_step)),
             Mode::StepAndPause => None,
@@ -203,6 +211,9 @@ impl Striking<'_> {
                 session.guard.pause(*pause)?;
                 session.guard.read()?
             };
+            if gliding.is_none() {
+                stiffer.take(&reading, session);
+            }
             solver.complete(&reading.displacement, &reading.force);
             let (state, striker) = (solver.frame(), solver.striker());
             let tracking = monitors.take(&state.target, &reading, solver.taken(&reading.force));

@@ -5,6 +5,7 @@ use super::StepReport;
 use super::continuous;
 use super::impact::Setting;
 use super::session::Session;
+use super::stiffer::{Judged, Stiffer};
 use super::stop::Stop;
 use super::triggers::Triggers;
 use super::watch::Watch;
@@ -13,6 +14,7 @@ use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::mechanics::summary::SummaryBuilder;
 use crate::plan::{Impact, Mode};
 use crate::record::ImpactStep;
+use crate::rig::DeclaredNoise;
 
 pub(super) struct Strike {
     pub(super) setting: Setting,
@@ -48,6 +50,16 @@ impl Strike {
         let mut monitor = Monitor::new(start, measured, restoring_force);
         let first = ImpactState { measured_displacement: measured, ..*solver.state() };
         self.take(&first, monitor.tracking(), session);
+        let DeclaredNoise { force, resolution } = session.guard.declared_noise();
+        let judged = Judged {
+            integrator: plan.integrator,
+            operator_stiffness: input.operator_stiffness,
+            mobility: 1.0 / input.mass,
+            time_step: input.time_step,
+            // A quantum q is spread evenly over ±q/2.
+            noise: (force, resolution / 12_f64.sqrt()),
+        };
+        let mut stiffer = Stiffer::new(judged, (measured, restoring_force));
         for _ in 0..steps {
             let target = solver.predict();
             session.guard.move_to(&[target], None)?;
@@ -55,6 +67,7 @@ impl Strike {
             let (measured, restoring_force) = session.read()?;
             let taken = solver.taken(measured, restoring_force);
             let tracking = monitor.take_as(target, measured, restoring_force, taken);
+            stiffer.take((measured, restoring_force), "the specimen", session);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;
             if solver.over(plan.until) {

@@ -120,13 +120,15 @@ fn the_record_of_a_shake_is_enough() {
     let path = |name: &str| folder.path().join(name);
     let plans = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans");
     fs::create_dir(path("ground")).expect("a folder");
-    for file in ["two_storeys_yielding.psd", "ground/three_sines.csv"] {
+    fs::create_dir(path("lib")).expect("a folder");
+    for file in ["two_storeys_yielding.psd", "ground/three_sines.csv", "lib/two_actuator_frame.psd"] {
         fs::copy(plans.join(file), path(file)).expect("a copy");
     }
     let plan = path("two_storeys_yielding.psd");
     psd(&["run", plan.to_str().expect("UTF-8"), "--yes", "--out"], &path("run"));
     fs::remove_file(&plan).expect("removed");
     fs::remove_dir_all(path("ground")).expect("removed");
+    fs::remove_dir_all(path("lib")).expect("removed");
     psd(&["verify"], &path("run"));
     psd(&["report", path("run").to_str().expect("UTF-8"), "--out"], &path("again"));
     let read =

@@ -1,4 +1,4 @@
-//! Faults of how a run is integrated and driven: E64x and W71x.
+//! Faults of how a run is integrated and driven: E64x, W71x and W718.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -25,6 +25,17 @@ pub fn unstable(span: Span, integrator: Integrator, step: f64, limit: f64) -> Di
     Diagnostic::new(Code::Unstable, format!("the time step {step} is beyond the stability limit {longest}: {why}"))
         .at(span, format!("{step}, stable up to {longest}"))
         .help("write `time_step = critical / 20`; `allow_unstable = true` runs it all the same")
+}
+
+/// α-OS with a `K_I` (N/m) less than the specimen's stiffness, within the limit (s) that this leaves.
+pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f64) -> Diagnostic {
+    let (specimen, operator) = (shown(specimen, Dimension::STIFFNESS), shown(operator, Dimension::STIFFNESS));
+    let limit = shown(limit, Dimension::TIME);
+    let message =
+        format!("the specimen has {specimen}, more than the {operator} that α-OS splits with: it is stable up to {limit} only");
+    Diagnostic::new(Code::StifferThanOperator, message)
+        .at(span, format!("K_I = {operator}"))
+        .help("take the high end of what the ramp finds: a `stiffness` above the specimen's is stable for every step")
 }
 
 pub fn continuous_on_a_real_rig(span: Span) -> Diagnostic {

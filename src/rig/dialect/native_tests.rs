@@ -159,10 +159,10 @@ fn a_rig_says_how_many_axes_it_has_by_what_it_says_of_them() {
         let targets = vec!["0.500000"; targets].join(" ");
         hello(&words(&format!("PSD-BENCH 0042 1.3 {} 120.000000 3 {targets}", limits.join(" "))))
     };
-    for axes in 1..=MOST_AXES {
+    for (axes, metres) in (1..=MOST_AXES).zip((1..=6).map(|axes| f64::from(axes) / 1e3)) {
         let rig = said(axes, axes).unwrap();
         assert_eq!((rig.bounds.axes.len(), rig.last.unwrap().targets.len()), (axes, axes));
-        assert_eq!(rig.bounds.axes[axes - 1].displacement.high, axes as f64 / 1e3);
+        assert_eq!(rig.bounds.axes[axes - 1].displacement.high, metres);
     }
     assert_eq!((said(2, 1), said(2, 3), said(1, 2), said(0, 0)), (None, None, None, None));
     assert_eq!(said(MOST_AXES + 1, MOST_AXES + 1), None, "no reply may be so long");

@@ -1,0 +1,166 @@
+//! Whether a specimen is stiffer than its integrator takes it for (physics, section 11): α-OS is stable for every step only while
+//! the specimen is not stiffer than its `K_I`. In: what is imposed and read, step by step. Out: one remark. It stops nothing.
+
+use super::session::Session;
+use crate::diagnostic::Code;
+use crate::mechanics::frame::{FrameMatrices, drifts, shears, storeys_of};
+use crate::mechanics::method::longest_stable_step;
+use crate::plan::Integrator;
+use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::record::EventKind;
+use crate::rig::{DeclaredNoise, Reading};
+
+/// A secant tells where its change of displacement is this many times what noise and quanta make of it, and is believed beyond
+/// `K_I` by so many of its standard deviations: fewer, and the noise of many steps becomes a stiffness.
+const SURE: f64 = 5.0;
+
+/// What a step of one spring, or of one storey, is judged by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Judged {
+    pub integrator: Integrator,
+    /// `K_I`, N/m
+    pub operator_stiffness: f64,
+    /// 1/M of one degree of freedom; of a storey the sum of 1/M of the floors it joins, 1/kg.
+    pub mobility: f64,
+    /// s
+    pub time_step: f64,
+    /// Standard deviation of a force, N, and of a displacement, m.
+    pub noise: (f64, f64),
+}
+
+#[derive(Debug)]
+pub(super) struct Stiffer {
+    judged: Judged,
+    last: (f64, f64),
+    said: bool,
+}
+
+impl Stiffer {
+    /// `first` is what was read before the first step, m and N.
+    pub(super) const fn new(judged: Judged, first: (f64, f64)) -> Self {
+        Self { judged, last: first, said: false }
+    }
+
+    /// Takes a reading, m and N; says once that the specimen is stiffer than `K_I`. `what` names it.
+    pub(super) fn take(&mut self, reading: (f64, f64), what: &str, session: &mut Session<'_>) {
+        let text = self.judge(reading, what);
+        if let Some(text) = text {
+            session.event(EventKind::Remark, text);
+        }
+    }
+
+    fn judge(&mut self, reading: (f64, f64), what: &str) -> Option<String> {
+        let Judged { integrator, operator_stiffness, mobility, time_step, noise } = self.judged;
+        if !matches!(integrator, Integrator::AlphaOs { .. }) || self.said {
+            return None;
+        }
+        let (moved, gained) = (reading.0 - self.last.0, reading.1 - self.last.1);
+        self.last = reading;
+        let measured = gained / moved;
+        let spread = std::f64::consts::SQRT_2 * noise.0.hypot(measured * noise.1) / moved.abs();
+        // Rounding makes a secant of a move too small to tell.
+        let rounding = 1e-9 * operator_stiffness;
+        let tells = measured.is_finite() && moved.abs() > SURE * noise.1;
+        if !tells || measured - operator_stiffness <= SURE * spread + rounding {
+            return None;
+        }
+        self.said = true;
+        let limit = longest_stable_step(integrator, 0.0, (measured - operator_stiffness) * mobility);
+        let stiffness = |value| readable(value, Dimension::STIFFNESS);
+        let time = |value| readable(value, Dimension::TIME);
+        let so = if time_step > limit { "which it is beyond" } else { "which it is within" };
+        Some(format!(
+            "{}: {what} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
+            Code::StifferThanOperator,
+            stiffness(measured),
+            stiffness(operator_stiffness),
+            time(limit),
+            time(time_step),
+        ))
+    }
+}
+
+/// Every storey of a frame, by its shear and drift; none of a frame that has no storeys. A storey alone that is stiffer by ΔK makes
+/// M⁻¹(K − `K_I`) a matrix of rank one, whose frequency is ΔK over the masses it joins.
+pub(super) struct StifferStoreys(Vec<(String, Stiffer)>);
+
+impl StifferStoreys {
+    pub(super) fn new(
+        matrices: &FrameMatrices,
+        integrator: Integrator,
+        time_step: f64,
+        noise: DeclaredNoise,
+        first: &Reading,
+    ) -> Self {
+        let storeys = storeys_of(&matrices.stiffness).unwrap_or_default();
+        let (drift, shear) = drifts_and_shears(first);
+        let floor = |floor: usize| 1.0 / matrices.mass.entry(floor, floor);
+        let count = storeys.len();
+        let judged = |(storey, operator_stiffness): (usize, f64)| {
+            #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+            let above = (count - storey) as f64;
+            // A shear is the sum of the cells above; a drift the difference of two places. A quantum q is spread over ±q/2.
+            let place = noise.resolution / 12_f64.sqrt() * if storey == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+            let judged = Judged {
+                integrator,
+                operator_stiffness,
+                mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
+                time_step,
+                noise: (noise.force * above.sqrt(), place),
+            };
+            (format!("storey {}", storey + 1), Stiffer::new(judged, (drift[storey], shear[storey])))
+        };
+        Self(storeys.into_iter().enumerate().map(judged).collect())
+    }
+
+    pub(super) fn take(&mut self, reading: &Reading, session: &mut Session<'_>) {
+        if self.0.is_empty() {
+            return;
+        }
+        let (drift, shear) = drifts_and_shears(reading);
+        for ((name, storey), reading) in self.0.iter_mut().zip(drift.into_iter().zip(shear)) {
+            storey.take(reading, name, session);
+        }
+    }
+}
+
+fn drifts_and_shears(reading: &Reading) -> (Vec<f64>, Vec<f64>) {
+    let (mut drift, mut shear) = (vec![0.0; reading.displacement.len()], vec![0.0; reading.force.len()]);
+    drifts(&reading.displacement, &mut drift);
+    shears(&reading.force, &mut shear);
+    (drift, shear)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn judged(noise: (f64, f64)) -> Judged {
+        let integrator = Integrator::AlphaOs { alpha: 0.0 };
+        Judged { integrator, operator_stiffness: 300.0, mobility: 0.5, time_step: 0.1, noise }
+    }
+
+    /// 500 N/m on 2 kg: 2√(2/200) s = 0.2 s.
+    #[test]
+    fn a_stiffer_specimen_is_said_once_with_the_limit_that_is_left() {
+        let mut stiffer = Stiffer::new(judged((0.0, 0.0)), (0.0, 0.0));
+        assert_eq!(stiffer.judge((0.001, 0.3), "the specimen"), None, "as stiff as K_I");
+        assert_eq!(stiffer.judge((0.001, 0.3), "the specimen"), None, "no move");
+        let text = stiffer.judge((0.002, 0.8), "the specimen").expect("a remark");
+        assert!(text.contains("500.0 N/m measured against K_I = 300.0 N/m") && text.contains("up to 0.2000 s"), "{text}");
+        assert!(text.starts_with("W718") && text.contains("within (0.1000 s)"), "{text}");
+        assert_eq!(stiffer.judge((0.003, 1.5), "the specimen"), None, "once");
+        let tangent = Judged { integrator: Integrator::Tangent, ..judged((0.0, 0.0)) };
+        assert_eq!(Stiffer::new(tangent, (0.0, 0.0)).judge((0.001, 9.0), "the specimen"), None);
+    }
+
+    /// 0.1 N and 1 µm over 1 mm: a secant of 360 N/m has a deviation of 142 N/m; five of them are not 60.
+    #[test]
+    fn noise_is_no_stiffness() {
+        let mut stiffer = Stiffer::new(judged((0.1, 1e-6)), (0.0, 0.0));
+        assert_eq!(stiffer.judge((0.001, 0.36), "the specimen"), None);
+        assert_eq!(stiffer.judge((0.001_004, 0.5), "the specimen"), None, "a move of four quanta tells nothing");
+        assert!(stiffer.judge((0.02, 8.0), "the specimen").is_some(), "395 N/m over 19 mm");
+    }
+}
