@@ -211,6 +211,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         particulars,
         report: report?,
         golden: golden?,
+        rehearses: None,
         files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),
     };

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::evidence::{Folder, MANIFEST};
 use super::exit::{Exit, Failure};
 use super::output::tell;
+use super::rehearse;
 use super::run_folder::write_new;
 use super::settings::Settings;
 use crate::output::{self, OutputError, OutputFile, Provenance, Run};
@@ -57,6 +58,8 @@ pub fn made_of(
     if let Some(steps) = driven {
         return Ok(vec![output::driven(steps)?]);
     }
+    let prediction = rehearse::prediction(plan, record);
+    let provenance = &Provenance { prediction, ..provenance.clone() };
     let mut files = output::everything(&Run { plan, record, assessment, provenance })?;
     files.retain(|file| file.path != MANIFEST);
     Ok(files)

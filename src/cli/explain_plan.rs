@@ -11,10 +11,10 @@ use super::explain_tracking;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
-use crate::output::behaviour;
-use crate::plan::{Interval, Link, Plan, ProcedureKind, VirtualLink};
+use crate::output::{PredictedLimit, PredictedProcedure, PredictedRequirement, Prediction, behaviour};
+use crate::plan::{Interval, Limits, Link, Plan, ProcedureKind, VirtualLink};
 use crate::quantity::Dimension;
-use crate::quantity::display::{digits, join, readable, significant, stated, unit};
+use crate::quantity::display::{digits, join, readable, si_unit, significant, stated, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
 use crate::verdict::{self, Assessment};
 
@@ -136,16 +136,8 @@ impl<'a> DryRun<'a> {
         }
         section("Limits", self.limits());
         section("Requirements, as predicted", self.requirements());
-        match &self.record.outcome {
-            Outcome::Completed => {}
-            Outcome::Aborted { reason } => {
-                let place = self.stopped_in();
-                let told = format!("The run would be stopped{place}: {}", escape(reason));
-                let _ = writeln!(text, "{}", settings.paint_heading(&told));
-            }
-            Outcome::Faulted { reason } => {
-                let _ = writeln!(text, "{}", settings.paint_heading(&format!("The rig would fail: {}", escape(reason))));
-            }
+        if let Some(stopped) = self.stopped() {
+            let _ = writeln!(text, "{}", settings.paint_heading(&stopped));
         }
         text
     }
@@ -183,9 +175,8 @@ impl<'a> DryRun<'a> {
         rows
     }
 
-    /// One row a limit: the bound, how far the dry run went, what is left.
-    fn limits(&self) -> Vec<Vec<String>> {
-        let limits = &self.plan.limits;
+    /// Every limit by the name of its field, and how far the dry run went.
+    fn reached(&self, limits: &Limits) -> [(&'static str, Interval, Dimension, Option<Interval>); 8] {
         let over = |pick: fn(&Reach) -> Interval| {
             let moved = self.reaches.iter().filter(|reach| reach.moved).map(pick);
             moved.reduce(|a, b| Interval { low: a.low.min(b.low), high: a.high.max(b.high) })
@@ -194,22 +185,72 @@ impl<'a> DryRun<'a> {
             let largest = self.reaches.iter().filter(|reach| reach.moved).map(pick).reduce(f64::max);
             largest.map(|high| Interval { low: 0.0, high })
         };
-        let all = [
-            ("displacement", limits.displacement, Dimension::LENGTH, over(|reach| reach.displacement)),
-            ("force", limits.force, Dimension::FORCE, over(|reach| reach.force)),
-            ("speed", limits.speed, Dimension::VELOCITY, size(|reach| reach.speed)),
-            ("increment", limits.increment, Dimension::LENGTH, size(|reach| reach.increment)),
-            ("tracking error", limits.tracking_error, Dimension::LENGTH, size(|reach| reach.tracking_error)),
-            ("energy error", limits.energy_error, Dimension::NUMBER, self.largest("energy_error")),
-            ("tracking energy error", limits.tracking_energy_error, Dimension::NUMBER, self.largest("tracking_energy_error")),
-            ("NRMS tracking error", limits.nrms_error, Dimension::NUMBER, self.largest("nrms_error")),
-        ];
+        limits.named().map(|(name, allowed, dimension)| {
+            let reached = match name {
+                "displacement" => over(|reach| reach.displacement),
+                "force" => over(|reach| reach.force),
+                "speed" => size(|reach| reach.speed),
+                "increment" => size(|reach| reach.increment),
+                "tracking_error" => size(|reach| reach.tracking_error),
+                error => self.largest(error),
+            };
+            (name, allowed, dimension, reached)
+        })
+    }
+
+    /// The same as data, with the limits as the guard will hold them.
+    pub fn prediction(&self) -> Prediction {
+        let ends = |interval: Interval| [interval.low, interval.high];
+        let finite = |end: f64| Some(end).filter(|end| end.is_finite());
+        let procedures = self.reaches.iter().map(|reach| PredictedProcedure {
+            name: reach.name.clone(),
+            kind: reach.keyword.clone(),
+            steps: reach.steps,
+            rig_time_s: reach.ended - reach.started,
+            displacement_m: reach.moved.then(|| ends(reach.displacement)),
+            force_n: (reach.moved && reach.force.low.is_finite()).then(|| ends(reach.force)),
+            speed_m_per_s: reach.moved.then_some(reach.speed),
+            increment_m: reach.moved.then_some(reach.increment),
+        });
+        let held = self.reached(&self.plan.limits.held()).into_iter().filter(|(_, allowed, ..)| allowed.is_bounded());
+        let limits = held.map(|(name, allowed, dimension, reached)| PredictedLimit {
+            quantity: name.to_owned(),
+            unit: si_unit(dimension),
+            low: finite(allowed.low),
+            high: finite(allowed.high),
+            reached: reached.filter(|reached| reached.low.is_finite()).map(ends),
+            margin: reached.and_then(|reached| finite(left(name, allowed, reached))),
+        });
+        let required = self.assessment.requirements.iter();
+        Prediction {
+            model: self.model.clone(),
+            stopped: self.stopped(),
+            procedures: procedures.collect(),
+            limits: limits.collect(),
+            requirements: required
+                .map(|each| PredictedRequirement { name: each.label.clone(), verdict: each.verdict.name() })
+                .collect(),
+        }
+    }
+
+    /// What would end the run early.
+    fn stopped(&self) -> Option<String> {
+        match &self.record.outcome {
+            Outcome::Completed => None,
+            Outcome::Aborted { reason } => Some(format!("The run would be stopped{}: {}", self.stopped_in(), escape(reason))),
+            Outcome::Faulted { reason } => Some(format!("The rig would fail: {}", escape(reason))),
+        }
+    }
+
+    /// One row a limit: the bound, how far the dry run went, what is left.
+    fn limits(&self) -> Vec<Vec<String>> {
         let mut rows = vec![row(["limit", "allowed", "reached", "margin"])];
-        for (name, allowed, dimension, reached) in all {
+        for (name, allowed, dimension, reached) in self.reached(&self.plan.limits) {
             if allowed.is_bounded() {
-                let margin = reached.map_or_else(|| "–".to_owned(), |reached| margin(name, allowed, reached, dimension));
+                let name = if name == "nrms_error" { "NRMS tracking error".to_owned() } else { name.replace('_', " ") };
+                let margin = reached.map_or_else(|| "–".to_owned(), |reached| margin(&name, allowed, reached, dimension));
                 rows.push(vec![
-                    name.to_owned(),
+                    name,
                     span(allowed, dimension),
                     reached.map_or_else(|| "–".to_owned(), |reached| span(reached, dimension)),
                     margin,
@@ -287,6 +328,12 @@ fn impact(history: &ImpactHistory) -> Vec<Vec<String>> {
         row(["peak contact force", &peak(|step| step.contact_force, Dimension::FORCE)]),
         row(["peak velocity of the structure", &peak(|step| step.velocity, Dimension::VELOCITY)]),
     ]
+}
+
+/// What is left to the nearer end; negative: past it. What is a size has one end.
+fn left(name: &str, allowed: Interval, reached: Interval) -> f64 {
+    let above = allowed.high - reached.high;
+    if ["displacement", "force"].contains(&name) { above.min(reached.low - allowed.low) } else { above }
 }
 
 /// `0 .. 1.000 mm`: both ends in the unit that suits the larger one.
@@ -395,6 +442,7 @@ mod tests {
             decision_rule: crate::plan::DecisionRule::Simple,
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
             golden: crate::plan::Golden::default(),
+            rehearses: None,
             files: Vec::new(),
             settings: Vec::new(),
         }

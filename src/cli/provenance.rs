@@ -31,6 +31,7 @@ pub fn of(plan: &Plan) -> Provenance {
         date,
         real: None,
         equipment: None,
+        prediction: None,
         amends: None,
     }
 }
@@ -105,6 +106,7 @@ mod tests {
             decision_rule: DecisionRule::Simple,
             report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
             golden: crate::plan::Golden::default(),
+            rehearses: None,
             files: files.iter().map(own).map(|(name, text)| PlanFile { name, text }).collect(),
             settings: settings.iter().map(own).collect(),
         }

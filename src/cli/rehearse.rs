@@ -11,9 +11,11 @@ use super::run::{Ran, on_its_rig, summary};
 use super::settings::Settings;
 use super::watch::Attendance;
 use crate::diagnostic::excerpt::escape;
+use crate::output::Prediction;
 use crate::plan::{Behaviour, Frame, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
+use crate::record::{Outcome, Record};
 use crate::rig::VirtualRig;
 use crate::run::rehearsal;
 
@@ -40,6 +42,14 @@ pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, 
         Format::Json => give(&String::from_utf8_lossy(summary(&files)))?,
     }
     Ok(exit.max(predicted))
+}
+
+/// What the record of a rehearsal foretells of the whole run, by no more than it: None where it is none, or did not come to its
+/// end.
+pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
+    let plan = part.rehearses.as_deref().filter(|_| record.outcome == Outcome::Completed)?;
+    let stand_in = rehearsal::prediction(plan, record).ok()?;
+    Some(DryRun::on(plan, &stand_in, told(plan, &stand_in)).prediction())
 }
 
 /// On what it is predicted.

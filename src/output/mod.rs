@@ -12,6 +12,7 @@ mod document;
 mod figures;
 mod manifest;
 mod number;
+mod prediction;
 mod shake_table;
 pub mod standing;
 mod storey_table;
@@ -30,6 +31,8 @@ use crate::record::equipment::{Device, Equipment};
 use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
+
+pub use prediction::{PredictedLimit, PredictedProcedure, PredictedRequirement, Prediction, REHEARSAL_FILE};
 
 pub use amendment::{Amendment, Amends, Change};
 
@@ -72,6 +75,8 @@ pub struct Provenance {
     pub real: Option<RealRun>,
     /// As the record's first line tells it; None where it does not, or where there is none.
     pub equipment: Option<Equipment>,
+    /// Of a rehearsal that came to its end: how the whole run would go.
+    pub prediction: Option<Prediction>,
     /// Of a report that takes the place of another.
     pub amends: Option<Amends>,
 }
@@ -166,6 +171,7 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         }
     }
     files.push(summary_file(run)?);
+    files.extend(run.provenance.prediction.as_ref().map(prediction::file).transpose()?);
     files.extend(tables);
     for figure in figures {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });

@@ -50,6 +50,8 @@ pub struct Plan {
     pub decision_rule: DecisionRule,
     pub report: Report,
     pub golden: Golden,
+    /// Of the part that a rehearsal measures: the plan that is rehearsed.
+    pub rehearses: Option<Box<Plan>>,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of name.

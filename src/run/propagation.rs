@@ -19,7 +19,7 @@ const MOST_DRAWS: u16 = 64;
 /// And at least.
 const FEWEST_DRAWS: u16 = 8;
 /// Steps that all draws take together, about: what a long run is allowed to cost.
-const STEPS_OF_DRAWS: u64 = 4_000_000;
+const STEPS_OF_DRAWS: u64 = 512_000;
 /// The run taken again as it was must come out as it did, relatively.
 const CLOSE: f64 = 1e-9;
 /// What moving a source up does may differ by so much from what moving it down does, of the larger; beyond it the result

@@ -52,6 +52,7 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     let predicted = if left.is_empty() { "nothing".to_owned() } else { names(&left) };
     let text = format!("{ran} ran on the rig; {predicted} did not run and was predicted on a virtual specimen");
     part.particulars.push((REHEARSAL, text));
+    part.rehearses = Some(Box::new(plan.clone()));
     part.requirements.clear();
     part.report.figures.retain(|figure| figure.procedures().all(|procedure| procedure.0 < ramps));
     Ok(part)

@@ -30,6 +30,7 @@ pub(crate) fn empty_plan() -> Plan {
         decision_rule: DecisionRule::Simple,
         report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
         golden: crate::plan::Golden::default(),
+        rehearses: None,
         files: Vec::new(),
         settings: Vec::new(),
     }

@@ -136,11 +136,29 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
     assert!(fs::read_to_string(place.path().join("out/certificate.html")).unwrap().contains("REHEARSAL"));
     let (code, verified, log) = place.psd(&["verify", "out"]);
     assert_eq!(code, Some(0), "{verified}{log}");
-    // The run that it rehearses is another one.
+    // The prediction is kept, on a page too, and comes out of the record again.
+    let kept = fs::read(place.path().join("out/rehearsal.json")).unwrap();
+    let foretold: Value = serde_json::from_slice(&kept).unwrap();
+    assert_eq!((&foretold["schema"], &foretold["stopped"]), (&"psd.rehearsal/1".into(), &Value::Null));
+    let limits = foretold["limits"].as_array().unwrap();
+    let names: Vec<&str> = limits.iter().map(|limit| limit["quantity"].as_str().unwrap()).collect();
+    assert_eq!(names, ["displacement", "force", "speed", "tracking_energy_error"]);
+    let force = &limits[1];
+    let (high, reached, margin) = (&force["high"], force["reached"][1].as_f64().unwrap(), force["margin"].as_f64().unwrap());
+    assert!(*high == 15e3 && (2e3..3e3).contains(&reached) && (15e3 - reached - margin).abs() < 1e-9, "{force}");
+    assert_eq!(foretold["requirements"][0]["verdict"], "pass");
+    let page = fs::read_to_string(place.path().join("out/certificate.html")).unwrap();
+    assert!(page.contains("Prediction of the whole run") && page.contains("tracking energy error"));
+    let (code, again, log) = place.psd(&["report", "out", "--out", "again"]);
+    assert_eq!(code, Some(0), "{again}{log}");
+    assert!(fs::read(place.path().join("again/rehearsal.json")).unwrap() == kept);
+    // The run that it rehearses is another one, and says nothing of it.
     let (code, ..) = place.psd(&["run", "plan.psd", "--yes", "--out", "real"]);
     assert_eq!(code, Some(0));
     let real: Value = serde_json::from_str(&fs::read_to_string(place.path().join("real/summary.json")).unwrap()).unwrap();
     assert_ne!(real["run_id"], summary["run_id"]);
+    assert!(!place.path().join("real/rehearsal.json").exists());
+    assert!(!fs::read_to_string(place.path().join("real/certificate.html")).unwrap().contains("Prediction of the whole run"));
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod contact_log;
 mod curve;
 mod cycles;
 mod equipment;
+mod foretold;
 mod frames;
 mod head;
 mod marks;
@@ -33,6 +34,7 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn], tables: &[OutputFile]) 
         head::requirements(run, &mut body);
         head::deviations(run, &mut body);
     }
+    foretold::all(run, &mut body);
     results::procedures(run, &mut body);
     if !figures.is_empty() {
         body.push(Block::section("Figures"));

@@ -77,8 +77,10 @@ fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
         _ => false,
     };
     let printed = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
-    let (found, none): (Vec<&NamedResult>, Vec<&NamedResult>) =
-        printed.partition(|result| !matches!(result.value, ResultValue::Number { value: None, .. }));
+    let (found, none): (Vec<&NamedResult>, Vec<&NamedResult>) = printed.partition(|result| match &result.value {
+        ResultValue::Number { value, .. } => value.is_some(),
+        ResultValue::List(values) => !values.is_empty(),
+    });
     if !found.is_empty() {
         body.push(table(&found));
     }

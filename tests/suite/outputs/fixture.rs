@@ -390,6 +390,7 @@ fn plan() -> Plan {
         ],
         report: Report { title: None, figures, formats: Vec::new(), sign: vec!["Test engineer".into(), "Quality".into()] },
         golden: psd::plan::Golden::default(),
+        rehearses: None,
         files: vec![
             PlanFile {
                 name: "beam.psd".into(),

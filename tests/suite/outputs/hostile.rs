@@ -2,10 +2,11 @@
 //! must come out as a text that stands there.
 
 use psd::check::{Checked, LoadFault, Loader, Options, check};
+use psd::comparison::{Comparison, Side, csv};
 use psd::diagnostic::{json, render};
 use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, json as golden_json, junit, tap};
 use psd::inert;
-use psd::output::{OutputFile, console, everything};
+use psd::output::{Figures, OutputFile, comparison, console, everything};
 use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
@@ -256,6 +257,31 @@ fn no_label_is_another_result_of_a_test() {
         assert_eq!((&read["plans"][3]["message"], &read["unused"][0]), (&label.as_str().into(), &label.as_str().into()));
         assert_eq!(read["plans"][1]["differences"].as_array().unwrap().len(), 2);
     }
+}
+
+/// Two runs side by side, each with the label wherever a text from outside can stand.
+fn compared_with(label: &str) -> Comparison {
+    let summary: serde_json::Value = serde_json::from_str(text(&files_of(&run_with(label)), "summary.json")).unwrap();
+    let side = |name: String| Side { name, summary: summary.clone(), figures: Figures::default(), plan: Some(label.to_owned()) };
+    Comparison::of(&[side(label.to_owned()), side(format!("{label} again"))])
+}
+
+#[test]
+fn no_label_is_markup_or_a_formula_in_a_comparison() {
+    let made = |label: &str| {
+        let compared = compared_with(label);
+        (comparison::page(&compared, &[(label.to_owned(), Vec::new())]), csv(&compared))
+    };
+    let (plain_page, plain_table) = made("a plain label");
+    labels().par_iter().for_each(|label| {
+        let (page, table) = made(label);
+        assert_eq!((steering(&page), steering(&table)), (String::new(), String::new()), "{label:?}");
+        assert!(tags(&page) == tags(&plain_page), "{label:?}");
+        assert_eq!(table.lines().count(), plain_table.lines().count(), "{label:?}");
+        for begin in [",=", ",\"=", ",+", ",\"+", ",@", ",\"@", ",\u{ff1d}"] {
+            assert!(!table.lines().next().unwrap().contains(begin) || label.contains(begin), "{label:?}: {begin}");
+        }
+    });
 }
 
 struct Nothing;
