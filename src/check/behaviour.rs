@@ -5,7 +5,7 @@ use super::choice::Chosen;
 use super::faults::specimens as fault;
 use super::table_file;
 use crate::mechanics::beam;
-use crate::plan::{Beam, Behaviour, Bolted, Breaks, Ends, Loads, Pinching, Portal, Sections, Table, Unloading};
+use crate::plan::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading};
 use crate::schema::Variant;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind};
@@ -75,6 +75,9 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
             let (stiffness, yield_force, hardening) = (number("stiffness"), number("yield_force"), number("hardening"));
             let (force, displacement) = (number("force_factor"), number("displacement_factor"));
             let exponent = number("unloading_exponent");
+            let (rate, residual) = (number("deterioration_exponent"), number("residual_strength"));
+            let capacity = checker.optional_argument(&chosen, "energy_capacity", place)?;
+            let (rate, residual) = (rate?, residual?);
             Some(Behaviour::Pinching(Pinching {
                 stiffness: stiffness?,
                 yield_force: yield_force?,
@@ -82,6 +85,7 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
                 force_factor: force?,
                 displacement_factor: displacement?,
                 unloading_exponent: exponent?,
+                deterioration: capacity.map(|capacity| Deterioration { capacity, exponent: rate, residual }),
             }))
         }
         "degrading" => {

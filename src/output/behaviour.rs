@@ -60,17 +60,26 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                 ("γ", 1.0 - beta, Of::NUMBER),
             ],
         ),
-        Behaviour::Pinching(pinching) => list(
-            "pinching",
-            &[
-                ("stiffness", pinching.stiffness, Of::STIFFNESS),
-                ("yield force", pinching.yield_force, Of::FORCE),
-                ("hardening", pinching.hardening, Of::NUMBER),
-                ("force factor", pinching.force_factor, Of::NUMBER),
-                ("displacement factor", pinching.displacement_factor, Of::NUMBER),
-                ("unloading exponent", pinching.unloading_exponent, Of::NUMBER),
-            ],
-        ),
+        Behaviour::Pinching(pinching) => {
+            let told = list(
+                "pinching",
+                &[
+                    ("stiffness", pinching.stiffness, Of::STIFFNESS),
+                    ("yield force", pinching.yield_force, Of::FORCE),
+                    ("hardening", pinching.hardening, Of::NUMBER),
+                    ("force factor", pinching.force_factor, Of::NUMBER),
+                    ("displacement factor", pinching.displacement_factor, Of::NUMBER),
+                    ("unloading exponent", pinching.unloading_exponent, Of::NUMBER),
+                ],
+            );
+            let lost = pinching.deterioration.map_or_else(String::new, |lost| {
+                let energy = lost.capacity * pinching.yield_force * pinching.yield_force / pinching.stiffness;
+                let [energy, residual] = [(energy, Of::ENERGY), (lost.residual, Of::NUMBER)].map(|(value, of)| shown(value, of));
+                let exponent = shown(lost.exponent, Of::NUMBER);
+                format!(", strength lost with energy: all but {residual} of it with {energy}, exponent {exponent}")
+            });
+            told + &lost
+        }
         Behaviour::Degrading { stiffness, half_displacement, residual } => list(
             "degrading",
             &[

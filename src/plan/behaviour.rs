@@ -84,6 +84,19 @@ pub struct Pinching {
     pub displacement_factor: f64,
     /// a of the unloading stiffness K (x_y/x_max)^a.
     pub unloading_exponent: f64,
+    /// How its strength falls with the energy it has taken. None: not at all.
+    pub deterioration: Option<Deterioration>,
+}
+
+/// Cyclic deterioration of strength by energy; the rule stands in `mechanics/specimen/pinching.rs`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deterioration {
+    /// γ: energy it can take in all, over `F_y` `x_y`.
+    pub capacity: f64,
+    /// c
+    pub exponent: f64,
+    /// Strength that is never lost, over the first one.
+    pub residual: f64,
 }
 
 /// The rule stands in `mechanics/specimen/bolted.rs`.

@@ -101,6 +101,15 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("unloading_exponent", Dimension::NUMBER, "a of the unloading stiffness K (x_y/x_max)^a")
                 .or(0.0, "")
                 .within(0.0, 1.0),
+            Field::quantity("energy_capacity", Dimension::NUMBER, "γ: energy that takes all its strength, over F_y x_y")
+                .above_zero()
+                .or_said("no deterioration"),
+            Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of the strength lost at each reversal")
+                .or(1.0, "")
+                .within(0.5, 4.0),
+            Field::quantity("residual_strength", Dimension::NUMBER, "strength that is never lost, over the first one")
+                .or(0.05, "")
+                .within(0.01, 1.0),
         ],
         "pinched hysteresis that reloads towards its peaks (Ibarra, Medina and Krawinkler 2005)",
     ),

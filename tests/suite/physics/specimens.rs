@@ -3,15 +3,21 @@
 
 use proptest::prelude::*;
 use psd::mechanics::specimen::{RestoringForce, SpecimenModel};
-use psd::plan::{Behaviour, Bolted, Breaks, Pinching, Table, Unloading};
+use psd::plan::{Behaviour, Bolted, Breaks, Deterioration, Pinching, Table, Unloading};
 
 /// Stiffness 1 N/m to 3 N/m and yield near 1 m: the models know no scale but their own.
 fn simple() -> impl Strategy<Value = Behaviour> {
     let stiffness = || 1.0..3.0_f64;
     let force = || 0.5..2.0_f64;
     let hardening = || prop_oneof![Just(0.0), 0.0..0.5_f64];
-    let pinching = (stiffness(), force(), hardening(), 0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64).prop_map(
-        |(stiffness, yield_force, hardening, force_factor, displacement_factor, unloading_exponent)| {
+    let tires = (1.0..60.0_f64, 0.5..2.0_f64, 0.01..0.5_f64).prop_map(|(capacity, exponent, residual)| Deterioration {
+        capacity,
+        exponent,
+        residual,
+    });
+    let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
+    let pinching = (stiffness(), force(), hardening(), shape, prop::option::of(tires)).prop_map(
+        |(stiffness, yield_force, hardening, (force_factor, displacement_factor, unloading_exponent), deterioration)| {
             Behaviour::Pinching(Pinching {
                 stiffness,
                 yield_force,
@@ -19,6 +25,7 @@ fn simple() -> impl Strategy<Value = Behaviour> {
                 force_factor,
                 displacement_factor,
                 unloading_exponent,
+                deterioration,
             })
         },
     );
