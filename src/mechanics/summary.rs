@@ -34,7 +34,7 @@ pub struct ImpactSummary {
     pub striker_energy: f64,
     /// As a fraction of the input.
     pub energy_error: f64,
-    /// The structure was still on its way: the largest X is not a peak.
+    /// The structure was still on its way where X was largest: not a peak.
     pub peak_is_final: bool,
     /// The striker has stopped, and the run ended with a contact force.
     pub last_blow_cut: bool,
