@@ -82,7 +82,8 @@ fn results_stand_in_the_order_of_the_reference() {
     let names = |procedure: usize| -> Vec<_> { record.procedures[procedure].results.iter().map(|result| result.name).collect() };
     let ramp = "stiffness, secant_stiffness, intercept_force, r_squared, max_force, max_displacement, loop_energy, relaxation, \
                 tangent_stiffness, yield_force, yield_displacement, hardened_stiffness, hardening, breaks, break_uncertainties, \
-                break_forces, break_force_uncertainties, curve_stiffnesses, curve_stiffness_uncertainties";
+                break_forces, break_force_uncertainties, curve_stiffnesses, curve_stiffness_uncertainties, time_constant, \
+                relaxed_stiffness, branch_stiffness, remaining_relaxation, needed_pause";
     assert_eq!(names(0).join(", "), ramp);
     assert_eq!(names(1).join(", "), "damping, coulomb_force, r_squared, damping_ratio, max_velocity");
 }

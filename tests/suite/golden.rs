@@ -324,7 +324,7 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
     let cells: Vec<f64> = row.split(',').skip(2).map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
     assert_eq!((cells[0], cells[2], cells[7]), (value("run-1"), value("run-2"), value("run-2") - value("run-1")));
     let page = bench.read("two/comparison.html");
-    assert!(page.contains("data:image/png;base64,") && !page.contains("http"), "the page needs no other file");
+    assert!(page.contains("data:image/png;base64,") && !page.contains("://"), "the page needs no other file");
     assert!(bench.path("two/figures/hit_displacement_1.png").exists());
 
     // A folder of blessed results holds the same numbers; another plan shares what it shares.
