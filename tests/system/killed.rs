@@ -123,7 +123,8 @@ fn at_syncs_of_the_record() {
 #[test]
 fn at_words_to_the_rig() {
     if needs::strace() {
-        let kills = everywhere(At::Word, 9);
+        // How often a settling rig is read is a matter of the machine's speed: a loaded one says fewer words.
+        let kills = everywhere(At::Word, 7);
         assert!(kills > 30, "{kills}");
     }
 }
