@@ -17,11 +17,7 @@ pub fn stepping(checker: &mut Checker, block: usize, contact: Option<&Contact>, 
     let i_modification = checker.word(block, "i_modification", unsaid).map(|word| word == "true");
     let time_step = match checker.given(block, "time_step") {
         Some(_) => checker.quantity(block, "time_step"),
-        None => Some(Formula::Binary(
-            Operator::Divide,
-            Box::new(Formula::CriticalTimeStep),
-            Box::new(Formula::Constant(finer)),
-        )),
+        None => Some(Formula::Binary(Operator::Divide, Box::new(Formula::CriticalTimeStep), Box::new(Formula::Constant(finer)))),
     };
     let pause = checker.quantity(block, "pause");
     let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
