@@ -73,7 +73,7 @@ pub fn hold_axes(
         let Some(procedure) = procedure else { continue };
         let head = checker.scope.blocks[*block].block.head;
         match procedure.kind {
-            ProcedureKind::Shake(_) | ProcedureKind::StoreyImpact(_) => {
+            ProcedureKind::Shake(_) | ProcedureKind::StoreyImpact(_) | ProcedureKind::FrameUnload(_) => {
                 checker
                     .faults
                     .extend(one_axis.iter().map(|rig| axis_faults::frame_on_one_axis(&specimen.name, storeys, rig, head)));

@@ -38,7 +38,7 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
     for (field, help) in own {
         if let Some((_, entry)) = checker.given(block, field) {
             let at = entry.key.span;
-            checker.faults.push(fault::no_use_on_a_frame(field, at, help));
+            checker.faults.push(fault::no_use_on_a_frame(field, "an impact on a storey", at, help));
             foreign = true;
         }
     }

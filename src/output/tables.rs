@@ -91,6 +91,7 @@ fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> 
     let (height, columns) = match &procedure.history {
         History::Ramp(history) => (history.steps.len(), ramp(&history.steps)),
         History::Move(steps) => (steps.len(), ramp(steps)),
+        History::FrameUnload(steps) => storey_table::unloading(steps),
         History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
         History::Impact(history) => (history.steps.len(), impact(&history.steps)),
         History::StoreyImpact(history) => storey_table::columns(history),

@@ -149,6 +149,7 @@ impl FigureKind {
             }
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Escalate(_) => &[Self::Blows, Self::ForceDisplacement, Self::Displacement],
+            ProcedureKind::FrameUnload(_) => &[Self::Hysteresis],
             ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }

@@ -32,7 +32,7 @@ pub use rig::{
     SafeState, Settle, VirtualLink,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
-pub use unload::Unload;
+pub use unload::{FrameUnload, Unload};
 
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -236,6 +236,7 @@ pub enum ProcedureKind {
     Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
+    FrameUnload(FrameUnload),
     Escalate(Escalate),
     Move(Move),
     /// A person looks at the specimen.
@@ -254,7 +255,7 @@ impl ProcedureKind {
             Self::Impact(_) | Self::StoreyImpact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
-            Self::Unload(_) => "unload",
+            Self::Unload(_) | Self::FrameUnload(_) => "unload",
             Self::Escalate(_) => "escalate",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
@@ -272,6 +273,7 @@ impl ProcedureKind {
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
+            Self::FrameUnload(unload) => Some(unload.specimen),
             Self::Escalate(escalate) => Some(escalate.blow.specimen),
             Self::Move(_) | Self::Inspect { .. } => None,
         }

@@ -203,7 +203,7 @@ impl Reckoner<'_> {
                 let ways = legs * rounded(cycle.cycles());
                 Some(begin.plus(Counts { targets: ways, ways, readings, steps: readings }))
             }
-            ProcedureKind::Unload(_) => Some(Counts { steps: UNLOADING, ..moves(UNLOADING * self.way) }),
+            ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => Some(Counts { steps: UNLOADING, ..moves(UNLOADING * self.way) }),
             ProcedureKind::Move(_) => Some(Counts { steps: 1.0, ..moves(self.way) }),
             ProcedureKind::Inspect { .. } => Some(Counts::default()),
         }

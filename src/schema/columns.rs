@@ -137,7 +137,8 @@ const ESCALATE: &[Column] = &[
 /// The numeric columns of a procedure's tables; none where it has none.
 pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
     let (own, more): (&[Column], &[Column]) = match kind {
-        Kind::StiffnessRamp | Kind::Move | Kind::Unload => (RAMP, &[]),
+        Kind::StiffnessRamp | Kind::Move => (RAMP, &[]),
+        Kind::Unload => (RAMP, STOREY),
         Kind::DampingSweep => (SWEEP, &[]),
         Kind::Impact => (IMPACT, STOREY),
         Kind::Cycle => (CYCLE, &[]),

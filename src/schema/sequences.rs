@@ -13,21 +13,32 @@ pub(super) const UNLOAD: BlockKind =
         procedure: true,
         fields: &[
             Field::reference("specimen", Kind::Specimen, "what is unloaded").or_said("the only one declared"),
-            Field::quantity("stiffness", Dimension::STIFFNESS, "with which the force is expected to fall")
+            Field::quantity("stiffness", Dimension::STIFFNESS, "with which the force is expected to fall; the storeys of a frame have their own")
                 .above_zero()
                 .required_on(RigKind::Real, "stiffness = k0.stiffness", "the behaviour's initial stiffness"),
-            Field::quantity("within", Dimension::FORCE, "largest force that counts as none")
+            Field::quantity("within", Dimension::FORCE, "largest force, of a frame that of a floor, that counts as none")
                 .above_zero()
                 .or_said("a thousandth of the force at the start, or what noise and resolution can tell"),
             Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own"),
         ],
         exports: &[],
         results: &[
-            ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen rests"),
-            ResultKind::new("residual_force", Dimension::FORCE, "what it still carries there"),
+            ResultKind::new(
+                "residual_displacement",
+                Dimension::LENGTH,
+                "where the specimen rests; of a frame, the floor that rests farthest out",
+            ),
+            ResultKind::new(
+                "residual_force",
+                Dimension::FORCE,
+                "what it still carries there; of a frame, the floor that carries most",
+            ),
+            ResultKind::list("floor_displacement", Dimension::LENGTH, "where each floor rests").of_storey(),
+            ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift there").of_storey(),
+            ResultKind::list("residual_shear", Dimension::FORCE, "what each storey still carries there").of_storey(),
         ],
         example: "unload rest { }",
-        doc: "Takes the load off: moves to where the restoring force is none",
+        doc: "Takes the load off: moves to where the restoring force is none, of a frame all floors together",
     };
 
 /// What an `escalate` has besides the fields of an impact.

@@ -111,8 +111,8 @@ pub fn storey_of_none(specimen: &str, at: Span, declared: Span) -> Diagnostic {
 }
 
 /// A field of the other kind of impact.
-pub fn no_use_on_a_frame(field: &str, at: Span, help: &str) -> Diagnostic {
-    Diagnostic::new(Code::NoUseOnAFrame, format!("`{field}` says nothing of an impact on a storey"))
+pub fn no_use_on_a_frame(field: &str, of: &str, at: Span, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::NoUseOnAFrame, format!("`{field}` says nothing of {of}"))
         .at(at, "has no use here")
         .help(help)
 }

@@ -153,6 +153,10 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
                 "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
             ),
         ),
+        (History::FrameUnload(steps), FigureKind::Hysteresis) if !steps.is_empty() => (
+            shake::hysteresis(steps),
+            format!("{name}: measured storey shear against drift, from where the unloading began to where each storey rests."),
+        ),
         (History::StoreyImpact(history), kind) => return storey::chart(run, name, history, figure, kind),
         (History::Shake(history), kind) => return shaken(run, name, history, figure, kind),
         _ => return None,
