@@ -29,8 +29,8 @@ pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, Sti
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
-    SafeState, Settle, VirtualLink,
+    Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
+    Settle, VirtualLink,
 };
 pub use unload::Unload;
 

@@ -67,7 +67,8 @@ const AXIS: &[Variant] = &[Variant::with(
             .at_least_zero()
             .or_said("the rig's"),
         Field::bounds("force_range", Dimension::FORCE, true, "what its load cell can read").or_said("the rig's"),
-        Field::text("calibration", "reference of its calibration; of its force alone, where its displacement has one").or_said("the rig's"),
+        Field::text("calibration", "reference of its calibration; of its force alone, where its displacement has one")
+            .or_said("the rig's"),
         Field::text("calibration_due", "last day on which its calibration holds").or_said("the rig's"),
         Field::text("force_class", "class of its force measurement").or_said("the rig's"),
         Field::text("displacement_calibration", "reference of the calibration of its displacement").or_said("the rig's"),
