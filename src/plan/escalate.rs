@@ -1,6 +1,6 @@
 //! A checked `escalate`: blows of rising energy on one specimen, until a condition no longer holds.
 
-use super::{Condition, Impact};
+use super::{Condition, Impact, StoreyImpact};
 use crate::formula::{Formula, ProcedureId};
 
 /// One impact after the other, each harder.
@@ -9,7 +9,7 @@ pub struct Escalate {
     /// Its own place in the plan: results of a blow that `condition` reads bear it.
     pub own: ProcedureId,
     /// Every blow, but for the velocity of its striker.
-    pub blow: Impact,
+    pub blow: BlowOn,
     /// Velocity of the striker of each blow, m/s.
     pub velocities: Vec<Formula>,
     /// What must hold of the results of a blow for the next to follow; every part of it.
@@ -17,6 +17,36 @@ pub struct Escalate {
     pub between: Between,
     /// Whether a person looks at the specimen between two blows.
     pub inspect_between: bool,
+}
+
+/// What a blow strikes.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one of it in an escalate")]
+pub enum BlowOn {
+    /// A specimen of one degree of freedom.
+    Specimen(Impact),
+    /// One storey of a frame.
+    Storey(StoreyImpact),
+}
+
+impl BlowOn {
+    /// As an index into `Plan::specimens`.
+    #[must_use]
+    pub const fn specimen(&self) -> usize {
+        match self {
+            Self::Specimen(impact) => impact.specimen,
+            Self::Storey(impact) => impact.specimen,
+        }
+    }
+
+    /// As an index into `Plan::strikers`.
+    #[must_use]
+    pub const fn striker(&self) -> usize {
+        match self {
+            Self::Specimen(impact) => impact.striker,
+            Self::Storey(impact) => impact.striker,
+        }
+    }
 }
 
 /// What is done between two blows.

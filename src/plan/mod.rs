@@ -22,7 +22,7 @@ use crate::quantity::Dimension;
 pub use axis::{AxisCalibration, AxisPlan};
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
-pub use escalate::{Between, Escalate, MOST_BLOWS};
+pub use escalate::{Between, BlowOn, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
@@ -276,7 +276,7 @@ impl ProcedureKind {
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
             Self::FrameUnload(unload) => Some(unload.specimen),
-            Self::Escalate(escalate) => Some(escalate.blow.specimen),
+            Self::Escalate(escalate) => Some(escalate.blow.specimen()),
             Self::Move(_) | Self::Inspect { .. } => None,
         }
     }

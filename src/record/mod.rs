@@ -23,7 +23,7 @@ use crate::quantity::Dimension;
 use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
-pub use escalate::{Blow, EscalateHistory};
+pub use escalate::{Blow, BlowHistory, EscalateHistory};
 pub use floors::{FloorStep, Floors, StoreyImpactHistory};
 pub use unload::{Rest, UnloadStep};
 

@@ -2,6 +2,7 @@
 
 mod attribution;
 mod axes;
+mod blow;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;

@@ -8,7 +8,7 @@ use super::storey_impact;
 use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
-use crate::plan::{Impact, Plan, Procedure, ProcedureKind, step_count};
+use crate::plan::{BlowOn, Impact, Plan, Procedure, ProcedureKind, step_count};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
 
@@ -252,7 +252,11 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => None,
         ProcedureKind::Impact(impact) => steps_of_blow(impact),
         ProcedureKind::Escalate(escalate) => {
-            let blow = steps_of_blow(&escalate.blow)?.saturating_add(most_moves(escalate.between));
+            let blow = match &escalate.blow {
+                BlowOn::Specimen(blow) => steps_of_blow(blow)?,
+                BlowOn::Storey(blow) => storey_impact::steps(blow, plan)?,
+            };
+            let blow = blow.saturating_add(most_moves(escalate.between));
             Some(blow.saturating_mul(escalate.velocities.len() as u64))
         }
         ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan),

@@ -3,7 +3,6 @@
 //! (`gliding`) and are read as they pass their targets. In: a frame, a striker, a contact law, a time step.
 //! Out: every step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
 
-use super::Performed;
 use super::axes::{Monitors, Told, report, together};
 use super::gliding::{Gliding, Passing};
 use super::impact::{law, remark};
@@ -15,6 +14,7 @@ use super::stop::Stop;
 use super::storey_summary::{StoreySummary, of_floor, results};
 use super::triggers::Triggers;
 use super::watch::Watch;
+use super::{Performed, StepReport};
 use crate::formula::NoResults;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver, StrikerState};
@@ -25,50 +25,66 @@ use crate::mechanics::monitor::Tracking;
 use crate::mechanics::structure::Structure;
 use crate::plan::{Contact, Frame, Mode, Plan, StoreyImpact, Striker, step_count};
 use crate::quantity::Dimension;
-use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, StoreyImpactHistory};
+use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StoreyImpactHistory};
 use crate::rig::Reading;
 
 pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let striker = &whole.strikers[plan.striker];
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
-    let setting = frame.map_or_else(
-        || Err(Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }),
-        |frame| Setting::evaluate(plan, frame, striker, inputs, session),
-    );
-    let blow = |setting: Option<&Setting>| ImpactHistory {
-        steps: Vec::new(),
-        time_step: setting.map_or(0.0, |setting| setting.frame.time_step),
-        critical_time_step: setting.map_or(0.0, |setting| setting.frame.critical_time_step),
-    };
-    let mut history = StoreyImpactHistory {
-        blow: blow(setting.as_ref().ok()),
-        floors: Vec::new(),
-        struck: plan.struck,
-        modes: None,
-        damping_ratios: Vec::new(),
-    };
-    let setting = match setting {
-        Ok(setting) => setting,
-        Err(stop) => {
-            return Performed {
-                results: results(None, None, &history),
-                history: History::StoreyImpact(history),
-                stop: Some(stop),
-            };
+    let setting = frame.ok_or_else(no_frame).and_then(|frame| Setting::evaluate(plan, frame, striker, inputs, session));
+    match setting {
+        Ok(setting) => {
+            let Blown { history, results, stop } = blow(plan, &setting, 0, session);
+            Performed { results, history: History::StoreyImpact(history), stop }
         }
-    };
-    history.modes = Some(setting.frame.properties.modes.clone());
-    history.damping_ratios = setting.frame.properties.damping_ratios();
+        Err(stop) => {
+            let history = history_of(plan, None);
+            Performed { results: results(None, None, &history), history: History::StoreyImpact(history), stop: Some(stop) }
+        }
+    }
+}
+
+pub(super) fn no_frame() -> Stop {
+    Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }
+}
+
+/// One blow, as far as it went.
+pub(super) struct Blown {
+    pub history: StoreyImpactHistory,
+    pub results: Vec<NamedResult>,
+    pub stop: Option<Stop>,
+}
+
+/// The blow of a striker from where the floors are now; `before` steps of the procedure are done already.
+pub(super) fn blow(plan: &StoreyImpact, setting: &Setting, before: u64, session: &mut Session<'_>) -> Blown {
+    let history = history_of(plan, Some(setting));
     let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
-    let mut striking = Striking { setting: &setting, history, summary, watch: Watch::default() };
+    let mut striking = Striking { setting, before, history, summary, watch: Watch::default() };
     let stop = striking.run(plan, session).err();
     let Striking { history, summary, watch, .. } = striking;
     let summary = (!history.floors.is_empty()).then_some(summary);
     if let (Some(summary), None) = (&summary, &stop) {
         remark(&summary.blow(), plan.until, session);
     }
-    Performed { results: results(summary.as_ref(), watch.worst, &history), history: History::StoreyImpact(history), stop }
+    Blown { results: results(summary.as_ref(), watch.worst, &history), history, stop }
+}
+
+/// Before its first step.
+fn history_of(plan: &StoreyImpact, setting: Option<&Setting>) -> StoreyImpactHistory {
+    let blow = ImpactHistory {
+        steps: Vec::new(),
+        time_step: setting.map_or(0.0, |setting| setting.frame.time_step),
+        critical_time_step: setting.map_or(0.0, |setting| setting.frame.critical_time_step),
+    };
+    let properties = setting.map(|setting| &setting.frame.properties);
+    StoreyImpactHistory {
+        blow,
+        floors: Vec::new(),
+        struck: plan.struck,
+        modes: properties.map(|properties| properties.modes.clone()),
+        damping_ratios: properties.map(FrameProperties::damping_ratios).unwrap_or_default(),
+    }
 }
 
 /// Where each floor is to pass in this step, and how fast.
@@ -94,16 +110,16 @@ pub(super) fn steps(impact: &StoreyImpact, plan: &Plan) -> Option<u64> {
 }
 
 /// Everything known before the first step.
-struct Setting {
-    frame: FrameSteps,
+pub(super) struct Setting {
+    pub(super) frame: FrameSteps,
     law: ContactLaw,
     striker: Striker,
     /// The struck floor and the striker as an impact on one degree of freedom has them.
-    body: ImpactInput,
+    pub(super) body: ImpactInput,
 }
 
 impl Setting {
-    fn evaluate(
+    pub(super) fn evaluate(
         plan: &StoreyImpact,
         frame: &Frame,
         striker: &Striker,
@@ -133,10 +149,18 @@ impl Setting {
         let body = body.struck_by(striker, &plan.stepping);
         Ok(Self { frame: steps, law, striker: striker.clone(), body })
     }
+
+    /// The same with a striker of another velocity, m/s.
+    pub(super) const fn strikes_at(&mut self, velocity: f64) {
+        self.striker.velocity = velocity;
+        self.body.striker_velocity = velocity;
+    }
 }
 
 struct Striking<'a> {
     setting: &'a Setting,
+    /// Steps of the procedure done before these.
+    before: u64,
     history: StoreyImpactHistory,
     summary: StoreySummary,
     watch: Watch,
@@ -180,7 +204,8 @@ impl Striking<'_> {
             self.watch.judge(told.tracking_energy_error, session);
             session.guard.check_energy_error(told.energy_error)?;
             session.guard.check_tracking(told.tracking_energy_error, told.tracking.nrms_error)?;
-            session.step_done(&report(state, &told))?;
+            let reported = report(state, &told);
+            session.step_done(&StepReport { step: self.before + reported.step, ..reported })?;
             let (step, time, base_shear) = (state.step, state.time, state.restoring_force.iter().sum());
             if solver.over(plan.until) {
                 break;

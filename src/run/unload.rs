@@ -53,19 +53,13 @@ fn of_one(step: &UnloadStep) -> RampStep {
 }
 
 /// The same of a frame.
-pub(super) fn perform_frame(
-    plan: &FrameUnload,
-    whole: &Plan,
-    inputs: &mut Inputs<'_>,
-    session: &mut Session<'_>,
-) -> Performed {
+pub(super) fn perform_frame(plan: &FrameUnload, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut steps = Vec::new();
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
     let known = frame.map_or_else(|| Err(no_frame()), of_frame);
-    let outcome = known.and_then(|unloading| {
-        asked((plan.within.as_ref(), plan.speed.as_ref()), unloading, inputs, session, &mut steps)
-    });
+    let outcome =
+        known.and_then(|unloading| asked((plan.within.as_ref(), plan.speed.as_ref()), unloading, inputs, session, &mut steps));
     let results = frame_results(outcome.as_ref().ok());
     Performed { history: History::FrameUnload(steps), results, stop: outcome.err() }
 }

@@ -153,8 +153,7 @@ mod tests {
             let force = force_at(&places);
             let next: Vec<f64> = places.iter().zip(unloading.way(&force)).map(|(place, way)| place + way).collect();
             let felt = force_at(&next);
-            unloading
-                .learn(Loaded { displacement: &places, force: &force }, Loaded { displacement: &next, force: &felt });
+            unloading.learn(Loaded { displacement: &places, force: &force }, Loaded { displacement: &next, force: &felt });
             largest.push(felt.iter().fold(0.0, |most: f64, force| most.max(force.abs())));
             places = next;
         }

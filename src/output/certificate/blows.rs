@@ -2,7 +2,6 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::number;
-use crate::formula::ResultValue;
 use crate::quantity::Dimension;
 use crate::record::{Blow, EscalateHistory};
 
@@ -26,12 +25,8 @@ pub(super) fn table(history: &EscalateHistory, body: &mut Vec<Block>) {
 
 /// Every number of a column in the unit of its largest.
 fn rows(blows: &[Blow]) -> Block {
-    let of = |blow: &Blow, name: &str| match blow.results.iter().find(|result| result.name == name)?.value {
-        ResultValue::Number { value, .. } => value,
-        ResultValue::List(_) => None,
-    };
     let energy = blows.iter().map(|blow| blow.energy).fold(0.0, f64::max);
-    let travel = blows.iter().filter_map(|blow| of(blow, "max_displacement")).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let travel = blows.iter().filter_map(|blow| blow.number("max_displacement")).fold(0.0, |most: f64, x| most.max(x.abs()));
     let shown = |value: Option<f64>, beside: f64, dimension| {
         value.map_or_else(|| Text::from("—"), |value| number::text_beside(value, beside, dimension).into())
     };
@@ -45,9 +40,9 @@ fn rows(blows: &[Blow]) -> Block {
             Text::from((index + 1).to_string()),
             number::text(blow.velocity, Dimension::VELOCITY).into(),
             shown(Some(blow.energy), energy, Dimension::ENERGY),
-            shown(of(blow, "max_displacement"), travel, Dimension::LENGTH),
-            shown(of(blow, "absorbed_energy"), energy, Dimension::ENERGY),
-            shown(blow.rest.map(|(displacement, _)| displacement), travel, Dimension::LENGTH),
+            shown(blow.number("max_displacement"), travel, Dimension::LENGTH),
+            shown(blow.number("absorbed_energy"), energy, Dimension::ENERGY),
+            shown(blow.rest_of_struck().map(|(displacement, _)| displacement), travel, Dimension::LENGTH),
             Text::from(held),
         ]
     };

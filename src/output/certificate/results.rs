@@ -74,9 +74,7 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let tabled = match &procedure.history {
         History::Ramp(history) => history.multilinear.is_some(),
-        History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) | History::FrameUnload(_) => {
-            true
-        },
+        History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) | History::FrameUnload(_) => true,
         _ => false,
     };
     let printed = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));

@@ -2,7 +2,6 @@
 //! energy. In: the history. Out: [`Chart`]s in SI.
 
 use super::chart::{Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
-use crate::formula::ResultValue;
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::record::{Blow, EscalateHistory, ImpactStep};
@@ -25,12 +24,9 @@ pub(super) fn displacement(history: &EscalateHistory) -> Chart {
 
 /// Largest displacement, and where the specimen then rested, against the energy of the blow.
 pub(super) fn blows(history: &EscalateHistory) -> Chart {
-    let largest = |blow: &Blow| match blow.results.iter().find(|result| result.name == "max_displacement")?.value {
-        ResultValue::Number { value, .. } => value,
-        ResultValue::List(_) => None,
-    };
+    let largest = |blow: &Blow| blow.number("max_displacement");
     let peaks = history.blows.iter().filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
-    let rests = history.blows.iter().filter_map(|blow| Some((blow.energy, blow.rest?.0))).collect();
+    let rests = history.blows.iter().filter_map(|blow| Some((blow.energy, blow.rest_of_struck()?.0))).collect();
     let failed = history.blows.iter().filter(|blow| blow.held == Some(false));
     let failed: Vec<(f64, f64)> = failed.filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
     let mut series = vec![
@@ -66,7 +62,7 @@ fn over_each_other(history: &EscalateHistory, x: Quantity, y: Quantity, of: impl
     let last = history.blows.len().saturating_sub(1);
     let series = history.blows.iter().enumerate().map(|(index, blow)| Series {
         label: if index == 0 || index == last { format!("blow {}, {}", index + 1, energy(blow)) } else { String::new() },
-        points: blow.history.steps.iter().map(&of).collect(),
+        points: blow.impact().steps.iter().map(&of).collect(),
         style: if index == last {
             Style::line(palette::VERMILION, 2.0, SOLID)
         } else {

@@ -120,7 +120,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
             relaxation::left(history, history.relaxation.as_ref()?),
             format!("{name}: force still to relax, the measured less the fitted one after long, against the time held."),
         ),
-        (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.history.steps.is_empty()) => return None,
+        (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.impact().steps.is_empty()) => return None,
         (History::Escalate(history), FigureKind::ForceDisplacement) => (
             blows::force_displacement(history),
             format!("{name}: restoring force against computed displacement, blow over blow; lighter lines are earlier blows."),

@@ -3,17 +3,13 @@
 use polars::prelude::Column;
 
 use super::{integers, numbers};
-use crate::formula::ResultValue;
 use crate::record::{Blow, EscalateHistory};
 
 /// The results of each blow, with its level and what followed.
 pub(super) fn rows(history: &EscalateHistory) -> Vec<Column> {
     let blows = &history.blows;
     let of = |name: &str, result: &str| {
-        let read = |blow: &Blow| match blow.results.iter().find(|found| found.name == result)?.value {
-            ResultValue::Number { value, .. } => value,
-            ResultValue::List(_) => None,
-        };
+        let read = |blow: &Blow| blow.number(result);
         Column::new(name.into(), blows.iter().map(read).collect::<Vec<Option<f64>>>())
     };
     let some = |name: &str, read: fn(&Blow) -> Option<f64>| {
@@ -33,8 +29,8 @@ pub(super) fn rows(history: &EscalateHistory) -> Vec<Column> {
         of("contacts", "contacts"),
         of("indentation_m", "indentation"),
         of("energy_error", "energy_error"),
-        some("rest_displacement_m", |blow| blow.rest.map(|rest| rest.0)),
-        some("rest_force_n", |blow| blow.rest.map(|rest| rest.1)),
+        some("rest_displacement_m", |blow| blow.rest_of_struck().map(|rest| rest.0)),
+        some("rest_force_n", |blow| blow.rest_of_struck().map(|rest| rest.1)),
         Column::new("held".into(), blows.iter().map(|blow| blow.held).collect::<Vec<Option<bool>>>()),
     ]
 }

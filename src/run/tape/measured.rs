@@ -38,7 +38,7 @@ pub(super) fn measured(record: &Record) -> String {
                 }
             }
             History::Escalate(history) => {
-                writeln!(told, "{:?}", history.blows.iter().map(|blow| (&blow.results, blow.rest)).collect::<Vec<_>>()).unwrap();
+                writeln!(told, "{:?}", history.blows.iter().map(|blow| (&blow.results, &blow.rest)).collect::<Vec<_>>()).unwrap();
             }
             History::Cycle(history) => {
                 for step in &history.steps {
