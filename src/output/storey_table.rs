@@ -58,16 +58,20 @@ fn rows_of<'a>(step: &'a ImpactStep, floors: &'a FloorStep) -> Vec<Row<'a>> {
     storeys.map(|(floor, (drift, shear))| Row { step, floors, floor, drift, shear }).collect()
 }
 
+/// A move, a storey, its drift and its shear.
+type Unloaded<'a> = (&'a UnloadStep, usize, f64, f64);
+
 /// Rows and columns of an unloading; step 0 is where it began.
 pub(super) fn unloading(steps: &[UnloadStep]) -> (usize, Vec<Column>) {
     let storeys = |step: &'_ UnloadStep| step.drift().into_iter().zip(step.shear()).enumerate().collect::<Vec<_>>();
-    let rows: Vec<(&UnloadStep, usize, f64, f64)> = steps
+    let rows: Vec<Unloaded<'_>> = steps
         .iter()
         .flat_map(|step| storeys(step).into_iter().map(move |(floor, (drift, shear))| (step, floor, drift, shear)))
         .collect();
-    type Row<'a> = (&'a UnloadStep, usize, f64, f64);
-    let numbers = |name: &str, read: fn(&Row<'_>) -> f64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<f64>>());
-    let whole = |name: &str, read: fn(&Row<'_>) -> u64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<u64>>());
+    let numbers =
+        |name: &str, read: fn(&Unloaded<'_>) -> f64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<f64>>());
+    let whole =
+        |name: &str, read: fn(&Unloaded<'_>) -> u64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<u64>>());
     let tangents: Vec<Option<f64>> = rows.iter().map(|(step, floor, ..)| step.tangent_stiffness[*floor]).collect();
     let columns = vec![
         whole("step", |(step, ..)| step.step),

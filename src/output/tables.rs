@@ -28,6 +28,10 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
                 let frame = DataFrame::new(height, columns).map_err(failed)?;
                 written(run, &format!("{}_{number}", procedure.name), frame, &mut files).map_err(failed)?;
             }
+            if let Some((height, columns)) = blows::storeys(history) {
+                let frame = DataFrame::new(height, columns).map_err(failed)?;
+                written(run, &format!("{}_storeys", procedure.name), frame, &mut files).map_err(failed)?;
+            }
         }
         if let History::Ramp(history) = &procedure.history
             && !history.holds.is_empty()

@@ -21,7 +21,6 @@ pub struct Escalate {
 
 /// What a blow strikes.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one of it in an escalate")]
 pub enum BlowOn {
     /// A specimen of one degree of freedom.
     Specimen(Impact),

@@ -21,7 +21,6 @@ pub struct Blow {
 
 /// The steps of a blow.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "an escalate has a few of them")]
 pub enum BlowHistory {
     Impact(ImpactHistory),
     Storey(StoreyImpactHistory),

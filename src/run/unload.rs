@@ -22,6 +22,8 @@ pub(super) const MOST_TARGETS: u64 = 50;
 const SMALL: f64 = 1e-3;
 /// Noise of the cell in a reading that is not to be mistaken for load, standard deviations.
 const NOISE: f64 = 3.0;
+/// Of a place, in units of its last digit: what adding the drifts of storeys up leaves.
+const ROUNDING: f64 = 8.0;
 
 pub(super) fn perform(plan: &Unload, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut steps = Vec::new();
@@ -118,7 +120,8 @@ pub(super) fn to_rest(
     let start = session.guard.commanded().to_vec();
     keep((before, start), &at, vec![None; at.force.len()], session, steps);
     let noise = session.guard.declared_noise();
-    let tells = (NOISE * noise.force).max(unloading.felt(noise.resolution));
+    let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
+    let tells = (NOISE * noise.force).max(unloading.felt(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
     let within = within.unwrap_or_else(|| tells.max(SMALL * left).max(f64::MIN_POSITIVE));
     for step in before + 1..=before + MOST_TARGETS {
@@ -175,7 +178,7 @@ fn rest(reading: Reading) -> Rest {
     Rest { displacement: reading.displacement, force: reading.force }
 }
 
-/// N
-fn largest(forces: &[f64]) -> f64 {
-    forces.iter().fold(0.0, |largest, force| largest.max(force.abs()))
+/// Largest size.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }

@@ -48,7 +48,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::StoreyImpact(history) => storey::struck(run, index, procedure, history, body),
             History::Cycle(history) => cycles::table(history, body),
             History::Shake(history) => frames::shaken(run, index, procedure, history, body),
-            History::Escalate(history) => blows::table(history, body),
+            History::Escalate(history) => blows::table(run, index, procedure, history, body),
             History::FrameUnload(steps) => frames::unloaded(run, index, steps, body),
             History::Move(_) | History::Inspect => {}
         }

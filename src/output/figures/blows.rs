@@ -2,6 +2,7 @@
 //! energy. In: the history. Out: [`Chart`]s in SI.
 
 use super::chart::{Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
+use super::shake;
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::record::{Blow, EscalateHistory, ImpactStep};
@@ -53,6 +54,32 @@ pub(super) fn blows(history: &EscalateHistory) -> Chart {
         y: Quantity::of("Displacement X", Dimension::LENGTH),
         bands: Vec::new(),
         series,
+        references: Vec::new(),
+    }
+}
+
+/// Largest drift of each storey, and what stayed of it, against the energy of the blow.
+pub(super) fn drift(history: &EscalateHistory) -> Chart {
+    let storeys = history.storeys().next().and_then(|blow| blow.floors.first()).map_or(0, |floors| floors.computed.len());
+    let largest = |blow: &Blow, storey: usize| blow.list("max_drift")?.get(storey).copied();
+    let stayed = |blow: &Blow, storey: usize| blow.rest.as_ref()?.drift().get(storey).copied();
+    let points = |of: &dyn Fn(&Blow, usize) -> Option<f64>, storey: usize| -> Vec<(f64, f64)> {
+        history.blows.iter().filter_map(|blow| Some((blow.energy, of(blow, storey)?))).collect()
+    };
+    let series = shake::shown(storeys).into_iter().enumerate().flat_map(|(curve, storey)| {
+        let colour = shake::style(curve, 1.6).colour;
+        let peak = Style { marker: Some(Marker::Disc(3.2)), ..Style::line(colour, 1.6, SOLID) };
+        let rest = Style { marker: Some(Marker::Ring(3.6)), ..Style::line(colour, 1.4, DASHED) };
+        [
+            Series { label: format!("storey {}, largest", storey + 1), points: points(&largest, storey), style: peak },
+            Series { label: format!("storey {}, stayed", storey + 1), points: points(&stayed, storey), style: rest },
+        ]
+    });
+    Chart {
+        x: Quantity::along("Energy of the blow", Dimension::ENERGY),
+        y: Quantity::of("Drift", Dimension::LENGTH),
+        bands: Vec::new(),
+        series: series.collect(),
         references: Vec::new(),
     }
 }
