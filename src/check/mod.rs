@@ -12,6 +12,7 @@ mod cycle;
 mod damping_sweep;
 mod data;
 mod device;
+mod drift;
 mod dialect;
 mod escalate;
 mod expression;
@@ -188,6 +189,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
         if let Some(rig) = &rig {
             real_rig::warn(checker, rig);
+            drift::warn(checker, rig);
         }
         if let Some(limits) = &limits {
             specimen::warn_of_short_tables(checker, &specimens, limits);
