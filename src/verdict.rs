@@ -151,7 +151,7 @@ fn beyond(record: &Record, of_interest: impl Fn(&Beyond) -> bool) -> Option<Beyo
 fn enters(of_force: bool, kind: &str, result: &str) -> bool {
     let given = matches!(result, "time_step" | "steps");
     let of_ways = matches!((kind, result), ("stiffness ramp", "max_displacement") | ("damping sweep", "max_velocity"));
-    !given && !(of_force && of_ways)
+    !(given || (of_force && of_ways))
 }
 
 /// k of the expanded uncertainty U = k·u: about 95 % of a normal distribution.

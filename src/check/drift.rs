@@ -40,10 +40,9 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     let at = entry.value.span;
     let (noise, resolution) = match &rig.plan.link {
         Link::Virtual(link) => (link.noise, link.resolution),
-        Link::Real(link) => (0..rig.plan.axes().unwrap_or(1)).map(|axis| link.readings_of(axis)).fold(
-            (0.0, 0.0),
-            |(noise, resolution): (f64, f64), axis| (noise.max(axis.noise), resolution.max(axis.resolution)),
-        ),
+        Link::Real(link) => (0..rig.plan.axes().unwrap_or(1))
+            .map(|axis| link.readings_of(axis))
+            .fold((0.0, 0.0), |(noise, resolution): (f64, f64), axis| (noise.max(axis.noise), resolution.max(axis.resolution))),
     };
     if check.force < CHANCE * noise {
         let fault = fault::drift_within_noise("force", check.force, ("noise", noise, CHANCE * noise), Dimension::FORCE, at);

@@ -27,8 +27,8 @@ pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, Sti
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
-    AxisPlan, Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink,
-    RigPlan, SafeState, Settle, VirtualLink, ZeroAfter,
+    AxisPlan, Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules,
+    RealLink, RigPlan, SafeState, Settle, VirtualLink, ZeroAfter,
 };
 pub use unload::Unload;
 

@@ -453,9 +453,9 @@ mod tests {
             let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
-            let (commanded, own, going) = (vec![0.001], Vec::new(), Vec::new());
+            let (commanded, own, going, holds) = (vec![0.001], Vec::new(), Vec::new(), None);
             let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None, heard: 0.0, holds: None };
+                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None, heard: 0.0, holds };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

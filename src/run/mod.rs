@@ -210,7 +210,8 @@ struct Performed {
 #[must_use]
 pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Record {
     let identity = rig.identity();
-    let mut record = Record { rig: identity, procedures: Vec::new(), events: Vec::new(), outcome: Outcome::Completed, drift: None };
+    let mut record =
+        Record { rig: identity, procedures: Vec::new(), events: Vec::new(), outcome: Outcome::Completed, drift: None };
     let mut session = match Session::begin(plan, rig, observer) {
         Ok(session) => session,
         Err(ended) => {

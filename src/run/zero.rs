@@ -53,7 +53,8 @@ fn told(zero: &Zero) -> String {
 fn listed(said: impl Iterator<Item = String>) -> String {
     let said: Vec<String> = said.collect();
     let axes = said.len();
-    let named = |(place, said): (usize, &String)| named_axis(place, axes).map_or(said.clone(), |axis| format!("axis {axis}: {said}"));
+    let named =
+        |(place, said): (usize, &String)| named_axis(place, axes).map_or(said.clone(), |axis| format!("axis {axis}: {said}"));
     said.iter().enumerate().map(named).collect::<Vec<_>>().join("; ")
 }
 

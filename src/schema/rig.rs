@@ -57,7 +57,9 @@ const AFTER: &[Variant] = &[
 const DRIFT: &[Variant] = &[Variant::with(
     "within",
     &[
-        Field::quantity("force", Dimension::FORCE, "change of the zero of the force, by size, at most").required("5 N").above_zero(),
+        Field::quantity("force", Dimension::FORCE, "change of the zero of the force, by size, at most")
+            .required("5 N")
+            .above_zero(),
         Field::quantity("displacement", Dimension::LENGTH, "change of displacement less target, by size, at most")
             .above_zero()
             .or_said("told, not judged"),

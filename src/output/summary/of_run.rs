@@ -3,9 +3,9 @@
 use super::super::budget::{Budget, Line, budgets};
 use super::super::{Amends, Change, Run, deviations, standing};
 use super::{
-    AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary, EventSummary,
-    Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary,
-    SCHEMA, Summary, Value,
+    AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary,
+    EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary,
+    RequirementSummary, RigSummary, SCHEMA, Summary, Value,
 };
 use crate::formula::{Estimate, ResultValue};
 use crate::quantity::Dimension;

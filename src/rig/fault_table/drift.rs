@@ -24,13 +24,10 @@ fn drifting(check: DriftCheck) -> Plan {
             dimension,
         }],
     };
-    plan.requirements = vec![
-        above("stiffness", 0.5 * STIFFNESS, Dimension::STIFFNESS),
-        above("max_displacement", 5e-4, Dimension::LENGTH),
-    ];
+    plan.requirements =
+        vec![above("stiffness", 0.5 * STIFFNESS, Dimension::STIFFNESS), above("max_displacement", 5e-4, Dimension::LENGTH)];
     plan
 }
-
 
 const CHECK: DriftCheck = DriftCheck { force: 2.0, displacement: Some(3e-6), over: 1.0, after: ZeroAfter::Start };
 

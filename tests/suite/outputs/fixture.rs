@@ -124,6 +124,7 @@ pub fn finished() -> Finished {
                 event(EventKind::Inspection, 12.5, "no visible crack <b>at</b> the support"),
             ],
             outcome: Outcome::Completed,
+            drift: None,
         },
         assessment: assessment(largest, error),
         provenance: Provenance {
