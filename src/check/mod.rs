@@ -42,6 +42,7 @@ mod rig;
 mod scope;
 mod shake;
 mod specimen;
+mod stepping;
 mod stiffness_ramp;
 mod storey_impact;
 mod striker;
