@@ -240,8 +240,8 @@ pub struct ShakeStep {
     /// Measured, of each floor, N.
     pub restoring_force: Vec<f64>,
     pub energies: FrameEnergies,
-    /// Of all axes together.
-    pub tracking: Tracking,
+    /// Of each axis.
+    pub tracking: Vec<Tracking>,
 }
 
 impl Floors for ShakeStep {

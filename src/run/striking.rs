@@ -1,0 +1,153 @@
+//! A frame as a striker hits one of its floors: the striker beside the floors, and every step kept. In: what is known before the
+//! first step. Out: the history and what it comes to. How the steps are gone on the rig is `frame_steps`'; the equations are
+//! `mechanics`'.
+
+use super::axes::{Told, together};
+use super::frame_steps::{self, Pace, Start, Stepped};
+use super::session::Session;
+use super::stop::Stop;
+use super::storey_impact::Setting;
+use super::storey_summary::{StoreySummary, of_floor};
+use super::watch::Watch;
+use crate::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver};
+use crate::mechanics::frame::{FrameInput, FrameState};
+use crate::mechanics::monitor::Tracking;
+use crate::plan::{StoreyImpact, Until};
+use crate::record::{FloorStep, ImpactStep, StoreyImpactHistory};
+use crate::rig::Reading;
+
+pub(super) struct Striking<'a> {
+    pub(super) setting: &'a Setting,
+    pub(super) history: StoreyImpactHistory,
+    pub(super) summary: StoreySummary,
+    pub(super) watch: Watch,
+}
+
+impl Striking<'_> {
+    pub(super) fn run(&mut self, plan: &StoreyImpact, session: &mut Session<'_>) -> Result<(), Stop> {
+        let Self { setting, history, summary, watch } = self;
+        let pace = Pace {
+            matrices: &setting.properties.matrices,
+            integrator: plan.integrator,
+            time_step: setting.time_step,
+            steps: setting.steps,
+            pause: setting.pause,
+            mode: plan.mode,
+            inspect: &plan.inspect,
+        };
+        let unloaded = vec![0.0; pace.matrices.order()];
+        frame_steps::run(&pace, watch, session, |start| {
+            let solver = solver(setting, plan, start, &unloaded)?;
+            Ok(Struck { setting, until: plan.until, solver, unloaded: &unloaded, history, summary })
+        })
+    }
+}
+
+fn solver(setting: &Setting, plan: &StoreyImpact, start: &Start, unloaded: &[f64]) -> Result<FrameImpactSolver, Stop> {
+    let Setting { properties, tangents, law, striker, time_step, .. } = setting;
+    let input = FrameImpactInput {
+        frame: FrameInput {
+            matrices: &properties.matrices,
+            operator_stiffness: &properties.matrices.stiffness,
+            integrator: plan.integrator,
+            i_modification: plan.i_modification,
+            tangents: *tangents,
+            time_step: *time_step,
+            initial_displacement: &start.commanded,
+            initial_restoring_force: &start.reading.force,
+            initial_load: unloaded,
+            force_noise: start.noise.force,
+            resolution: start.noise.resolution,
+        },
+        struck: plan.struck,
+        striker_mass: striker.mass,
+        striker_velocity: striker.velocity,
+        gap: striker.gap,
+        gravity: striker.gravity,
+        law: *law,
+    };
+    FrameImpactSolver::new(&input).map_err(|error| Stop::BadInput {
+        field: "time_step",
+        value: *time_step,
+        wanted: format!("one that can be stepped: {error}").into(),
+    })
+}
+
+/// The frame under way, with its striker.
+struct Struck<'a> {
+    setting: &'a Setting,
+    until: Until,
+    solver: FrameImpactSolver,
+    /// N
+    unloaded: &'a [f64],
+    history: &'a mut StoreyImpactHistory,
+    summary: &'a mut StoreySummary,
+}
+
+impl Stepped for Struck<'_> {
+    fn frame(&self) -> &FrameState {
+        self.solver.frame()
+    }
+
+    fn predict(&mut self) -> &[f64] {
+        self.solver.predict(self.unloaded)
+    }
+
+    fn predicted_velocity(&self, velocity: &mut [f64]) -> bool {
+        self.solver.predicted_velocity(velocity)
+    }
+
+    fn taken<'a>(&'a self, read: &'a [f64]) -> &'a [f64] {
+        self.solver.taken(read)
+    }
+
+    fn complete(&mut self, reading: &Reading) {
+        self.solver.complete(&reading.displacement, &reading.force);
+    }
+
+    fn keep(&mut self, state: &FrameState, axes: Vec<Tracking>, session: &Session<'_>) -> Told {
+        let tracking = together(&axes);
+        let floor = of_floor(state, self.solver.striker(), self.history.struck, self.setting.body.stiffness);
+        self.summary.push(state, &floor);
+        self.history.blow.steps.push(ImpactStep {
+            step: floor.step,
+            time: floor.time,
+            wall_time: session.guard.time(),
+            state: floor.state,
+            command: floor.target,
+            computed: floor.displacement,
+            displacement: floor.measured_displacement,
+            velocity: floor.velocity,
+            acceleration: floor.acceleration,
+            restoring_force: floor.restoring_force,
+            contact_force: floor.contact_force,
+            striker_displacement: floor.striker_displacement,
+            striker_velocity: floor.striker_velocity,
+            tangent_stiffness: floor.tangent_stiffness,
+            indentation: floor.indentation,
+            energies: floor.energies,
+            tracking,
+        });
+        self.history.floors.push(FloorStep {
+            time: state.time,
+            command: state.target.clone(),
+            displacement: state.measured_displacement.clone(),
+            computed: state.displacement.clone(),
+            velocity: state.velocity.clone(),
+            acceleration: state.acceleration.clone(),
+            restoring_force: state.restoring_force.clone(),
+            storey_energy: self.summary.storey_energy().to_vec(),
+            tracking: axes,
+        });
+        let input = self.setting.body.striker_energy();
+        Told {
+            energy_error: if floor.energies.error == 0.0 { 0.0 } else { floor.energies.error / input },
+            tracking,
+            tracking_energy_error: tracking.share_of(input),
+        }
+    }
+
+    fn over(&self) -> bool {
+        self.solver.over(self.until)
+    }
+}
