@@ -256,6 +256,18 @@ impl Floors for ShakeStep {
     fn restoring_force(&self) -> &[f64] {
         &self.restoring_force
     }
+
+    fn command(&self) -> &[f64] {
+        &self.command
+    }
+
+    fn measured(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    fn tracking(&self) -> &[Tracking] {
+        &self.tracking
+    }
 }
 
 #[derive(Clone, Debug, Default)]

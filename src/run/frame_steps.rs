@@ -4,12 +4,12 @@
 //! It knows no ground, no striker and no equation.
 
 use super::axes::{Monitors, Told, report};
+use super::followed::Followed;
 use super::gliding::{Gliding, Passing};
 use super::session::Session;
 use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::triggers::Triggers;
-use super::watch::Watch;
 use crate::mechanics::frame::{FrameMatrices, FrameState};
 use crate::mechanics::monitor::Tracking;
 use crate::plan::{InspectTrigger, Integrator, Mode};
@@ -38,6 +38,14 @@ pub(super) struct Start {
     pub noise: DeclaredNoise,
 }
 
+/// The energy of a test at the end of a step, J.
+pub(super) struct Balance {
+    /// What the balance misses.
+    pub error: f64,
+    /// What the errors are shares of.
+    pub input: f64,
+}
+
 /// Computes the steps of a frame, and keeps them.
 pub(super) trait Stepped {
     /// The end of the last step.
@@ -55,8 +63,8 @@ pub(super) trait Stepped {
     /// Ends the step with what was read.
     fn complete(&mut self, reading: &Reading);
 
-    /// Keeps the end of a step, with how each axis was followed so far; its errors over the energy of the test.
-    fn keep(&mut self, state: &FrameState, axes: Vec<Tracking>, session: &Session<'_>) -> Told;
+    /// Keeps the end of a step, with how each axis was followed so far.
+    fn keep(&mut self, state: &FrameState, axes: &[Tracking], session: &Session<'_>) -> Balance;
 
     /// Whether there is nothing more to follow, before all steps are done.
     fn over(&self) -> bool;
@@ -65,7 +73,7 @@ pub(super) trait Stepped {
 /// All steps, from where the rig stands.
 pub(super) fn run<S: Stepped>(
     pace: &Pace<'_>,
-    watch: &mut Watch,
+    followed: &mut Followed,
     session: &mut Session<'_>,
     begin: impl FnOnce(&Start) -> Result<S, Stop>,
 ) -> Result<(), Stop> {
@@ -82,7 +90,7 @@ pub(super) fn run<S: Stepped>(
     };
     let mut at_rest = stepped.frame().clone();
     at_rest.measured_displacement.clone_from(&reading.displacement);
-    stepped.keep(&at_rest, vec![Tracking::default(); commanded.len()], session);
+    stepped.keep(&at_rest, &vec![Tracking::default(); commanded.len()], session);
     for _ in 1..=pace.steps {
         let reading = if let Some(gliding) = &mut gliding {
             gliding.step(|| foretold(&mut stepped), session)?
@@ -97,8 +105,10 @@ pub(super) fn run<S: Stepped>(
         stepped.complete(&reading);
         let state = stepped.frame().clone();
         let axes = monitors.take(&state.target, &reading, stepped.taken(&reading.force));
-        let told = stepped.keep(&state, axes, session);
-        watch.judge(told.tracking_energy_error, session);
+        let Balance { error, input } = stepped.keep(&state, &axes, session);
+        let (tracking, tracking_energy_error) = followed.judge(&axes, input, session);
+        let energy_error = if error == 0.0 { 0.0 } else { error / input };
+        let told = Told { energy_error, tracking, tracking_energy_error };
         session.guard.check_energy_error(told.energy_error)?;
         session.guard.check_tracking(told.tracking_energy_error, told.tracking.nrms_error)?;
         session.step_done(&report(&state, &told))?;

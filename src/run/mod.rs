@@ -15,6 +15,7 @@ pub mod driven;
 mod escalate;
 #[cfg(test)]
 mod escalate_tests;
+mod followed;
 mod frame_steps;
 mod gate;
 mod gliding;

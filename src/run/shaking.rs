@@ -1,13 +1,12 @@
 //! A frame on moving ground as it is shaken: the ground as a load, and every step kept. In: what is known before the first step.
 //! Out: the history and what it comes to. How the steps are gone on the rig is `frame_steps`'; the equations are `mechanics`'.
 
-use super::axes::{Told, together};
-use super::frame_steps::{self, Pace, Start, Stepped};
+use super::followed::Followed;
+use super::frame_steps::{self, Balance, Pace, Start, Stepped};
 use super::session::Session;
 use super::shake::Setting;
 use super::shake_results::ShakeSummary;
 use super::stop::Stop;
-use super::watch::Watch;
 use crate::mechanics::frame::{FrameInput, FrameSolver, FrameState};
 use crate::mechanics::ground::acceleration_at;
 use crate::mechanics::monitor::Tracking;
@@ -19,12 +18,12 @@ pub(super) struct Shaking<'a> {
     pub(super) setting: &'a Setting,
     pub(super) history: ShakeHistory,
     pub(super) summary: ShakeSummary,
-    pub(super) watch: Watch,
+    pub(super) followed: Followed,
 }
 
 impl Shaking<'_> {
     pub(super) fn run(&mut self, plan: &Shake, ground: &Ground, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Self { setting, history, summary, watch } = self;
+        let Self { setting, history, summary, followed } = self;
         let pace = Pace {
             matrices: &setting.properties.matrices,
             integrator: plan.integrator,
@@ -34,7 +33,7 @@ impl Shaking<'_> {
             mode: plan.mode,
             inspect: &plan.inspect,
         };
-        frame_steps::run(&pace, watch, session, |start| {
+        frame_steps::run(&pace, followed, session, |start| {
             let mut load = vec![0.0; pace.matrices.order()];
             let ground_acceleration = setting.ground_at(ground, 0);
             pace.matrices.ground_load(ground_acceleration, &mut load);
@@ -112,8 +111,7 @@ impl Stepped for Shaken<'_> {
         self.solver.complete(&reading.displacement, &reading.force);
     }
 
-    fn keep(&mut self, state: &FrameState, axes: Vec<Tracking>, session: &Session<'_>) -> Told {
-        let tracking = together(&axes);
+    fn keep(&mut self, state: &FrameState, axes: &[Tracking], session: &Session<'_>) -> Balance {
         self.history.steps.push(ShakeStep {
             step: state.step,
             time: state.time,
@@ -126,16 +124,12 @@ impl Stepped for Shaken<'_> {
             acceleration: state.acceleration.clone(),
             restoring_force: state.restoring_force.clone(),
             energies: state.energies,
-            tracking: axes,
+            tracking: axes.to_vec(),
         });
         self.summary.push(state);
         // An input that begins with nothing divides nothing: until it is larger, what the ground can put in counts.
-        let energy = self.summary.largest_energy().max(self.setting.ground_energy);
-        Told {
-            energy_error: if state.energies.error == 0.0 { 0.0 } else { state.energies.error / energy },
-            tracking,
-            tracking_energy_error: tracking.share_of(energy),
-        }
+        let input = self.summary.largest_energy().max(self.setting.ground_energy);
+        Balance { error: state.energies.error, input }
     }
 
     fn over(&self) -> bool {

@@ -3,6 +3,7 @@
 //! follows from them. The steps themselves are `striking`'s.
 
 use super::Performed;
+use super::followed::Followed;
 use super::impact::{law, remark};
 use super::inputs::Inputs;
 use super::session::Session;
@@ -10,7 +11,6 @@ use super::shake::{damping, steps_in};
 use super::stop::Stop;
 use super::storey_summary::{StoreySummary, results};
 use super::striking::Striking;
-use super::watch::Watch;
 use crate::formula::NoResults;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::frame::{Damping, Tangents, storeys_of};
@@ -45,7 +45,7 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
         Ok(setting) => setting,
         Err(stop) => {
             return Performed {
-                results: results(None, None, &history),
+                results: results(None, &Followed::default(), &history),
                 history: History::StoreyImpact(history),
                 stop: Some(stop),
             };
@@ -54,14 +54,14 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     history.modes = Some(setting.properties.modes.clone());
     history.damping_ratios = setting.properties.damping_ratios();
     let summary = StoreySummary::new(&setting.body, setting.properties.matrices.order());
-    let mut striking = Striking { setting: &setting, history, summary, watch: Watch::default() };
+    let mut striking = Striking { setting: &setting, history, summary, followed: Followed::default() };
     let stop = striking.run(plan, session).err();
-    let Striking { history, summary, watch, .. } = striking;
+    let Striking { history, summary, followed, .. } = striking;
     let summary = (!history.floors.is_empty()).then_some(summary);
     if let (Some(summary), None) = (&summary, &stop) {
         remark(&summary.blow(), plan.until, session);
     }
-    Performed { results: results(summary.as_ref(), watch.worst, &history), history: History::StoreyImpact(history), stop }
+    Performed { results: results(summary.as_ref(), &followed, &history), history: History::StoreyImpact(history), stop }
 }
 
 /// Steps of an impact on a storey, where the plan alone tells.

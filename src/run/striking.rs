@@ -2,13 +2,12 @@
 //! first step. Out: the history and what it comes to. How the steps are gone on the rig is `frame_steps`'; the equations are
 //! `mechanics`'.
 
-use super::axes::{Told, together};
-use super::frame_steps::{self, Pace, Start, Stepped};
+use super::followed::Followed;
+use super::frame_steps::{self, Balance, Pace, Start, Stepped};
 use super::session::Session;
 use super::stop::Stop;
 use super::storey_impact::Setting;
 use super::storey_summary::{StoreySummary, of_floor};
-use super::watch::Watch;
 use crate::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver};
 use crate::mechanics::frame::{FrameInput, FrameState};
 use crate::mechanics::monitor::Tracking;
@@ -20,12 +19,12 @@ pub(super) struct Striking<'a> {
     pub(super) setting: &'a Setting,
     pub(super) history: StoreyImpactHistory,
     pub(super) summary: StoreySummary,
-    pub(super) watch: Watch,
+    pub(super) followed: Followed,
 }
 
 impl Striking<'_> {
     pub(super) fn run(&mut self, plan: &StoreyImpact, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Self { setting, history, summary, watch } = self;
+        let Self { setting, history, summary, followed } = self;
         let pace = Pace {
             matrices: &setting.properties.matrices,
             integrator: plan.integrator,
@@ -36,7 +35,7 @@ impl Striking<'_> {
             inspect: &plan.inspect,
         };
         let unloaded = vec![0.0; pace.matrices.order()];
-        frame_steps::run(&pace, watch, session, |start| {
+        frame_steps::run(&pace, followed, session, |start| {
             let solver = solver(setting, plan, start, &unloaded)?;
             Ok(Struck { setting, until: plan.until, solver, unloaded: &unloaded, history, summary })
         })
@@ -105,8 +104,7 @@ impl Stepped for Struck<'_> {
         self.solver.complete(&reading.displacement, &reading.force);
     }
 
-    fn keep(&mut self, state: &FrameState, axes: Vec<Tracking>, session: &Session<'_>) -> Told {
-        let tracking = together(&axes);
+    fn keep(&mut self, state: &FrameState, axes: &[Tracking], session: &Session<'_>) -> Balance {
         let floor = of_floor(state, self.solver.striker(), self.history.struck, self.setting.body.stiffness);
         self.summary.push(state, &floor);
         self.history.blow.steps.push(ImpactStep {
@@ -126,7 +124,7 @@ impl Stepped for Struck<'_> {
             tangent_stiffness: floor.tangent_stiffness,
             indentation: floor.indentation,
             energies: floor.energies,
-            tracking,
+            tracking: Tracking::together(axes),
         });
         self.history.floors.push(FloorStep {
             time: state.time,
@@ -137,14 +135,9 @@ impl Stepped for Struck<'_> {
             acceleration: state.acceleration.clone(),
             restoring_force: state.restoring_force.clone(),
             storey_energy: self.summary.storey_energy().to_vec(),
-            tracking: axes,
+            tracking: axes.to_vec(),
         });
-        let input = self.setting.body.striker_energy();
-        Told {
-            energy_error: if floor.energies.error == 0.0 { 0.0 } else { floor.energies.error / input },
-            tracking,
-            tracking_energy_error: tracking.share_of(input),
-        }
+        Balance { error: floor.energies.error, input: self.setting.body.striker_energy() }
     }
 
     fn over(&self) -> bool {

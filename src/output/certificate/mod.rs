@@ -9,6 +9,7 @@ mod contact_log;
 mod curve;
 mod cycles;
 mod equipment;
+mod followed;
 mod foretold;
 mod frames;
 mod head;
