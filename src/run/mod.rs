@@ -16,6 +16,8 @@ mod escalate;
 #[cfg(test)]
 mod escalate_tests;
 mod followed;
+#[cfg(test)]
+mod followed_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
