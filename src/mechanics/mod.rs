@@ -29,6 +29,7 @@ pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
+pub mod structure;
 pub mod summary;
 pub mod tangent;
 

@@ -3,31 +3,20 @@
 //! ([`Stepped`]), how they are gone, the rig behind its guard. Out: every step done, judged and told, or why there are no more.
 //! It knows no ground, no striker and no equation.
 
+use std::fmt::Display;
+
 use super::axes::{Monitors, Told, report};
 use super::followed::Followed;
 use super::gliding::{Gliding, Passing};
 use super::session::Session;
+use super::stepping::FrameSteps;
 use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::triggers::Triggers;
-use crate::mechanics::frame::{FrameMatrices, FrameState};
+use crate::mechanics::frame::{FrameInput, FrameState};
 use crate::mechanics::monitor::Tracking;
-use crate::plan::{InspectTrigger, Integrator, Mode};
+use crate::plan::{Mode, Stepping};
 use crate::rig::{DeclaredNoise, Reading};
-
-/// How the steps of a frame are gone.
-pub(super) struct Pace<'a> {
-    pub matrices: &'a FrameMatrices,
-    pub integrator: Integrator,
-    /// s
-    pub time_step: f64,
-    /// At most so many.
-    pub steps: u64,
-    /// s
-    pub pause: f64,
-    pub mode: Mode,
-    pub inspect: &'a [InspectTrigger],
-}
 
 /// What is known when the first step begins.
 pub(super) struct Start {
@@ -36,6 +25,31 @@ pub(super) struct Start {
     /// What was read there, once: R₀ is in it.
     pub reading: Reading,
     pub noise: DeclaredNoise,
+}
+
+impl Start {
+    /// What a frame is stepped from, with these loads on its floors (N).
+    pub(super) fn input<'a>(&'a self, frame: &'a FrameSteps, plan: &Stepping, load: &'a [f64]) -> FrameInput<'a> {
+        let matrices = &frame.properties.matrices;
+        FrameInput {
+            matrices,
+            operator_stiffness: &matrices.stiffness,
+            integrator: plan.integrator,
+            i_modification: plan.i_modification,
+            tangents: frame.tangents,
+            time_step: frame.time_step,
+            initial_displacement: &self.commanded,
+            initial_restoring_force: &self.reading.force,
+            initial_load: load,
+            force_noise: self.noise.force,
+            resolution: self.noise.resolution,
+        }
+    }
+}
+
+/// Why a frame that cannot be stepped by `time_step` (s) is not.
+pub(super) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
+    Stop::BadInput { field: "time_step", value: time_step, wanted: format!("one that can be stepped: {error}").into() }
 }
 
 /// The energy of a test at the end of a step, J.
@@ -72,31 +86,31 @@ pub(super) trait Stepped {
 
 /// All steps, from where the rig stands.
 pub(super) fn run<S: Stepped>(
-    pace: &Pace<'_>,
+    (frame, plan): (&FrameSteps, &Stepping),
     followed: &mut Followed,
     session: &mut Session<'_>,
     begin: impl FnOnce(&Start) -> Result<S, Stop>,
 ) -> Result<(), Stop> {
-    let mut triggers = Triggers::new(pace.inspect);
+    let mut triggers = Triggers::new(&plan.inspect);
     let (commanded, reading) = (session.guard.commanded().to_vec(), session.guard.read()?);
     let start = Start { commanded, reading, noise: session.guard.declared_noise() };
     let mut stepped = begin(&start)?;
     let Start { commanded, reading, noise } = start;
     let mut monitors = Monitors::new(&commanded, &reading);
-    let mut stiffer = StifferStoreys::new(pace.matrices, pace.integrator, pace.time_step, noise, &reading);
-    let mut gliding = match pace.mode {
-        Mode::Continuous { time_scale } => Some(Gliding::from_rest(&commanded, time_scale, pace.time_step)),
+    let mut stiffer = StifferStoreys::new(&frame.properties.matrices, plan.integrator, frame.time_step, noise, &reading);
+    let mut gliding = match plan.mode {
+        Mode::Continuous { time_scale } => Some(Gliding::from_rest(&commanded, time_scale, frame.time_step)),
         Mode::StepAndPause => None,
     };
     let mut at_rest = stepped.frame().clone();
     at_rest.measured_displacement.clone_from(&reading.displacement);
     stepped.keep(&at_rest, &vec![Tracking::default(); commanded.len()], session);
-    for _ in 1..=pace.steps {
+    for _ in 1..=frame.steps {
         let reading = if let Some(gliding) = &mut gliding {
             gliding.step(|| foretold(&mut stepped), session)?
         } else {
             session.guard.move_to(stepped.predict(), None)?;
-            session.guard.pause(pace.pause)?;
+            session.guard.pause(frame.pause)?;
             session.guard.read()?
         };
         if gliding.is_none() {

@@ -2,12 +2,12 @@
 //! Out: the history and what it comes to. How the steps are gone on the rig is `frame_steps`'; the equations are `mechanics`'.
 
 use super::followed::Followed;
-use super::frame_steps::{self, Balance, Pace, Start, Stepped};
+use super::frame_steps::{self, Balance, Stepped, not_stepped};
 use super::session::Session;
 use super::shake::Setting;
 use super::shake_results::ShakeSummary;
 use super::stop::Stop;
-use crate::mechanics::frame::{FrameInput, FrameSolver, FrameState};
+use crate::mechanics::frame::{FrameSolver, FrameState};
 use crate::mechanics::ground::acceleration_at;
 use crate::mechanics::monitor::Tracking;
 use crate::plan::{Ground, Shake};
@@ -24,52 +24,23 @@ pub(super) struct Shaking<'a> {
 impl Shaking<'_> {
     pub(super) fn run(&mut self, plan: &Shake, ground: &Ground, session: &mut Session<'_>) -> Result<(), Stop> {
         let Self { setting, history, summary, followed } = self;
-        let pace = Pace {
-            matrices: &setting.properties.matrices,
-            integrator: plan.integrator,
-            time_step: setting.time_step,
-            steps: setting.steps,
-            pause: setting.pause,
-            mode: plan.mode,
-            inspect: &plan.inspect,
-        };
-        frame_steps::run(&pace, followed, session, |start| {
-            let mut load = vec![0.0; pace.matrices.order()];
+        let matrices = &setting.frame.properties.matrices;
+        frame_steps::run((&setting.frame, &plan.stepping), followed, session, |start| {
+            let mut load = vec![0.0; matrices.order()];
             let ground_acceleration = setting.ground_at(ground, 0);
-            pace.matrices.ground_load(ground_acceleration, &mut load);
-            let solver = solver(setting, plan, start, &load)?;
+            matrices.ground_load(ground_acceleration, &mut load);
+            let input = start.input(&setting.frame, &plan.stepping, &load);
+            let solver = FrameSolver::new(&input).map_err(|error| not_stepped(input.time_step, &error))?;
             Ok(Shaken { setting, ground, solver, load, ground_acceleration, history, summary })
         })
     }
-}
-
-fn solver(setting: &Setting, plan: &Shake, start: &Start, load: &[f64]) -> Result<FrameSolver, Stop> {
-    let matrices = &setting.properties.matrices;
-    let solver = FrameSolver::new(&FrameInput {
-        matrices,
-        operator_stiffness: &matrices.stiffness,
-        integrator: plan.integrator,
-        i_modification: plan.i_modification,
-        tangents: setting.tangents,
-        time_step: setting.time_step,
-        initial_displacement: &start.commanded,
-        initial_restoring_force: &start.reading.force,
-        initial_load: load,
-        force_noise: start.noise.force,
-        resolution: start.noise.resolution,
-    });
-    solver.map_err(|error| Stop::BadInput {
-        field: "time_step",
-        value: setting.time_step,
-        wanted: format!("one that can be stepped: {error}").into(),
-    })
 }
 
 impl Setting {
     /// Acceleration of the ground at the end of a step, as it is applied, m/s².
     fn ground_at(&self, ground: &Ground, step: u64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
-        let time = step as f64 * self.time_step;
+        let time = step as f64 * self.frame.time_step;
         self.scale * acceleration_at(&ground.times, &ground.accelerations, time)
     }
 }
@@ -94,7 +65,7 @@ impl Stepped for Shaken<'_> {
 
     fn predict(&mut self) -> &[f64] {
         self.ground_acceleration = self.setting.ground_at(self.ground, self.solver.state().step + 1);
-        self.setting.properties.matrices.ground_load(self.ground_acceleration, &mut self.load);
+        self.setting.frame.properties.matrices.ground_load(self.ground_acceleration, &mut self.load);
         self.solver.predict(&self.load)
     }
 

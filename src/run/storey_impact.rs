@@ -7,18 +7,18 @@ use super::followed::Followed;
 use super::impact::{law, remark};
 use super::inputs::Inputs;
 use super::session::Session;
-use super::shake::{damping, steps_in};
+use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
 use super::storey_summary::{StoreySummary, results};
 use super::striking::Striking;
 use crate::formula::NoResults;
 use crate::mechanics::contact::ContactLaw;
-use crate::mechanics::frame::{Damping, Tangents, storeys_of};
+use crate::mechanics::frame::Damping;
 use crate::mechanics::frame_properties::{Approach, FrameProperties};
 use crate::mechanics::impact::ImpactInput;
-use crate::plan::{Contact, Frame, MOST_STEPS, Plan, StoreyImpact, Striker};
+use crate::mechanics::structure::Structure;
+use crate::plan::{Contact, Frame, Plan, StoreyImpact, Striker, step_count};
 use crate::quantity::Dimension;
-use crate::quantity::display::stated;
 use crate::record::{History, ImpactHistory, StoreyImpactHistory};
 
 pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -31,8 +31,8 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     );
     let blow = |setting: Option<&Setting>| ImpactHistory {
         steps: Vec::new(),
-        time_step: setting.map_or(0.0, |setting| setting.time_step),
-        critical_time_step: setting.map_or(0.0, |setting| setting.critical_time_step),
+        time_step: setting.map_or(0.0, |setting| setting.frame.time_step),
+        critical_time_step: setting.map_or(0.0, |setting| setting.frame.critical_time_step),
     };
     let mut history = StoreyImpactHistory {
         blow: blow(setting.as_ref().ok()),
@@ -51,9 +51,9 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
             };
         }
     };
-    history.modes = Some(setting.properties.modes.clone());
-    history.damping_ratios = setting.properties.damping_ratios();
-    let summary = StoreySummary::new(&setting.body, setting.properties.matrices.order());
+    history.modes = Some(setting.frame.properties.modes.clone());
+    history.damping_ratios = setting.frame.properties.damping_ratios();
+    let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
     let mut striking = Striking { setting: &setting, history, summary, followed: Followed::default() };
     let stop = striking.run(plan, session).err();
     let Striking { history, summary, followed, .. } = striking;
@@ -74,24 +74,15 @@ pub(super) fn steps(impact: &StoreyImpact, plan: &Plan) -> Option<u64> {
     };
     let approach = Approach::of(plan.strikers.get(impact.striker)?, hertz);
     let critical = properties.critical_on_impact(impact.struck, &approach);
-    let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
-    Some(steps_in(impact.duration.constant()?, time_step) as u64)
+    let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+    Some(step_count(impact.duration.constant()?, time_step))
 }
 
 /// Everything known before the first step.
 pub(super) struct Setting {
-    pub(super) properties: FrameProperties,
-    pub(super) tangents: Tangents,
+    pub(super) frame: FrameSteps,
     pub(super) law: ContactLaw,
     pub(super) striker: Striker,
-    /// s
-    pub(super) time_step: f64,
-    /// s
-    pub(super) critical_time_step: f64,
-    pub(super) steps: u64,
-    /// s
-    pub(super) pause: f64,
     /// The struck floor and the striker as an impact on one degree of freedom has them.
     pub(super) body: ImpactInput,
 }
@@ -104,55 +95,27 @@ impl Setting {
         inputs: &mut Inputs<'_>,
         session: &Session<'_>,
     ) -> Result<Self, Stop> {
-        let (damping, ratio) = damping(&plan.damping, inputs)?;
-        let unmet = |reason: String| Stop::BadInput { field: "damping_ratio", value: ratio, wanted: reason.into() };
-        let properties = FrameProperties::of(frame, &damping).map_err(|reason| unmet(format!("other: {reason}")))?;
+        let properties = stepping::properties(frame, &plan.damping, inputs)?;
         let law = law(&plan.contact, inputs)?;
         let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
         let critical = properties.critical_on_impact(plan.struck, &Approach::of(striker, hertz));
-        let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical))?.value;
-        let limit = properties.longest_stable_step(plan.integrator, Some(frame).filter(|_| session.reckoned()));
-        if time_step > limit && !plan.allow_unstable {
-            let wanted =
-                format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
-            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
-        }
+        let time_step = stepping::time_step(&plan.stepping, (frame, &properties), critical, inputs, session)?;
         let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
-        let largest_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
-        let steps = steps_in(duration, time_step);
-        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-        let floors = frame.degrees_of_freedom() as f64;
-        if steps * floors > MOST_STEPS {
-            let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
-            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
-        }
-        let tangents = match storeys_of(&properties.matrices.stiffness) {
-            Some(_) => Tangents::Storeys { largest_ratio },
-            None => Tangents::Initial,
-        };
+        let steps = FrameSteps::new(properties, &plan.stepping, (time_step, critical, duration), inputs)?;
         let noise = session.guard.declared_noise();
         let stiffness = frame.stiffness[plan.struck][plan.struck];
-        let body = ImpactInput {
-            mass: properties.struck_mass(plan.struck),
+        let body = Structure {
+            mass: steps.properties.struck_mass(plan.struck),
             damping: 0.0,
             stiffness,
-            striker_mass: striker.mass,
-            striker_velocity: striker.velocity,
-            gap: striker.gap,
-            gravity: striker.gravity,
-            time_step,
-            max_tangent_ratio: largest_ratio,
-            law,
-            integrator: plan.integrator,
             operator_stiffness: stiffness,
-            i_modification: plan.i_modification,
+            law,
+            time_step,
+            max_tangent_ratio: steps.max_tangent_ratio,
             force_noise: noise.force,
             resolution: noise.resolution,
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
-        let steps = steps as u64;
-        let striker = striker.clone();
-        Ok(Self { properties, tangents, law, striker, time_step, critical_time_step: critical, steps, pause, body })
+        let body = body.struck_by(striker, &plan.stepping);
+        Ok(Self { frame: steps, law, striker: striker.clone(), body })
     }
 }

@@ -3,13 +3,13 @@
 //! `mechanics`'.
 
 use super::followed::Followed;
-use super::frame_steps::{self, Balance, Pace, Start, Stepped};
+use super::frame_steps::{self, Balance, Stepped, not_stepped};
 use super::session::Session;
 use super::stop::Stop;
 use super::storey_impact::Setting;
 use super::storey_summary::{StoreySummary, of_floor};
+use crate::mechanics::frame::FrameState;
 use crate::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver};
-use crate::mechanics::frame::{FrameInput, FrameState};
 use crate::mechanics::monitor::Tracking;
 use crate::plan::{StoreyImpact, Until};
 use crate::record::{FloorStep, ImpactStep, StoreyImpactHistory};
@@ -25,51 +25,21 @@ pub(super) struct Striking<'a> {
 impl Striking<'_> {
     pub(super) fn run(&mut self, plan: &StoreyImpact, session: &mut Session<'_>) -> Result<(), Stop> {
         let Self { setting, history, summary, followed } = self;
-        let pace = Pace {
-            matrices: &setting.properties.matrices,
-            integrator: plan.integrator,
-            time_step: setting.time_step,
-            steps: setting.steps,
-            pause: setting.pause,
-            mode: plan.mode,
-            inspect: &plan.inspect,
-        };
-        let unloaded = vec![0.0; pace.matrices.order()];
-        frame_steps::run(&pace, followed, session, |start| {
-            let solver = solver(setting, plan, start, &unloaded)?;
+        let unloaded = vec![0.0; setting.frame.properties.matrices.order()];
+        frame_steps::run((&setting.frame, &plan.stepping), followed, session, |start| {
+            let input = FrameImpactInput {
+                frame: start.input(&setting.frame, &plan.stepping, &unloaded),
+                struck: plan.struck,
+                striker_mass: setting.striker.mass,
+                striker_velocity: setting.striker.velocity,
+                gap: setting.striker.gap,
+                gravity: setting.striker.gravity,
+                law: setting.law,
+            };
+            let solver = FrameImpactSolver::new(&input).map_err(|error| not_stepped(input.frame.time_step, &error))?;
             Ok(Struck { setting, until: plan.until, solver, unloaded: &unloaded, history, summary })
         })
     }
-}
-
-fn solver(setting: &Setting, plan: &StoreyImpact, start: &Start, unloaded: &[f64]) -> Result<FrameImpactSolver, Stop> {
-    let Setting { properties, tangents, law, striker, time_step, .. } = setting;
-    let input = FrameImpactInput {
-        frame: FrameInput {
-            matrices: &properties.matrices,
-            operator_stiffness: &properties.matrices.stiffness,
-            integrator: plan.integrator,
-            i_modification: plan.i_modification,
-            tangents: *tangents,
-            time_step: *time_step,
-            initial_displacement: &start.commanded,
-            initial_restoring_force: &start.reading.force,
-            initial_load: unloaded,
-            force_noise: start.noise.force,
-            resolution: start.noise.resolution,
-        },
-        struck: plan.struck,
-        striker_mass: striker.mass,
-        striker_velocity: striker.velocity,
-        gap: striker.gap,
-        gravity: striker.gravity,
-        law: *law,
-    };
-    FrameImpactSolver::new(&input).map_err(|error| Stop::BadInput {
-        field: "time_step",
-        value: *time_step,
-        wanted: format!("one that can be stepped: {error}").into(),
-    })
 }
 
 /// The frame under way, with its striker.
