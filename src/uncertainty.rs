@@ -19,12 +19,12 @@ pub enum Source {
     StrikerVelocity(usize),
     /// By its place among the plan's specimens.
     SpecimenMass(usize),
-    /// The factor between the rig's newtons and newtons.
-    ForceScale,
-    /// The factor between the rig's metres and metres.
-    DisplacementScale,
-    /// The load cell's reading of no force.
-    ForceZero,
+    /// The factor between newtons and those of the load cell of an axis, by its place; each axis has a cell of its own.
+    ForceScale(usize),
+    /// The factor between metres and those of the transducer of an axis, by its place.
+    DisplacementScale(usize),
+    /// What the load cell of an axis, by its place, reads of no force.
+    ForceZero(usize),
     /// Noise and resolution of a procedure's readings: one of the draws by which they are sampled.
     Readings {
         procedure: ProcedureId,

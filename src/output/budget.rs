@@ -3,8 +3,10 @@
 
 use super::Run;
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+use crate::plan::Plan;
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, ProcedureRecord};
+use crate::rig::named_axis;
 use crate::uncertainty::{Contribution, Source};
 
 /// The budget of one result.
@@ -85,7 +87,6 @@ fn lines(run: &Run<'_>, contributions: &[Contribution]) -> Vec<Line> {
 
 fn line(run: &Run<'_>, part: &Contribution) -> Line {
     let plan = run.plan;
-    let calibration = &plan.rig.calibration;
     let striker = |index: usize| plan.strikers.get(index);
     let (input, from, value, uncertainty, dimension) = match part.source {
         Source::Fit { procedure, result } => {
@@ -107,22 +108,29 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
                 plan.specimens.get(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.mass, s.mass_uncertainty));
             (format!("{name}.mass"), From::Plan, Some(value), Some(u), Dimension::MASS)
         }
-        Source::ForceScale => {
-            let u = calibration.force_uncertainty;
-            ("force calibration".to_owned(), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+        Source::ForceScale(axis) => {
+            let u = plan.rig.calibration_of(axis).force_uncertainty;
+            (of_axis("force calibration", plan, axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
-        Source::DisplacementScale => {
-            let u = calibration.displacement_uncertainty;
-            ("displacement calibration".to_owned(), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+        Source::DisplacementScale(axis) => {
+            let u = plan.rig.calibration_of(axis).displacement_uncertainty;
+            (of_axis("displacement calibration", plan, axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
-        Source::ForceZero => {
-            ("zero of the load cell".to_owned(), From::Rig, Some(0.0), Some(calibration.zero_uncertainty), Dimension::FORCE)
+        Source::ForceZero(axis) => {
+            let u = plan.rig.calibration_of(axis).zero_uncertainty;
+            (of_axis("zero of the load cell", plan, axis), From::Rig, Some(0.0), Some(u), Dimension::FORCE)
         }
         Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
     Line { input, from, value, uncertainty, dimension, contribution: part.amount, sensitivity, draws: None, smooth: part.smooth }
+}
+
+/// What a channel of the axis at this place is called; of a rig of one axis nothing is said of it.
+fn of_axis(what: &str, plan: &Plan, axis: usize) -> String {
+    let axes = plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom());
+    named_axis(axis, axes).map_or_else(|| what.to_owned(), |axis| format!("{what} of axis {axis}"))
 }
 
 /// Value and dimension of a fitted result, and how much of its uncertainty is of this source.

@@ -85,9 +85,9 @@ fn of_calibration(result: &NamedResult, value: f64, calibration: &Calibration) -
     let (force, displacement) = (mass.as_f64(), length.as_f64() - mass.as_f64());
     let zero = if SHIFTED.contains(&result.name) { calibration.zero_uncertainty } else { 0.0 };
     let parts = [
-        (Source::ForceScale, value * force * calibration.force_uncertainty),
-        (Source::DisplacementScale, value * displacement * calibration.displacement_uncertainty),
-        (Source::ForceZero, zero),
+        (Source::ForceScale(0), value * force * calibration.force_uncertainty),
+        (Source::DisplacementScale(0), value * displacement * calibration.displacement_uncertainty),
+        (Source::ForceZero(0), zero),
     ];
     parts.into_iter().filter(|(_, amount)| *amount != 0.0).map(|(source, amount)| Contribution::new(source, amount)).collect()
 }

@@ -34,12 +34,12 @@ pub(super) fn propagate(
     let nominal = values(history);
     let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); OF_LOOPS.len()];
     let at: [(Source, f64, Moving); 3] = [
-        (Source::ForceScale, calibration.force_uncertainty, |by| Distortion { force_scale: 1.0 + by, ..Distortion::NONE }),
-        (Source::DisplacementScale, calibration.displacement_uncertainty, |by| Distortion {
+        (Source::ForceScale(0), calibration.force_uncertainty, |by| Distortion { force_scale: 1.0 + by, ..Distortion::NONE }),
+        (Source::DisplacementScale(0), calibration.displacement_uncertainty, |by| Distortion {
             displacement_scale: 1.0 + by,
             ..Distortion::NONE
         }),
-        (Source::ForceZero, calibration.zero_uncertainty, |by| Distortion { zero: by, ..Distortion::NONE }),
+        (Source::ForceZero(0), calibration.zero_uncertainty, |by| Distortion { zero: by, ..Distortion::NONE }),
     ];
     for (source, uncertainty, distortion) in at.into_iter().filter(|(_, uncertainty, _)| *uncertainty > 0.0) {
         let (up, down) = (moved(distortion(uncertainty)), moved(distortion(-uncertainty)));
@@ -157,9 +157,9 @@ mod tests {
             let parts = &record.procedures[0].result(name).unwrap().contributions;
             let of = |source| parts.iter().find(|part| part.source == source).map_or(0.0, |part| part.amount);
             for (source, by_hand) in [
-                (Source::ForceScale, 0.01 * force * value),
-                (Source::DisplacementScale, 0.003 * displacement * value),
-                (Source::ForceZero, zero),
+                (Source::ForceScale(0), 0.01 * force * value),
+                (Source::DisplacementScale(0), 0.003 * displacement * value),
+                (Source::ForceZero(0), zero),
             ] {
                 let found = of(source);
                 assert!((found - by_hand).abs() < 1e-4 * 0.01 * value.abs(), "{name}: {found}, by hand {by_hand}");

@@ -123,14 +123,14 @@ impl<'run> Doubts<'run> {
         }
         let mut sources = sources_of(&references, self.results);
         let Striker { mass_uncertainty, velocity_uncertainty, .. } = self.whole.strikers[*striker];
-        let calibration = &self.whole.rig.calibration;
+        let calibration = &self.whole.rig.calibration_of(0);
         let stated = [
             (Source::StrikerMass(*striker), mass_uncertainty),
             (Source::StrikerVelocity(*striker), velocity_uncertainty),
             (Source::SpecimenMass(*specimen), self.plan.mass_uncertainty),
-            (Source::ForceScale, calibration.force_uncertainty),
-            (Source::DisplacementScale, calibration.displacement_uncertainty),
-            (Source::ForceZero, calibration.zero_uncertainty),
+            (Source::ForceScale(0), calibration.force_uncertainty),
+            (Source::DisplacementScale(0), calibration.displacement_uncertainty),
+            (Source::ForceZero(0), calibration.zero_uncertainty),
         ];
         let stated = stated.into_iter().filter(|(_, uncertainty)| *uncertainty > 0.0).map(|(source, _)| source);
         sources.extend(stated);
@@ -145,15 +145,16 @@ impl<'run> Doubts<'run> {
         let mut striker = declared.clone();
         let mut distortion = Distortion::NONE;
         let mut heavier = 0.0;
-        let calibration = &self.whole.rig.calibration;
+        let calibration = &self.whole.rig.calibration_of(0);
         match source {
             Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
             Source::StrikerVelocity(_) => striker.velocity += by * striker.velocity_uncertainty,
             Source::SpecimenMass(_) => heavier = by * self.plan.mass_uncertainty,
-            Source::ForceScale => distortion.force_scale += by * calibration.force_uncertainty,
-            Source::DisplacementScale => distortion.displacement_scale += by * calibration.displacement_uncertainty,
-            Source::ForceZero => distortion.zero = by * calibration.zero_uncertainty,
-            Source::Fit { .. } | Source::Readings { .. } | Source::TimeStep { .. } => {}
+            Source::ForceScale(0) => distortion.force_scale += by * calibration.force_uncertainty,
+            Source::DisplacementScale(0) => distortion.displacement_scale += by * calibration.displacement_uncertainty,
+            Source::ForceZero(0) => distortion.zero = by * calibration.zero_uncertainty,
+            // Of another axis, or of no input of a blow: only what follows from it moves.
+            _ => {}
         }
         let results = Moved { results: self.results, source, by };
         let mut inputs = Inputs::new(&results, self.procedure);
