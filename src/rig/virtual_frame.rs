@@ -454,7 +454,7 @@ mod tests {
     fn settles_when_every_storey_has_nearly_relaxed() {
         let relaxing = |stiffness| {
             let of = Box::new(Behaviour::Elastic { stiffness });
-            storey(stiffness, Behaviour::Maxwell { of, stiffness: 1000.0, time_constant: 2.0 })
+            Storey::new(1.0, stiffness, Behaviour::Maxwell { of, stiffness: 1000.0, time_constant: 2.0 })
         };
         let frame = Frame::of_storeys(vec![relaxing(3000.0), relaxing(2000.0)]);
         let settle = Settle { band: 1e-6, force_rate: 0.02, dwell: 0.5, timeout: 60.0 };
