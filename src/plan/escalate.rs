@@ -1,6 +1,6 @@
 //! A checked `escalate`: blows of rising energy on one specimen, until a condition no longer holds.
 
-use super::{Condition, Impact, StoreyImpact};
+use super::{Condition, Impact, StoreyImpact, Striker};
 use crate::formula::{Formula, ProcedureId};
 
 /// One impact after the other, each harder.
@@ -17,6 +17,15 @@ pub struct Escalate {
     pub between: Between,
     /// Whether a person looks at the specimen between two blows.
     pub inspect_between: bool,
+}
+
+impl Escalate {
+    /// The striker of the fastest blow, as far as the velocities are known before the run: all blows on a frame have its time step.
+    #[must_use]
+    pub fn fastest(&self, striker: &Striker) -> Striker {
+        let known = self.velocities.iter().filter_map(Formula::constant).reduce(f64::max);
+        Striker { velocity: known.unwrap_or(striker.velocity), ..striker.clone() }
+    }
 }
 
 /// What a blow strikes.

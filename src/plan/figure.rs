@@ -144,9 +144,16 @@ impl FigureKind {
                 Self::Energy,
                 Self::Tracking,
             ],
-            ProcedureKind::Shake(_) => {
-                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
-            }
+            ProcedureKind::Shake(_) => &[
+                Self::Modes,
+                Self::Ground,
+                Self::Displacement,
+                Self::Drift,
+                Self::Hysteresis,
+                Self::BaseShear,
+                Self::Energy,
+                Self::Tracking,
+            ],
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Escalate(Escalate { blow: BlowOn::Storey(_), .. }) => {
                 &[Self::Blows, Self::Drift, Self::Hysteresis, Self::Displacement]

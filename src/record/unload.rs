@@ -1,6 +1,7 @@
 //! What an unloading of a frame records: the floors after every move. In: numbers of a run, SI. It moves nothing.
 
 use super::Floors;
+use crate::mechanics::monitor::Tracking;
 
 /// All floors after one move, from the ground up; step 0 is where the unloading began.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +31,19 @@ impl Floors for UnloadStep {
 
     fn restoring_force(&self) -> &[f64] {
         &self.restoring_force
+    }
+
+    fn command(&self) -> &[f64] {
+        &self.command
+    }
+
+    fn measured(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// Of a recursion, and none runs.
+    fn tracking(&self) -> &[Tracking] {
+        &[]
     }
 }
 
