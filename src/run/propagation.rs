@@ -86,7 +86,8 @@ impl<'run> Doubts<'run> {
         // What the specimen may have done for all the record tells: the most that any of it makes of a source is told.
         let mut contributions: Vec<Vec<Contribution>> = Vec::new();
         for rule in path.rules() {
-            let found = self.supposing(setting, &path.clone().supposing(rule), &sources, sampled.then_some(steps.len() as u64))?;
+            let found =
+                self.supposing(setting, &path.clone().supposing(rule), &sources, sampled.then_some(steps.len() as u64))?;
             if contributions.is_empty() {
                 contributions = found;
             } else {
@@ -268,7 +269,8 @@ fn effect(nominal: f64, [up, half_up, half_down, down]: [f64; 4]) -> (f64, bool)
 /// of readings together, for it is their sum that tells. Where the two do not agree, none of them is sure.
 fn widen(told: &mut [Contribution], other: &[Contribution]) {
     let drawn = |part: &Contribution| matches!(part.source, Source::Readings { .. });
-    let all_drawn = |parts: &[Contribution]| parts.iter().filter(|part| drawn(part)).map(|part| part.amount.powi(2)).sum::<f64>().sqrt();
+    let all_drawn =
+        |parts: &[Contribution]| parts.iter().filter(|part| drawn(part)).map(|part| part.amount.powi(2)).sum::<f64>().sqrt();
     let (draws, of_other) = (all_drawn(told), all_drawn(other));
     for (told, other) in told.iter_mut().zip(other) {
         let (one, two, apart) = if drawn(told) {

@@ -6,6 +6,9 @@
 use super::map::Map;
 use super::{Distortion, RecordedPath, Rule};
 
+/// A curve whose last slope is less than this share of its first has settled on that.
+const SETTLED: f64 = 0.9;
+
 /// The way as it is taken again.
 #[derive(Clone, Debug)]
 pub struct Again<'a> {
@@ -171,19 +174,36 @@ impl<'a> Again<'a> {
         let moved = here - turn.target;
         let (_, force) = path.at(self.piece, self.nearest(), here);
         // Readings so near each other tell noise.
-        let rise = if moved.abs() <= path.least { path.pieces[path.branches[branch].last_piece].end_tangent * moved } else { force - turn.force };
-        let own = if path.branches[next].retraces {
-            Map::NONE
+        let rise = if moved.abs() <= path.least {
+            path.pieces[path.branches[branch].last_piece].end_tangent * moved
         } else {
-            let stretched = (path.rule == Rule::Pivoted)
-                .then(|| path.pivot(next))
-                .flatten()
-                .and_then(|pivot| Map::about(pivot, [turn.target, turn.force], [here, turn.force + rise]));
-            stretched.unwrap_or_else(|| Map::shifted(moved, rise))
+            force - turn.force
         };
+        let own = if path.branches[next].retraces { Map::NONE } else { self.moved(next, moved, rise) };
         self.maps[next] = map.after(own);
         self.turns[branch] = place;
         self.piece = path.branches[next].first_piece;
+    }
+
+    /// What becomes of the curve of a branch that begins `moved` (m) and `rise` (N) from where it began in the record.
+    fn moved(&self, branch: usize, moved: f64, rise: f64) -> Map {
+        let path = self.path;
+        let piece = path.pieces[path.branches[branch].first_piece];
+        let turn = path.readings[piece.begin];
+        let shifted = Map::shifted(moved, rise);
+        match path.rule {
+            Rule::Pivoted => {
+                let stretched = |pivot| Map::about(pivot, [turn.target, turn.force], [turn.target + moved, turn.force + rise]);
+                path.pivot(branch).and_then(stretched).unwrap_or(shifted)
+            }
+            Rule::Shifted if path.branches[branch].drifts => {
+                // Along its own last slope, on which it so comes to lie as it did, to where it begins on the new turn.
+                let (first, last) = (piece.start_tangent, piece.end_tangent);
+                let along = (first * moved - rise) / (first - last);
+                if last.abs() < SETTLED * first.abs() { Map::shifted(along, last * along) } else { shifted }
+            }
+            Rule::Shifted | Rule::Kept => shifted,
+        }
     }
 
     /// The step of the record that is looked from: past its end, its last.

@@ -32,11 +32,15 @@ pub struct Reading {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Its curve begins at the turn and keeps its shape: exact of elastic specimens and of elastic–plastic elements side by
-    /// side (Iwan 1967), whatever they are made of.
+    /// side (Iwan 1967), however many. One that passed an earlier turn of the record elsewhere than through it, so that no
+    /// loop was closed, keeps the line that it settled on.
     Shifted,
     /// Its curve is stretched about where the one before it began, if it came back softer than it first was: exact of those
     /// that lose stiffness and come back to the origin.
     Pivoted,
+    /// As `Shifted`, and loops that did not close in the record keep their shape as well: of specimens that forget a turn
+    /// only as they flow on (Bouc and Wen) neither is exact.
+    Kept,
 }
 
 /// How the way differs from the recorded one.
@@ -107,7 +111,9 @@ impl RecordedPath {
     #[must_use]
     pub fn rules(&self) -> Vec<Rule> {
         let softer = (1..self.branches.len()).any(|branch| self.pivot(branch).is_some());
-        if softer { vec![Rule::Shifted, Rule::Pivoted] } else { vec![Rule::Shifted] }
+        let drifts = self.branches.iter().any(|branch| branch.drifts);
+        let possible = [(Rule::Shifted, true), (Rule::Pivoted, softer), (Rule::Kept, drifts)];
+        possible.into_iter().filter(|(_, possible)| *possible).map(|(rule, _)| rule).collect()
     }
 
     /// The same record, if the specimen is supposed to keep to a rule.

@@ -9,6 +9,8 @@ use super::Reading;
 
 /// Loops no thicker than this share of the force they span are none: the way back is the way there.
 const THIN: f64 = 1e-3;
+/// And those that miss the turn where they would close by more than this share of their height do not close.
+const OPEN: f64 = 0.02;
 /// Noise of a difference that is taken for one, in standard deviations of a reading.
 const NOISE_BOUND: f64 = 3.0;
 
@@ -45,6 +47,8 @@ pub(super) struct Branch {
     pub last_piece: usize,
     /// It goes back over the curve it came from.
     pub retraces: bool,
+    /// It passed the place of an earlier turn elsewhere than through it: no loop was closed.
+    pub drifts: bool,
 }
 
 /// Cuts a record; `least` (m) is how long a piece must be to tell a tangent, `stiffness` (N/m) what holds where none does.
@@ -72,15 +76,24 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
             end_tangent: elastic,
         };
         let first_piece = pieces.len();
+        let mut drifts = false;
         pieces.push(own);
         for step in begin + 1..=end {
-            let mut rejoined = None;
+            let (mut rejoined, mut passed) = (None, false);
             while let [.., left, _] = open[..]
                 && (readings[step].target - readings[branches[left].end].target) * direction > 0.0
             {
-                rejoined = Some(left);
+                let turn = readings[branches[left].end];
+                let (near, far) = (readings[step - 1], readings[step]);
+                let force = near.force + (turn.target - near.target) / (far.target - near.target) * (far.force - near.force);
+                let height = (turn.force - readings[begin].force).abs();
+                let unsure = NOISE_BOUND * force_noise + 0.5 * (far.force - near.force).abs();
+                let closed = (force - turn.force).abs() <= unsure + OPEN * height;
+                rejoined = closed.then_some(left);
+                passed |= !closed;
                 open.truncate(open.len() - 2);
             }
+            drifts |= passed;
             if let Some(left) = rejoined {
                 let before = branches[left].last_piece;
                 let here = pieces.len();
@@ -102,7 +115,7 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
         if branch == 0 {
             elastic = pieces[0].start_tangent;
         }
-        branches.push(Branch { direction, end, first_piece, last_piece: pieces.len() - 1, retraces: false });
+        branches.push(Branch { direction, end, first_piece, last_piece: pieces.len() - 1, retraces: false, drifts });
     }
     for branch in 1..branches.len() {
         branches[branch].retraces = retraces(readings, &pieces, &branches, branch, NOISE_BOUND * force_noise);
