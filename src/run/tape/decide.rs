@@ -182,7 +182,7 @@ pub fn decide(
         return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before[0], others: before[1..].to_vec() }));
     }
     if at + 1 < lines.len()
-        && let Some(paths) = intent.path.as_ref().filter(|paths| paths.iter().any(|path| path.end_velocity != 0.0))
+        && let Some(paths) = intent.path.as_ref().filter(|_| !place.is(&target))
     {
         // It passed its target, went on as fast as there, and held: brought back, it goes on from rest.
         place.behind(paths)?;
