@@ -136,8 +136,7 @@ fn cut_off_anywhere_it_is_brought_back_and_goes_on_to_the_same_end() {
     link(&mut plan).watchdog = 3.0;
     let whole = run(&plan, "");
     assert!(whole.completed(), "{}", whole.reason());
-    let mut kills = 0;
-    for call in (60..).step_by(3) {
+    for (kills, call) in (60..).step_by(3).enumerate() {
         let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
         let ended = catch_unwind(AssertUnwindSafe(|| {
             let mut rig = open(&plan, &stand).unwrap();
@@ -149,7 +148,6 @@ fn cut_off_anywhere_it_is_brought_back_and_goes_on_to_the_same_end() {
             assert!(kills > 10, "{kills}");
             return;
         }
-        kills += 1;
         // Nobody speaks to it: it goes on for a moment, and holds by itself.
         stand.clock().sleep(4.0);
         assert!(!stand.stand().bench().moving());

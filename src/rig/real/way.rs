@@ -75,7 +75,7 @@ impl RealRig {
             let span = high - low;
             let band = self.settle.band + span + std::mem::replace(&mut axis.span, span);
             let error = (reading.displacement[place] - path.to).abs();
-            if on(Guarding::Following) && !(error <= band) {
+            if on(Guarding::Following) && (error.is_nan() || error > band) {
                 return Err(RigFault::Following { error, band, axis: named_axis(place, count) });
             }
         }

@@ -44,7 +44,7 @@ impl Native {
             bench.refuse_all(&paths.iter().map(farthest).collect::<Vec<f64>>());
             return Err(of_axis("LIMIT", axis, paths.len()));
         }
-        if paths.iter().any(|path| !(path.fastest() * 1e3 <= self.run.top_speed + ROUNDING)) {
+        if !paths.iter().all(|path| path.fastest() * 1e3 <= self.run.top_speed + ROUNDING) {
             return Err("RATE".to_owned());
         }
         self.last_move = Some((id, words.chunks_exact(2).map(|pair| pair[0]).collect()));
