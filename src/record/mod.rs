@@ -2,6 +2,7 @@
 //! certificates are functions of it.
 
 mod cycle;
+mod drift;
 pub mod equipment;
 mod escalate;
 mod floors;
@@ -22,6 +23,7 @@ use crate::quantity::Dimension;
 use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
+pub use drift::{AxisDrift, Beyond, Drift, Zero};
 pub use escalate::{Blow, EscalateHistory};
 pub use floors::{FloorStep, Floors, StoreyImpactHistory};
 
@@ -32,6 +34,8 @@ pub struct Record {
     pub procedures: Vec<ProcedureRecord>,
     pub events: Vec<Event>,
     pub outcome: Outcome,
+    /// What the zeros of the rig did, where it says how far they may drift.
+    pub drift: Option<Drift>,
 }
 
 /// How the run ended.
@@ -240,8 +244,8 @@ pub struct ShakeStep {
     /// Measured, of each floor, N.
     pub restoring_force: Vec<f64>,
     pub energies: FrameEnergies,
-    /// Of all axes together.
-    pub tracking: Tracking,
+    /// Of each axis.
+    pub tracking: Vec<Tracking>,
 }
 
 impl Floors for ShakeStep {
@@ -255,6 +259,18 @@ impl Floors for ShakeStep {
 
     fn restoring_force(&self) -> &[f64] {
         &self.restoring_force
+    }
+
+    fn command(&self) -> &[f64] {
+        &self.command
+    }
+
+    fn measured(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    fn tracking(&self) -> &[Tracking] {
+        &self.tracking
     }
 }
 

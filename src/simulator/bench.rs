@@ -3,6 +3,7 @@
 //! benches have one ram; what is said without a place is said of the first.
 
 use super::bench_fault::BenchFault;
+use super::bench_glide::Glides;
 use super::ram::{Ram, RamSettings};
 use super::structure::Structure;
 use crate::plan::{Behaviour, Frame, Interval};
@@ -46,9 +47,9 @@ pub struct SentMove {
 pub struct Bench {
     settings: BenchSettings,
     structure: Structure,
-    rams: Vec<Ram>,
+    pub(super) rams: Vec<Ram>,
     /// s since power-up.
-    time: f64,
+    pub(super) time: f64,
     /// One a ram, as the specimen has it: N, without noise.
     restoring_force: Vec<f64>,
     /// Force readings so far; of several rams those of the first.
@@ -56,9 +57,13 @@ pub struct Bench {
     /// Targets that lay outside the limits, m.
     violations: Vec<f64>,
     /// Every target it was sent to, m.
-    targets: Vec<f64>,
-    moves: Vec<SentMove>,
+    pub(super) targets: Vec<f64>,
+    pub(super) moves: Vec<SentMove>,
+    pub(super) glides: Glides,
 }
+
+/// The longest part of a smooth way that is taken in one piece, s: a specimen feels its turn no later.
+const FINELY: f64 = 1e-3;
 
 /// The seed of one ram: the bench's own for the first.
 const fn seed_of(seed: u64, ram: u64) -> u64 {
@@ -93,6 +98,7 @@ impl Bench {
             violations: Vec::new(),
             targets: Vec::new(),
             moves: Vec::new(),
+            glides: Glides::default(),
         };
         bench.restoring_force = bench.structure.bend(&vec![0.0; rams.len()]);
         bench
@@ -145,6 +151,22 @@ impl Bench {
 
     /// Brings the bench to a later moment, s.
     pub fn advance(&mut self, to: f64) {
+        while let Some(until) = self.next_glide().filter(|until| *until < to) {
+            self.pass(until);
+            self.begin_next_glide();
+        }
+        self.pass(to);
+    }
+
+    /// Nothing is told to the rams before that moment, s.
+    fn pass(&mut self, to: f64) {
+        while self.rams.iter().any(Ram::glides) && to - self.time > FINELY {
+            self.take(self.time + FINELY);
+        }
+        self.take(to);
+    }
+
+    fn take(&mut self, to: f64) {
         let seconds = to - self.time;
         if seconds.is_nan() || seconds <= 0.0 {
             return;
@@ -185,8 +207,7 @@ impl Bench {
             self.targets.push(*target);
             let ram = &mut self.rams[ram];
             let way = (target - ram.position).abs();
-            ram.speed = if way == farthest { speed } else { speed * (way / farthest) };
-            ram.target = *target;
+            ram.go(*target, if way == farthest { speed } else { speed * (way / farthest) });
         }
         self.moves.push(SentMove { time: self.time, id, targets: targets.to_vec(), speed });
     }
@@ -203,7 +224,7 @@ impl Bench {
         }
     }
 
-    fn judge(&mut self, ram: usize, target: f64) {
+    pub(super) fn judge(&mut self, ram: usize, target: f64) {
         if !self.rams[ram].allows(target) {
             self.violations.push(target);
         }
@@ -211,8 +232,9 @@ impl Bench {
 
     /// Stops where it stands.
     pub fn hold(&mut self) {
+        self.glides.clear();
         for ram in &mut self.rams {
-            ram.target = ram.position;
+            ram.hold();
         }
     }
 
@@ -239,7 +261,7 @@ impl Bench {
     }
 
     pub fn displacement_of(&mut self, ram: usize) -> f64 {
-        self.rams[ram].displacement()
+        self.rams[ram].displacement(self.time)
     }
 
     /// N, as its cell feels it, with noise.
@@ -373,6 +395,7 @@ mod tests {
         near(after(BenchFault::ScaleDisplacement(25.4)), (127.0, 500.0));
         near(after(BenchFault::ClipForce(350.0)), (5.0, 350.0));
         near(after(BenchFault::Drift(3.0)), (5.0, 503.0));
+        near(after(BenchFault::DriftDisplacement(2e-4)), (5.2, 500.0));
         near(after(BenchFault::Spike(70.0)), (5.0, 570.0));
         near(after(BenchFault::Fracture { displacement: 0.003, left: 0.1 }), (5.0, 50.0));
     }
@@ -401,15 +424,12 @@ mod tests {
 
     const RAM: RamSettings = RamSettings { sign: 1.0, noise: 0.0, resolution: 0.0, limits: Interval { low: -0.01, high: 0.01 } };
 
-    fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
-    }
-
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
     fn frame() -> Frame {
+        let yielding = Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 };
         Frame::of_storeys(vec![
-            storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
-            storey(2000.0, Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 }),
+            Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
+            Storey::new(1.0, 2000.0, yielding),
         ])
     }
 

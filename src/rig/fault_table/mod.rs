@@ -16,12 +16,13 @@
 //! | 20 | what is no number | `device::what_is_no_number_is_never_integrated` |
 //! | 21 | saturation | `device::a_clipped_force_holds_the_rig` |
 //! | 22 | frozen sensor | `device::a_frozen_sensor_holds_the_rig` |
-//! | 23 | drift | `gate::the_drift_at_rest_is_told` |
+//! | 23 | drift, of the force and of the displacement | `drift::*`, `gate::the_drift_at_rest_is_told` |
 //! | 24 | spike | `device::a_spike_does_not_move_the_median` |
 //! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
 //! | 26 | targets beyond limits, no numbers | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
 //! | 27 | energy error, also of tracking | `motion::an_energy_error_beyond_its_limit_holds_the_rig`, `motion::tracking_that_changes_the_energy_holds_the_rig` |
 //! | 18–22 | the same of one axis of two | `axes::*` |
+//! | 10, 14, 18, 25, 26 | the same of axes that do not stop | `gliding::*` |
 //! | 29 | panic, abort | `tests/system/ended.rs`, for this table is of one process |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
@@ -29,7 +30,9 @@
 mod axes;
 mod control_points;
 mod device;
+mod drift;
 mod gate;
+mod gliding;
 mod line;
 mod long;
 mod motion;
