@@ -32,6 +32,8 @@ mod move_to;
 pub mod need;
 #[cfg(test)]
 mod need_tests;
+#[cfg(test)]
+mod path_matrix_tests;
 mod propagation;
 #[cfg(test)]
 mod propagation_tests;
