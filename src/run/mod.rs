@@ -19,6 +19,8 @@ mod escalate_tests;
 mod followed;
 #[cfg(test)]
 mod followed_tests;
+#[cfg(test)]
+mod frame_sequence_tests;
 mod frame_steps;
 mod gate;
 mod gliding;

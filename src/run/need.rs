@@ -9,7 +9,7 @@ use crate::formula::{Formula, ResultReference, ResultValue, Results};
 use crate::mechanics::critical_time_step;
 use crate::plan::{
     BlowOn, DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp, StoreyImpact,
-    steps_in,
+    Striker, steps_in,
 };
 
 use super::{shake, storey_impact, zero};
@@ -189,11 +189,11 @@ impl Reckoner<'_> {
                 let between = moves(UNLOADING * self.way).plus(Counts { steps: UNLOADING, ..Counts::default() });
                 let blow = match &escalate.blow {
                     BlowOn::Specimen(blow) => self.blow(blow)?,
-                    BlowOn::Storey(blow) => self.storey_blow(blow)?,
+                    BlowOn::Storey(blow) => self.storey_blow(blow, &escalate.fastest(self.plan.strikers.get(blow.striker)?))?,
                 };
                 Some(blow.plus(between).times(rounded(escalate.velocities.len() as u64)))
             }
-            ProcedureKind::StoreyImpact(impact) => self.storey_blow(impact),
+            ProcedureKind::StoreyImpact(impact) => self.storey_blow(impact, self.plan.strikers.get(impact.striker)?),
             ProcedureKind::Shake(shaking) => {
                 let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;
                 Some(stepped(shaking.stepping.mode, steps))
@@ -250,8 +250,8 @@ impl Reckoner<'_> {
         Some(stepped(impact.stepping.mode, steps))
     }
 
-    fn storey_blow(&self, impact: &StoreyImpact) -> Option<Counts> {
-        let steps = rounded(storey_impact::steps(impact, self.plan)?) + 1.0;
+    fn storey_blow(&self, impact: &StoreyImpact, striker: &Striker) -> Option<Counts> {
+        let steps = rounded(storey_impact::steps(impact, self.plan, striker)?) + 1.0;
         Some(stepped(impact.stepping.mode, steps))
     }
 }

@@ -263,12 +263,12 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         ProcedureKind::Escalate(escalate) => {
             let blow = match &escalate.blow {
                 BlowOn::Specimen(blow) => steps_of_blow(blow)?,
-                BlowOn::Storey(blow) => storey_impact::steps(blow, plan)?,
+                BlowOn::Storey(blow) => storey_impact::steps(blow, plan, &escalate.fastest(plan.strikers.get(blow.striker)?))?,
             };
             let blow = blow.saturating_add(most_moves(escalate.between));
             Some(blow.saturating_mul(escalate.velocities.len() as u64))
         }
-        ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan),
+        ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan, plan.strikers.get(impact.striker)?),
         ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),

@@ -84,15 +84,15 @@ fn history_of(plan: &StoreyImpact, setting: Option<&Setting>) -> StoreyImpactHis
     }
 }
 
-/// Steps of an impact on a storey, where the plan alone tells.
-pub(super) fn steps(impact: &StoreyImpact, plan: &Plan) -> Option<u64> {
+/// Steps of an impact of this striker on a storey, where the plan alone tells.
+pub(super) fn steps(impact: &StoreyImpact, plan: &Plan, striker: &Striker) -> Option<u64> {
     let frame = plan.specimens.get(impact.specimen)?.frame.as_ref()?;
     let properties = FrameProperties::of(frame, &Damping::None).ok()?;
     let hertz = match &impact.contact {
         Contact::Hertz { stiffness, .. } => Some(stiffness.constant()?),
         _ => None,
     };
-    let approach = Approach::of(plan.strikers.get(impact.striker)?, hertz);
+    let approach = Approach::of(striker, hertz);
     let critical = properties.critical_on_impact(impact.struck, &approach);
     let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
     Some(step_count(impact.duration.constant()?, time_step))

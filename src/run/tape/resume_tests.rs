@@ -6,9 +6,9 @@ use super::*;
 use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, Ground, Impact, InspectTrigger,
-    Integrator, Level, Mode, Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
-    Until, ZeroAfter,
+    Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, FrameUnload, Ground, Impact,
+    InspectTrigger, Integrator, Level, Mode, Move, Procedure, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp,
+    Storey, Test, Unload, Until, ZeroAfter,
 };
 use crate::quantity::Dimension;
 use crate::run::testing::{elastic_plan, every, impact, ramp, result_of};
@@ -115,6 +115,18 @@ fn drifting() -> Plan {
     plan
 }
 
+/// Two blows on the upper of two floors, the load taken off both after each, and once more.
+fn frame_row() -> Plan {
+    let mut plan = crate::run::frame_sequence_tests::rising(&[0.4, 0.8], 1.0, Between::Unload);
+    let ProcedureKind::Escalate(escalate) = &mut plan.procedures[0].kind else { panic!() };
+    escalate.inspect_between = true;
+    let BlowOn::Storey(blow) = &mut escalate.blow else { panic!() };
+    blow.duration = Constant(0.03);
+    let unload = ProcedureKind::FrameUnload(FrameUnload { specimen: 0, within: Some(Constant(1e-6)), speed: None });
+    plan.procedures.push(Procedure { name: "rest".to_owned(), kind: unload });
+    plan
+}
+
 /// Every plan here, by what it shows.
 fn plans() -> Vec<(&'static str, Plan)> {
     vec![
@@ -126,6 +138,7 @@ fn plans() -> Vec<(&'static str, Plan)> {
         ("shake", shaken(Mode::StepAndPause)),
         ("shake without a stop", shaken(CONTINUOUS)),
         ("unload", unloading()),
+        ("escalate on a storey", frame_row()),
     ]
 }
 
@@ -148,6 +161,11 @@ fn cycles() {
 #[test]
 fn rising_blows() {
     killed("escalate");
+}
+
+#[test]
+fn rising_blows_on_a_storey() {
+    killed("escalate on a storey");
 }
 
 #[test]
