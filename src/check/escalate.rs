@@ -14,7 +14,7 @@ const LEVELS: [&str; 3] = ["speeds", "drop_heights", "energies"];
 
 pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let own = checker.scope.blocks[block].procedure?;
-    let velocities = velocities(checker, block);
+    let levels = levels(checker, block);
     let condition = condition(checker, block);
     let between = checker.word(block, "between", "unload");
     let inspect_between = checker.word(block, "inspect_between", "false").map(|word| word == "true");
@@ -22,10 +22,12 @@ pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         Some((specimen, frame)) => storey_impact::storey_impact(checker, block, specimen, frame.as_ref()).map(BlowOn::Storey),
         None => impact::blow(checker, block).map(BlowOn::Specimen),
     };
+    let (velocities, energies) = levels?;
     Some(ProcedureKind::Escalate(Escalate {
         own,
         blow: blow?,
-        velocities: velocities?,
+        velocities,
+        energies,
         condition: condition?,
         between: match between? {
             "home" => Between::Home,
@@ -36,8 +38,8 @@ pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     }))
 }
 
-/// The striker's velocity of each blow: v, √(2·gn·h) or √(2E/Ms).
-fn velocities(checker: &mut Checker, block: usize) -> Option<Vec<Formula>> {
+/// The striker's velocity of each blow: v, √(2·gn·h) or √(2E/Ms), and its energy where that is what the plan gives.
+fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<Vec<Formula>>)> {
     let declared = &checker.scope.blocks[block];
     let (kind, name, head) = (declared.kind, declared.name, declared.block.head);
     let given: Vec<(&str, Span, Span)> = LEVELS
@@ -75,12 +77,12 @@ fn velocities(checker: &mut Checker, block: usize) -> Option<Vec<Formula>> {
         root.constant().map_or(root, Formula::Constant)
     };
     Some(match field {
-        "speeds" => levels,
-        "drop_heights" => levels.into_iter().map(|height| root(2.0 * STANDARD_GRAVITY, height)).collect(),
+        "speeds" => (levels, None),
+        "drop_heights" => (levels.into_iter().map(|height| root(2.0 * STANDARD_GRAVITY, height)).collect(), None),
         _ => {
             let hammer = checker.reference(block, "striker", Kind::Striker)?;
             let mass = striker::export(checker, hammer, "mass", head)?;
-            levels.into_iter().map(|energy| root(2.0 / mass, energy)).collect()
+            (levels.iter().cloned().map(|energy| root(2.0 / mass, energy)).collect(), Some(levels))
         }
     })
 }

@@ -12,6 +12,8 @@ pub struct Escalate {
     pub blow: BlowOn,
     /// Velocity of the striker of each blow, m/s.
     pub velocities: Vec<Formula>,
+    /// Energy of each blow, J, where the plan gives energies; else it follows from the velocities.
+    pub energies: Option<Vec<Formula>>,
     /// What must hold of the results of a blow for the next to follow; every part of it.
     pub condition: Vec<Condition>,
     pub between: Between,

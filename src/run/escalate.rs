@@ -30,10 +30,13 @@ fn run(
     history: &mut EscalateHistory,
 ) -> Result<(), Stop> {
     let (mut struck, velocities) = Struck::evaluate(plan, whole, inputs, session)?;
+    // As the plan gives them: a square of a root is not always what the root was taken of.
+    let energies = plan.energies.as_ref().map(|energies| inputs.list("energies", energies)).transpose()?;
     let home = session.guard.commanded().to_vec();
     let mut done = 0;
     for (index, velocity) in velocities.iter().copied().enumerate() {
-        let energy = struck.energy(velocity);
+        let given = energies.as_ref().and_then(|energies| energies.get(index).copied());
+        let energy = given.unwrap_or_else(|| struck.energy(velocity));
         let blown = struck.blow((index, velocity), done, session);
         done += blown.steps;
         let over = blown.stop.is_none();

@@ -26,6 +26,7 @@ fn rising(velocities: &[f64], limit: f64, between: Between) -> Escalate {
         own: ProcedureId(0),
         blow: BlowOn::Specimen(blow()),
         velocities: velocities.iter().copied().map(Constant).collect(),
+        energies: None,
         condition: vec![below(limit)],
         between,
         inspect_between: false,

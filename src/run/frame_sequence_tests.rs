@@ -213,6 +213,7 @@ pub(super) fn rising(velocities: &[f64], limit: f64, between: Between) -> Plan {
         own: ProcedureId(0),
         blow: BlowOn::Storey(blow()),
         velocities: velocities.iter().copied().map(Constant).collect(),
+        energies: None,
         condition: vec![drifts_below(limit)],
         between,
         inspect_between: false,

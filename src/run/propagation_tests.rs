@@ -322,6 +322,7 @@ fn blows_of_one_striker_share_what_is_uncertain_of_it() {
     let rising = Escalate {
         blow: BlowOn::Specimen(Impact { until: crate::plan::Until::StrikerStop, ..sticking(1e-3) }),
         velocities: vec![constant(0.5), constant(1.0)],
+        energies: None,
         condition: Vec::new(),
         own: crate::formula::ProcedureId(0),
         between: Between::Home,

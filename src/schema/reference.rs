@@ -113,7 +113,7 @@ fn write_values(text: &mut String, head: &str, values: &[ResultKind]) {
         let unit = if value.dimension == Dimension::NUMBER { String::new() } else { format!("`{}`", si_unit(value.dimension)) };
         let measured = if value.measured { ", with its standard uncertainty `.u`" } else { "" };
         let list = if value.list { "; a list" } else { "" };
-        let storey = if value.of_storey { "; on a storey only" } else { "" };
+        let storey = if value.of_storey { "; of frames only" } else { "" };
         let _ = writeln!(text, "| `{}` | {unit} | {}{measured}{list}{storey} |", value.name, value.doc);
     }
 }

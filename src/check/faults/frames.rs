@@ -84,7 +84,7 @@ pub fn one_degree_of_freedom(keyword: &str, specimen: &str, axes: usize, span: S
         Some(declared) => fault.at(declared, format!("{axes} storeys")),
         None => fault,
     };
-    fault.help("test the storeys by `shake`, `impact` or `escalate`, or a specimen of one degree of freedom in a plan of its own")
+    fault.help("test the storeys by `shake`, `impact`, `escalate` or `unload`, or a specimen of one degree of freedom in a plan of its own")
 }
 
 /// A frame, and no word of which floor the striker hits.

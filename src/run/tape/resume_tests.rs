@@ -95,6 +95,7 @@ fn escalating() -> Plan {
         own: ProcedureId(0),
         blow: BlowOn::Specimen(Impact { duration: Constant(0.03), ..short(Mode::StepAndPause) }),
         velocities: [0.2, 0.4, 0.6].map(Constant).to_vec(),
+        energies: None,
         condition: vec![below],
         between: Between::Unload,
         inspect_between: true,
