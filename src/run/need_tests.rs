@@ -6,7 +6,7 @@ use super::testing::{elastic_plan, every, impact, ramp, result_of};
 use super::{Unwatched, testing};
 use crate::formula::Formula::Constant;
 use crate::plan::{
-    Cycle, DampingSweep, Interval, Level, Mode, Move, Plan, ProcedureKind, Sides, Stepping, StiffnessRamp, Unload, Until,
+    Between, Cycle, DampingSweep, Interval, Level, Mode, Move, Plan, ProcedureKind, Sides, Stepping, StiffnessRamp, Unload, Until,
 };
 use crate::record::Outcome;
 use crate::record::journal::testing::PowerLoss;
@@ -84,6 +84,12 @@ fn no_procedure_writes_more_than_it_is_reckoned_to() {
     for (name, procedures, most) in plans {
         let ratio = ratio(&elastic_plan(300.0, procedures));
         assert!((1.0..most).contains(&ratio), "{name}: reckoned {ratio:.2} times what was written");
+    }
+    let velocities = [0.4, 0.8];
+    let ratio_of = |between| ratio(&super::frame_sequence_tests::rising(&velocities, 1.0, between));
+    for (between, most) in [(Between::Home, 8.0), (Between::Unload, 8.0)] {
+        let ratio = ratio_of(between);
+        assert!((1.0..most).contains(&ratio), "blows on a storey, {between:?}: reckoned {ratio:.2} times what was written");
     }
     // Each way home in many increments.
     let mut short = elastic_plan(300.0, vec![to(0.01), to(0.0)]);

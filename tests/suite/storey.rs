@@ -278,21 +278,30 @@ fn psd(arguments: &[&str], out: &Path) {
 }
 
 /// A run, its verification and its report made anew give the same bytes, with the plan gone: the record has it.
-#[test]
-fn the_record_of_a_blow_on_a_storey_is_enough() {
+fn record_is_enough(name: &str, files: &[&str]) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
-    let plan = path("storey_impact.psd");
-    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/storey_impact.psd"), &plan).expect("a copy");
+    let plan = path(name);
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("plans").join(name), &plan).expect("a copy");
     psd(&["run", plan.to_str().expect("UTF-8"), "--yes", "--out"], &path("run"));
     fs::remove_file(&plan).expect("removed");
     psd(&["verify"], &path("run"));
     psd(&["report", path("run").to_str().expect("UTF-8"), "--out"], &path("again"));
     let read =
         |folder: &str, name: &str| fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"));
-    for name in
-        ["summary.json", "tables/hit.csv", "certificate.html", "figures/hit_hysteresis.png", "figures/hit_displacement.svg"]
-    {
+    for name in files.iter().chain(&["summary.json", "certificate.html"]) {
         assert_eq!(read("run", name), read("again", name), "{name}");
     }
+}
+
+#[test]
+fn the_record_of_a_blow_on_a_storey_is_enough() {
+    record_is_enough("storey_impact.psd", &["tables/hit.csv", "figures/hit_hysteresis.png", "figures/hit_displacement.svg"]);
+}
+
+#[test]
+fn the_record_of_rising_blows_on_a_storey_and_of_an_unloaded_frame_is_enough() {
+    let tables = ["tables/rest.csv", "tables/rising.csv", "tables/rising_storeys.csv", "tables/rising_3.csv"];
+    let figures = ["figures/rest_hysteresis.png", "figures/rising_drift.svg", "figures/rising_hysteresis.svg"];
+    record_is_enough("rising_blows_on_a_storey.psd", &[&tables[..], &figures[..]].concat());
 }

@@ -228,8 +228,8 @@ pub(super) fn unloaded(run: &Run<'_>, index: usize, steps: &[UnloadStep], body: 
     ];
     let height = |storey: usize| frame.and_then(|frame| frame.storeys.get(storey)).and_then(|storey| storey.height);
     let row = |storey: usize| -> Vec<Text> {
-        let length = |value, beside| number::text_beside(value, beside, Dimension::LENGTH);
-        let force = |value| number::text_beside(value, whole(&loaded), Dimension::FORCE);
+        let length = |value, beside| number::part_of(value, beside, 4, Dimension::LENGTH);
+        let force = |value| number::part_of(value, whole(&loaded), 4, Dimension::FORCE);
         vec![
             (storey + 1).to_string().into(),
             length(last.displacement[storey], whole(&last.displacement).max(travel)).into(),
