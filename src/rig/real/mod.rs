@@ -14,7 +14,7 @@ use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
-use super::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -193,6 +193,11 @@ impl Rig for RealRig {
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         let traversed = self.stroke(targets, velocity, samples, each);
+        self.or_hold(traversed)
+    }
+
+    fn traverse_on(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+        let traversed = self.rest_of_stroke(cut_off, velocity, each);
         self.or_hold(traversed)
     }
 

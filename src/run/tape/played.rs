@@ -144,6 +144,7 @@ fn told(resume: &ResumeBody) -> String {
         Doubt::Executed => "the last target had been carried out, its reading is late",
         Doubt::NotExecuted => "the last target had not arrived and was sent",
         Doubt::HeldOnTheWay => "the last target had been held on the way and was sent anew",
+        Doubt::RestOfTheWay { .. } => "a way had been cut off and was gone on with from where the rig stood",
         Doubt::Stroke { .. } => "a stroke had been cut off and was begun anew",
     };
     // At another place than the last reading's the force tells nothing of the specimen.
