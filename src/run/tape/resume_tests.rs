@@ -51,8 +51,7 @@ fn cycle(rate: Option<f64>) -> Cycle {
 /// Two floors on a ground that shakes, and stops for a look. They yield, so that a way gone twice would show.
 fn shaken(mode: Mode) -> Plan {
     let behaviour = |stiffness| Behaviour::Bilinear { stiffness, yield_force: stiffness * 0.0002, hardening: 0.1 };
-    let storey =
-        |mass, stiffness| Storey { mass, stiffness, height: None, behaviour: behaviour(stiffness), damping: 0.0, coulomb: 0.0 };
+    let storey = |mass, stiffness| Storey::new(mass, stiffness, behaviour(stiffness));
     let mut plan = elastic_plan(300.0, Vec::new());
     plan.specimens[0].behaviour = None;
     plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey(2000.0, 3e6), storey(1500.0, 2e6)]));
