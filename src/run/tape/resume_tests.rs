@@ -7,11 +7,11 @@ use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
     Behaviour, Between, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, Ground, Impact, InspectTrigger, Integrator,
-    Level, Mode, Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until,
-    ZeroAfter,
+    Level, Mode, Move, ProcedureKind, RelaxationModel, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
+    Until, WatchedHold, ZeroAfter,
 };
 use crate::quantity::Dimension;
-use crate::run::testing::{elastic_plan, every, impact, ramp, result_of};
+use crate::run::testing::{elastic_plan, every, impact, ramp, result_of, struck_frame};
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
 
@@ -102,6 +102,29 @@ fn unloading() -> Plan {
     yielding(vec![to(0.03), ProcedureKind::Unload(unload)])
 }
 
+/// The upper floor is struck, and the actuators never stop.
+fn struck_on_the_way() -> Plan {
+    let mut plan = struck_frame();
+    if let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind {
+        (blow.stepping.mode, blow.duration) = (CONTINUOUS, Constant(0.05));
+    }
+    plan
+}
+
+/// Out past yield and back, each pause watched; then anew.
+fn watched() -> Plan {
+    let watched = StiffnessRamp {
+        displacements: [0.005, 0.02].map(Constant).to_vec(),
+        pause: Constant(0.2),
+        samples: 2,
+        repeats: 2,
+        return_path: true,
+        relaxation: Some(WatchedHold { model: RelaxationModel::Exponential, readings: 3, accuracy: None }),
+        ..ramp(1e-4)
+    };
+    yielding(vec![ProcedureKind::StiffnessRamp(watched), to(0.0)])
+}
+
 /// Zeros are read, also during a look, and the rig goes back for the last.
 fn drifting() -> Plan {
     let ramped = StiffnessRamp { pause: Constant(0.5), displacements: vec![Constant(1e-3), Constant(2e-3)], ..ramp(1e-4) };
@@ -121,7 +144,9 @@ fn plans() -> Vec<(&'static str, Plan)> {
         ("drift", drifting()),
         ("shake", shaken(Mode::StepAndPause)),
         ("shake without a stop", shaken(CONTINUOUS)),
+        ("storey without a stop", struck_on_the_way()),
         ("unload", unloading()),
+        ("watched", watched()),
     ]
 }
 
@@ -154,6 +179,16 @@ fn a_shake_of_two_floors() {
     assert!(matches!(drifts, Some(ResultValue::List(drifts)) if drifts.iter().all(|drift| *drift > 4e-4)));
     killed("shake");
     killed("shake without a stop");
+}
+
+#[test]
+fn a_blow_on_a_storey_without_a_stop() {
+    killed("storey without a stop");
+}
+
+#[test]
+fn pauses_that_are_watched() {
+    killed("watched");
 }
 
 #[test]
