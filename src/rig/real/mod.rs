@@ -8,7 +8,9 @@ mod poll;
 mod settle;
 mod stroke;
 mod validity;
+mod way;
 
+use crate::mechanics::path::Path;
 use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
 
 use super::device::{Device, DeviceFault, Move};
@@ -52,6 +54,8 @@ struct Axis {
     judge: Judge,
     /// The last reading on the way was outside a limit.
     outside: bool,
+    /// Between the farthest places of the last path, m; 0 where a move came after it.
+    span: f64,
 }
 
 /// A move that was offered and not yet sent.
@@ -199,6 +203,16 @@ impl Rig for RealRig {
     fn traverse_on(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
         let traversed = self.rest_of_stroke(cut_off, velocity, each);
         self.or_hold(traversed)
+    }
+
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let followed = self.follow(paths, samples, each);
+        self.or_hold(followed)
+    }
+
+    fn glide_on(&mut self, paths: &[Path], samples: usize, done: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let followed = self.rest_of_way(paths, samples.saturating_sub(done), each);
+        self.or_hold(followed)
     }
 
     /// Says so, and where that finds no ear sends what needs no answer.

@@ -10,6 +10,10 @@ use crate::record::{Event, EventKind};
 use crate::rig::{DeclaredNoise, Identity, Reading, named_axis, of_axis, who};
 use crate::run::{Inspection, UNLOADING};
 
+/// A rig that no next path is told goes on for so long at most before it holds, s: a controller's 0.25 s, and what its line and
+/// its clock may add.
+const GOES_ON: f64 = 1.0;
+
 /// How near the rig must stand to where the record left it, one entry an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
@@ -201,6 +205,13 @@ pub fn decide(
             doubt => decision(last.seq + 1, doubt),
         });
     }
+    if at + 1 < lines.len()
+        && let Some(paths) = intent.path.as_ref().filter(|_| !place.is(&target))
+    {
+        // It passed its target, went on as fast as there, and held: brought back, it goes on from rest.
+        place.behind(paths)?;
+        return Ok(decision(last.seq + 1, Doubt::Stroke { back_to: target[0], others: target[1..].to_vec() }));
+    }
     if at + 1 < lines.len() {
         place.expect(&target)?;
         relaxed(recorded.as_ref(), found, bands, accept_relaxation)?;
@@ -295,8 +306,7 @@ impl Cut<'_> {
     fn doubt(&self, place: Place<'_>, before: &[f64]) -> Result<Doubt, Refusal> {
         match self.paths {
             Some(paths) => {
-                let reach: Vec<(f64, f64)> = paths.iter().map(Path::reach).collect();
-                let (low, high): (Vec<f64>, Vec<f64>) = reach.into_iter().unzip();
+                let (low, high): (Vec<f64>, Vec<f64>) = paths.iter().map(may_be_held).unzip();
                 place.on_the_way(&low, &high)?;
             }
             None if self.mostly_lost() && place.is(self.target) && !place.is(self.reached) => {
@@ -313,6 +323,13 @@ impl Cut<'_> {
     const fn mostly_lost(&self) -> bool {
         self.taken + 1 < self.samples && 2 * self.taken < self.samples
     }
+}
+
+/// Where an axis may hold that was on a path, on its way to it, or past it, m: as fast as it was at either end it goes on.
+fn may_be_held(path: &Path) -> (f64, f64) {
+    let (low, high) = path.reach();
+    let (short, past) = (path.from + GOES_ON * path.start_velocity, path.to + GOES_ON * path.end_velocity);
+    (low.min(short).min(past), high.max(short).max(past))
 }
 
 #[derive(Clone, Copy)]
@@ -340,6 +357,13 @@ impl Place<'_> {
         let (found, recorded) = (self.positions[place], recorded.get(place).copied().unwrap_or(f64::NAN));
         let band = band(self.bands, place);
         Err(Refusal::Elsewhere { recorded, found, band, axis: named_axis(place, self.positions.len()) })
+    }
+
+    /// Whether each axis stands between the end of its path and where it may have come from there before it held.
+    fn behind(self, paths: &[Path]) -> Result<(), Refusal> {
+        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
+        let farthest: Vec<f64> = paths.iter().map(|path| path.to + GOES_ON * path.end_velocity).collect();
+        self.on_the_way(&ends, &farthest).map(drop)
     }
 
     fn on_the_way(self, from: &[f64], to: &[f64]) -> Result<Doubt, Refusal> {
