@@ -23,6 +23,7 @@
 //! | 27 | energy error, also of tracking | `motion::an_energy_error_beyond_its_limit_holds_the_rig`, `motion::tracking_that_changes_the_energy_holds_the_rig` |
 //! | 18–22 | the same of one axis of two | `axes::*` |
 //! | 29 | panic, abort | `tests/system/ended.rs`, for this table is of one process |
+//! | 30 | a record that says two things | `forged::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
 
@@ -30,6 +31,7 @@ mod axes;
 mod control_points;
 mod device;
 mod drift;
+mod forged;
 mod gate;
 mod line;
 mod long;

@@ -15,6 +15,7 @@ use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
 use super::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+pub use poll::representative;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -27,6 +28,8 @@ pub struct RealRig {
     axes: Vec<Axis>,
     calibration: Calibration,
     identity: Identity,
+    /// The replies in which its devices said so.
+    introduction: Vec<Vec<u8>>,
     actuator: Box<dyn Device>,
     load_cell: Option<Box<dyn Device>>,
     clock: Box<dyn Clock>,
@@ -127,6 +130,10 @@ enum Part {
 impl Rig for RealRig {
     fn identity(&self) -> Identity {
         self.identity.clone()
+    }
+
+    fn introduction(&self) -> Vec<Vec<u8>> {
+        self.introduction.clone()
     }
 
     fn degrees_of_freedom(&self) -> usize {
