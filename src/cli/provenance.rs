@@ -76,6 +76,16 @@ pub fn stated_date(plan: &Plan) -> Option<String> {
     plan.particulars.iter().find(|(field, _)| *field == "date").map(|(_, date)| date.clone())
 }
 
+/// A line for who starts a test on another day than the plan states; empty where it is that day.
+pub fn told_of_another_day(plan: &Plan, began: Option<&str>) -> String {
+    match (stated_date(plan), began.and_then(|began| began.get(..10))) {
+        (Some(stated), Some(today)) if !same_day(Some(&stated), Some(today)) => {
+            format!("  the date {stated} is not the day of this test: its certificate says {today}, as its record does\n")
+        }
+        _ => String::new(),
+    }
+}
+
 /// Whether two days can be one in two time zones; what is no day is none.
 pub fn same_day(one: Option<&str>, other: Option<&str>) -> bool {
     let day = |text: Option<&str>| text?.parse::<jiff::civil::Date>().ok();

@@ -100,6 +100,7 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let mut opened = real_rig::open(plan, attendance, settings)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
+    tell(&provenance::told_of_another_day(plan, circumstances.began.as_deref()));
     let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
     let device = record_file::device(&opened.connected.rig);
     let header = record_file::header(plan, device, &arguments.plan_settings, &provenance, circumstances);
