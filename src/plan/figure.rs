@@ -1,6 +1,6 @@
 //! Figures of a report: which there are, and what each procedure can draw.
 
-use super::ProcedureKind;
+use super::{BlowOn, Escalate, ProcedureKind};
 use crate::formula::ProcedureId;
 
 /// Procedures on one chart, at most: more curves cannot be told apart.
@@ -144,11 +144,22 @@ impl FigureKind {
                 Self::Energy,
                 Self::Tracking,
             ],
-            ProcedureKind::Shake(_) => {
-                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
-            }
+            ProcedureKind::Shake(_) => &[
+                Self::Modes,
+                Self::Ground,
+                Self::Displacement,
+                Self::Drift,
+                Self::Hysteresis,
+                Self::BaseShear,
+                Self::Energy,
+                Self::Tracking,
+            ],
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
+            ProcedureKind::Escalate(Escalate { blow: BlowOn::Storey(_), .. }) => {
+                &[Self::Blows, Self::Drift, Self::Hysteresis, Self::Displacement]
+            }
             ProcedureKind::Escalate(_) => &[Self::Blows, Self::ForceDisplacement, Self::Displacement],
+            ProcedureKind::FrameUnload(_) => &[Self::Hysteresis],
             ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }

@@ -7,6 +7,7 @@ pub mod equipment;
 mod escalate;
 mod floors;
 pub mod journal;
+mod unload;
 
 use serde::{Deserialize, Serialize};
 
@@ -24,8 +25,9 @@ use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use drift::{AxisDrift, Beyond, Drift, Zero};
-pub use escalate::{Blow, EscalateHistory};
+pub use escalate::{Blow, BlowHistory, EscalateHistory};
 pub use floors::{FloorStep, Floors, StoreyImpactHistory};
+pub use unload::{Rest, UnloadStep};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -116,6 +118,8 @@ pub enum History {
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
     Move(Vec<RampStep>),
+    /// The floors of a frame on their way to where they carry no load.
+    FrameUnload(Vec<UnloadStep>),
     Inspect,
 }
 
@@ -244,8 +248,8 @@ pub struct ShakeStep {
     /// Measured, of each floor, N.
     pub restoring_force: Vec<f64>,
     pub energies: FrameEnergies,
-    /// Of all axes together.
-    pub tracking: Tracking,
+    /// Of each axis.
+    pub tracking: Vec<Tracking>,
 }
 
 impl Floors for ShakeStep {
@@ -259,6 +263,18 @@ impl Floors for ShakeStep {
 
     fn restoring_force(&self) -> &[f64] {
         &self.restoring_force
+    }
+
+    fn command(&self) -> &[f64] {
+        &self.command
+    }
+
+    fn measured(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    fn tracking(&self) -> &[Tracking] {
+        &self.tracking
     }
 }
 

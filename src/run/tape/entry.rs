@@ -313,8 +313,7 @@ pub fn unescaped(text: &str) -> Option<Vec<u8>> {
             (b'\\', [b'r', after @ ..]) => (b'\r', after),
             (b'\\', [b't', after @ ..]) => (b'\t', after),
             (b'\\', [b'x', high, low, after @ ..]) => (u8::from_str_radix(str::from_utf8(&[*high, *low]).ok()?, 16).ok()?, after),
-            (b'\\', [own, after @ ..]) => (*own, after),
-            (own, after) => (*own, after),
+            (b'\\', [own, after @ ..]) | (own, after) => (*own, after),
         };
         bytes.push(byte);
         rest = after;
