@@ -60,6 +60,8 @@ pub struct Bench {
     pub(super) targets: Vec<f64>,
     pub(super) moves: Vec<SentMove>,
     pub(super) glides: Glides,
+    /// The ram of which is said what is said without a place.
+    view: usize,
 }
 
 /// The longest part of a smooth way that is taken in one piece, s: a specimen feels its turn no later.
@@ -99,6 +101,7 @@ impl Bench {
             targets: Vec::new(),
             moves: Vec::new(),
             glides: Glides::default(),
+            view: 0,
         };
         bench.restoring_force = bench.structure.bend(&vec![0.0; rams.len()]);
         bench
@@ -200,14 +203,20 @@ impl Bench {
     /// Sets off to a target a ram (m) for a move that may have a number: all arrive together, the one with the farthest way
     /// at `speed` (m/s).
     pub fn go_as(&mut self, id: Option<u64>, targets: &[f64], speed: f64) {
+        let all: Vec<usize> = (0..self.rams.len()).collect();
+        self.go_those(id, &all, targets, speed);
+    }
+
+    /// The same of these rams alone.
+    pub fn go_those(&mut self, id: Option<u64>, rams: &[usize], targets: &[f64], speed: f64) {
         let speed = speed.abs().min(self.settings.top_speed);
-        let farthest = self.rams.iter().zip(targets).map(|(ram, to)| (to - ram.position).abs()).fold(0.0, f64::max);
-        for (ram, target) in (0..self.rams.len()).zip(targets) {
-            self.judge(ram, *target);
+        let way = |bench: &Self, ram: usize, to: f64| (to - bench.rams[ram].position).abs();
+        let farthest = rams.iter().zip(targets).map(|(ram, to)| way(self, *ram, *to)).fold(0.0, f64::max);
+        for (ram, target) in rams.iter().zip(targets) {
+            self.judge(*ram, *target);
             self.targets.push(*target);
-            let ram = &mut self.rams[ram];
-            let way = (target - ram.position).abs();
-            ram.go(*target, if way == farthest { speed } else { speed * (way / farthest) });
+            let way = way(self, *ram, *target);
+            self.rams[*ram].go(*target, if way == farthest { speed } else { speed * (way / farthest) });
         }
         self.moves.push(SentMove { time: self.time, id, targets: targets.to_vec(), speed });
     }
@@ -215,6 +224,11 @@ impl Bench {
     /// The controller refused a target (m): it goes nowhere, but was asked to.
     pub fn refuse(&mut self, target: f64) {
         self.judge(0, target);
+    }
+
+    /// The same of the ram at this place.
+    pub fn refuse_of(&mut self, ram: usize, target: f64) {
+        self.judge(ram, target);
     }
 
     /// The same of targets, one a ram.
@@ -247,7 +261,7 @@ impl Bench {
     /// Where it is commanded to be now, m: what a controller knows that counts its own steps.
     #[must_use]
     pub fn commanded(&self) -> f64 {
-        self.commanded_of(0)
+        self.commanded_of(self.view)
     }
 
     #[must_use]
@@ -257,7 +271,7 @@ impl Bench {
 
     /// m, as its transducer reads it.
     pub fn displacement(&mut self) -> f64 {
-        self.displacement_of(0)
+        self.displacement_of(self.view)
     }
 
     pub fn displacement_of(&mut self, ram: usize) -> f64 {
@@ -266,7 +280,7 @@ impl Bench {
 
     /// N, as its cell feels it, with noise.
     pub fn force(&mut self) -> f64 {
-        self.force_of(0)
+        self.force_of(self.view)
     }
 
     pub fn force_of(&mut self, ram: usize) -> f64 {
@@ -302,6 +316,29 @@ impl Bench {
     /// for it. To be asked once for each number sent.
     pub fn shown_force(&mut self, ram: usize, ordinary: String) -> String {
         self.rams[ram].faults.take_number().unwrap_or(ordinary)
+    }
+
+    /// The same of the ram in view.
+    pub fn shown(&mut self, ordinary: String) -> String {
+        self.shown_force(self.view, ordinary)
+    }
+
+    /// What is said without a place is said of this ram from now on; of which it was before.
+    pub(super) const fn look_from(&mut self, ram: usize) -> usize {
+        std::mem::replace(&mut self.view, ram)
+    }
+
+    /// Whether any of these rams moves.
+    #[must_use]
+    pub fn any_moving(&self, rams: &[usize]) -> bool {
+        rams.iter().any(|ram| self.rams[*ram].moving())
+    }
+
+    /// These rams stop where they stand.
+    pub fn hold_those(&mut self, rams: &[usize]) {
+        for ram in rams {
+            self.rams[*ram].hold();
+        }
     }
 
     /// Force readings so far; of several rams those of the first.
