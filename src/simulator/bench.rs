@@ -62,6 +62,8 @@ pub struct Bench {
     pub(super) glides: Glides,
     /// The ram of which is said what is said without a place.
     view: usize,
+    /// Of each ram whose raw converter is another than the bench's: N per count, count at no force.
+    converters: Vec<(f64, f64)>,
 }
 
 /// The longest part of a smooth way that is taken in one piece, s: a specimen feels its turn no later.
@@ -102,6 +104,7 @@ impl Bench {
             moves: Vec::new(),
             glides: Glides::default(),
             view: 0,
+            converters: Vec::new(),
         };
         bench.restoring_force = bench.structure.bend(&vec![0.0; rams.len()]);
         bench
@@ -112,6 +115,12 @@ impl Bench {
     pub const fn with_friction(mut self, friction: f64) -> Self {
         self.structure.set_friction(friction);
         self
+    }
+
+    /// The same bench with a raw converter for each ram: N per count, count at no force.
+    #[must_use]
+    pub fn with_converters(self, converters: Vec<(f64, f64)>) -> Self {
+        Self { converters, ..self }
     }
 
     /// Something goes wrong now with the ram at this place, its specimen or its sensors.
@@ -300,16 +309,16 @@ impl Bench {
     /// The force as a raw converter of 24 bits gives it.
     pub fn counts(&mut self) -> i64 {
         let force = self.force();
-        self.counts_of(force)
+        match self.converters.get(self.view) {
+            Some((newtons_per_count, zero_count)) => in_24_bits(force / newtons_per_count + zero_count),
+            None => self.counts_of(force),
+        }
     }
 
     /// What a raw converter of 24 bits makes of a force, N.
     #[must_use]
     pub fn counts_of(&self, force: f64) -> i64 {
-        let count = force / self.settings.newtons_per_count + self.settings.zero_count;
-        #[expect(clippy::cast_possible_truncation, reason = "clamped to 24 bits")]
-        let count = count.round().clamp(-8_388_608.0, 8_388_607.0) as i64;
-        count
+        in_24_bits(force / self.settings.newtons_per_count + self.settings.zero_count)
     }
 
     /// What the controller puts where a force of the ram at this place stands: `ordinary`, unless a fault has something else
@@ -364,6 +373,11 @@ impl Bench {
     pub fn targets(&self) -> &[f64] {
         &self.targets
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "clamped to 24 bits")]
+fn in_24_bits(count: f64) -> i64 {
+    count.round().clamp(-8_388_608.0, 8_388_607.0) as i64
 }
 
 #[cfg(test)]

@@ -74,7 +74,12 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
         // The storeys stand in place of it.
         let nothing = Behaviour::Elastic { stiffness: 0.0 };
         let rams: Vec<RamSettings> = (0..frame.degrees_of_freedom()).map(|axis| ram(plan, link, axis)).collect();
-        return Ok(Bench::of_frame(settings(nothing), frame, &rams));
+        let converter = |axis| {
+            let own = plan.rig.calibration_of(axis);
+            (own.newtons_per_count.unwrap_or_else(|| capacity(link) / COUNTS), own.zero_count)
+        };
+        let converters = (0..rams.len()).map(converter).collect();
+        return Ok(Bench::of_frame(settings(nothing), frame, &rams).with_converters(converters));
     }
     let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
     Ok(Bench::new(settings(behaviour)).with_friction(specimen.coulomb))

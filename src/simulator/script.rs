@@ -436,6 +436,14 @@ mod tests {
         assert_eq!(one("each reply: flip a bit with 0.01").when, When::EachReply(0.01));
         assert_eq!((one("at 0 s: axis 2 stick").ram, one("at 0 s: stick").ram), (1, 0));
         assert!(one("at 0 s: load cell split replies for ever every 1 bytes").on_load_cell);
+        let names = ["actuator", "actuator of axis 2", "load cell of axis 1", "load cell of axis 2"].map(str::to_owned);
+        let place = |text: &str| one(text).place_among(&names);
+        assert_eq!((place("at 0 s: hang up"), place("at 0 s: load cell hang up")), (Some(0), Some(2)));
+        assert_eq!(
+            (place("at 0 s: actuator of axis 2 hang up"), place("at 0 s: load cell of axis 2 hang up")),
+            (Some(1), Some(3))
+        );
+        assert_eq!(place("at 0 s: load cell of axis 3 hang up"), None);
         assert_eq!(one("at 1 s: number \"\"").what, What::Bench(BenchFault::Number(String::new())));
         let fill = ReplyFault::Garbage { count: 3, byte: Some(255), place: Place::Inside };
         assert_eq!(one("after 1 reply: fill 3 bytes of ff inside").what, What::Replies(fill, Some(1)));
@@ -460,7 +468,7 @@ mod tests {
                 count += 1;
             }
         }
-        assert_eq!(count, 30, "as many phrases as there are");
+        assert_eq!(count, 31, "as many phrases as there are");
     }
 
     #[test]

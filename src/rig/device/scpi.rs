@@ -216,6 +216,26 @@ mod tests {
     }
 
     #[test]
+    fn a_meter_of_several_channels_gives_each_its_own_force() {
+        let (mut device, port) = identified();
+        device.newtons_per_unit = vec![-100.0, 2.0];
+        reply(&port, 0.1, "+1.5E+00, 9.9E37");
+        let sample = device.sample().unwrap();
+        let forces: Vec<Option<Force>> = sample.axes().map(|channel| channel.force).collect();
+        assert_eq!(forces, [Some(Force::Newtons(-150.0)), Some(Force::Newtons(f64::INFINITY))]);
+        assert_eq!(sample.axes().map(|channel| channel.flags.saturated).collect::<Vec<_>>(), [false, true]);
+        assert_eq!(device.axes(), 2);
+        for (said, why) in [
+            ("+1.5E+00", "it has 1 numbers, and the meter 2 channels"),
+            ("1.0,OVL", "channel 2: it is no number"),
+            ("1,5,2,5", "it has 4 numbers, and the meter 2 channels"),
+        ] {
+            reply(&port, 0.1, said);
+            assert!(matches!(device.sample(), Err(DeviceFault::NoReading { reason, .. }) if reason == why), "{why}");
+        }
+    }
+
+    #[test]
     fn silence_ends_within_a_bounded_time() {
         let (mut device, _) = identified();
         let began = device.talk.now();
