@@ -114,7 +114,10 @@ fn fit(
     match axes.iter().filter_map(|axis| axis.load_cell.as_ref()).find(|own| own.link.dialect.counts()) {
         // What each axis says of its counts the rig need not say.
         Some(_) if unsaid.is_none() => Some(()),
-        Some(own) => counts(checker, block, &own.link.dialect, own),
+        Some(own) => {
+            let own = unsaid.and_then(|axis| axis.load_cell.as_ref()).unwrap_or(own);
+            counts(checker, block, &own.link.dialect, own)
+        }
         None if unsaid.is_none() && !axes.is_empty() && cell.link.dialect.counts() => Some(()),
         None => counts(checker, block, &cell.link.dialect, cell),
     }

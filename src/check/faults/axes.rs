@@ -48,9 +48,8 @@ pub fn channels(channels: usize, axes: usize, dialect: &Dialect, at: Span) -> Di
         Dialect::Native => "make it the `load_cell` of the rig, for all axes; a single axis wants a device of one channel",
         _ => "give each axis a `load_cell` of its own, on its own port; or use a device of several channels: `scpi` or `native`",
     };
-    Diagnostic::new(Code::ChannelsDiffer, format!("a `{}` of {has} cannot weigh {}", dialect.name(), axes_of(axes)))
-        .at(at, has)
-        .help(help)
+    let text = format!("a load cell that speaks `{}` has {has} here, and cannot weigh {}", dialect.name(), axes_of(axes));
+    Diagnostic::new(Code::ChannelsDiffer, text).at(at, has).help(help)
 }
 
 pub fn not_asked(dialect: &Dialect, at: Span) -> Diagnostic {
