@@ -17,12 +17,15 @@ pub fn hold(
 ) -> Option<()> {
     let count = axes.len().max(1);
     let without = |own: fn(&CheckedAxis) -> Option<&Device>| count - axes.iter().filter(|axis| own(axis).is_some()).count();
-    let movers = |axis: &CheckedAxis| axis.actuator.as_ref().map(|_| ()).is_some();
+    let movers = |axis: &CheckedAxis| axis.actuator.is_some();
     let (moved, weighed) = (without(|axis| axis.actuator.as_ref()), without(|axis| axis.load_cell.as_ref()));
-    for device in axes.iter().filter_map(|axis| axis.actuator.as_ref()).filter(|device| !device.link.dialect.moves()) {
+    let unfit = |own: fn(&CheckedAxis) -> Option<&Device>, fit: fn(&Dialect) -> bool| {
+        axes.iter().filter_map(own).find(|device| !fit(&device.link.dialect))
+    };
+    if let Some(device) = unfit(|axis| axis.actuator.as_ref(), Dialect::moves) {
         return checker.fail(rigs::cannot_move("actuator", &device.link.dialect, device.dialect_at));
     }
-    for device in axes.iter().filter_map(|axis| axis.load_cell.as_ref()).filter(|device| !device.link.dialect.weighs()) {
+    if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), Dialect::weighs) {
         return checker.fail(rigs::cannot_weigh(true, "load_cell", &device.link.dialect, device.dialect_at));
     }
     let idle = [(moved, Some(actuator)), (weighed, load_cell)].into_iter().find(|(left, device)| *left == 0 && device.is_some());
@@ -53,7 +56,8 @@ pub fn hold(
     for (behind, device) in weighing {
         channels(checker, behind, count, device)?;
     }
-    ports(checker, all.chain(load_cell).chain(axes.iter().filter_map(|axis| axis.load_cell.as_ref())).collect())
+    let cells = axes.iter().filter_map(|axis| axis.load_cell.as_ref());
+    ports(checker, &all.chain(load_cell).chain(cells).collect::<Vec<&Device>>())
 }
 
 /// A control point for every axis, and no axis without one.
@@ -82,7 +86,7 @@ fn channels(checker: &mut Checker, behind: usize, axes: usize, device: &Device) 
 }
 
 /// Each device on a port of its own.
-fn ports(checker: &mut Checker, devices: Vec<&Device>) -> Option<()> {
+fn ports(checker: &mut Checker, devices: &[&Device]) -> Option<()> {
     for (place, device) in devices.iter().enumerate() {
         let same = |other: &&&Device| other.link.port.to_string() == device.link.port.to_string();
         if let Some(first) = devices[..place].iter().find(same) {
