@@ -64,6 +64,7 @@ impl AxisCalibration {
             force_uncertainty: self.force_uncertainty.unwrap_or(all.force_uncertainty),
             displacement_uncertainty: self.displacement_uncertainty.unwrap_or(all.displacement_uncertainty),
             zero_uncertainty: self.zero_uncertainty.unwrap_or(all.zero_uncertainty),
+            zero_drift: all.zero_drift,
             newtons_per_count: self.newtons_per_count.or(all.newtons_per_count),
             zero_count: self.zero_count.unwrap_or(all.zero_count),
         }

@@ -92,6 +92,7 @@ impl Device for Several {
             firmware: all(|identity| &identity.firmware),
             boot: (!boots.is_empty()).then(|| boots.join(" + ")),
             simulated: said.iter().any(|identity| identity.simulated),
+            raw: said.into_iter().flat_map(|identity| identity.raw).collect(),
         })
     }
 

@@ -27,6 +27,7 @@ impl RealRig {
             settle: plan.settle,
             axes: axes(plan, &link, limits),
             identity: nobody(&plan.name),
+            introduction: Vec::new(),
             actuator,
             load_cell,
             clock,
@@ -76,9 +77,10 @@ impl RealRig {
             model: all(|identity| &identity.model) + loop_open,
             serial: all(|identity| &identity.serial),
             firmware: all(|identity| &identity.firmware),
-            boot: actuator.boot,
+            boot: actuator.boot.clone(),
             simulated: said.iter().any(|identity| identity.simulated),
         };
+        self.introduction = said.into_iter().flat_map(|identity| identity.raw).collect();
         Ok(())
     }
 
