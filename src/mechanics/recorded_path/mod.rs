@@ -38,6 +38,9 @@ pub enum Rule {
     /// Its curve is stretched about where the one before it began, if it came back softer than it first was: exact of those
     /// that lose stiffness and come back to the origin.
     Pivoted,
+    /// As `Shifted` until the force is gone; from there it goes to where the record went, as far as that is known: of those
+    /// that come back to a place of their own on the far side (pinching, a gap that closes).
+    Anchored,
     /// As `Shifted`, and loops that did not close in the record keep their shape as well: of specimens that forget a turn
     /// only as they flow on (Bouc and Wen) neither is exact.
     Kept,
@@ -112,7 +115,8 @@ impl RecordedPath {
     pub fn rules(&self) -> Vec<Rule> {
         let softer = (1..self.branches.len()).any(|branch| self.pivot(branch).is_some());
         let drifts = self.branches.iter().any(|branch| branch.drifts);
-        let possible = [(Rule::Shifted, true), (Rule::Pivoted, softer), (Rule::Kept, drifts)];
+        let swings = self.branches.iter().skip(1).any(|branch| branch.gone.is_some() && !branch.retraces);
+        let possible = [(Rule::Shifted, true), (Rule::Pivoted, softer), (Rule::Anchored, swings), (Rule::Kept, drifts)];
         possible.into_iter().filter(|(_, possible)| *possible).map(|(rule, _)| rule).collect()
     }
 
