@@ -97,14 +97,9 @@ struct Blow {
 }
 
 fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
-    let Blow { striker, velocity, duration, until, share } = blow;
-    let blow = Impact {
-        contact: contact.clone(),
-        stepping: every(1e-3),
-        duration: constant(duration),
-        until,
-        ..impact(constant(300.0))
-    };
+    let Blow { striker, velocity, time_step, duration, until, share } = blow;
+    let stepping = every(time_step);
+    let blow = Impact { contact: contact.clone(), stepping, duration: constant(duration), until, ..impact(constant(300.0)) };
     let mut plan: Plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow.clone())]);
     plan.specimens[0].behaviour = Some(specimens(1.0, 1.0)[specimen].1.clone());
     (plan.strikers[0].mass, plan.strikers[0].velocity) = (striker, velocity);
