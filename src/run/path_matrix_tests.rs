@@ -3,12 +3,12 @@
 
 use super::impact::Setting;
 use super::inputs::Inputs;
-use super::testing::{elastic_plan, every, impact, run_unwatched};
+use super::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::formula::{Formula, ProcedureId};
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::rerun::{OUTCOMES, integrate};
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::{Behaviour, Bolted, Calibration, Contact, Impact, Pinching, Plan, ProcedureKind, Until};
+use crate::plan::{Behaviour, Bolted, Calibration, Contact, Impact, Link, Pinching, Plan, ProcedureKind, Until, VirtualLink};
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Source};
 
@@ -195,4 +195,34 @@ fn swinging_back_contributes_what_it_truly_does() {
 fn finer_steps_contribute_as_much() {
     let fine = Blow { time_step: 1e-4, share: 2e-3, ..STRUCK };
     judge(fine, &[(1, 3), (6, 3), (1, 2)], Held { smooth: 0.7, marked: 0.5 });
+}
+
+/// Readings of a specimen that yields and is struck again, 0.2 N uncertain each: what they make of the largest displacement is
+/// the scatter of runs that differ in them alone, and the velocity makes of it what it does of one that is read exactly.
+#[test]
+fn noise_does_not_hide_what_an_input_does() {
+    const RUNS: u64 = 40;
+    let plan = |seed: u64| {
+        let blow =
+            Impact { contact: laws()[1].1.clone(), stepping: every(1e-3), duration: constant(0.6), ..impact(constant(300.0)) };
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        plan.specimens[0].behaviour = Some(specimens(1.0, 1.0)[1].1.clone());
+        plan.strikers[0].velocity_uncertainty = 1e-2;
+        plan.rig.link = Link::Virtual(VirtualLink { noise: 0.2, seed, ..VirtualLink::default() });
+        plan
+    };
+    let exact = cells(1, &laws()[1].1, Blow { share: 1e-2, ..STRUCK });
+    let of_velocity = |cell: &&Cell| cell.outcome == "max_displacement" && cell.source == SOURCES[0];
+    let truth = exact.iter().find(of_velocity).unwrap().truth;
+    let records: Vec<_> = (1..=RUNS).map(|seed| run_unwatched(&plan(seed))).collect();
+    let found = |index: usize| number(&records[index], 0, "max_displacement").0.unwrap();
+    let count = f64::from(u32::try_from(RUNS).unwrap());
+    let mean = (0..records.len()).map(found).sum::<f64>() / count;
+    let scatter = ((0..records.len()).map(|index| (found(index) - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
+    for record in &records[..8] {
+        let parts = &record.procedures[0].result("max_displacement").unwrap().contributions;
+        let of_readings = |part: &&Contribution| matches!(part.source, Source::Readings { .. });
+        let u = parts.iter().filter(of_readings).map(|part| part.amount.powi(2)).sum::<f64>().sqrt();
+        println!("NOISE {u:e} {scatter:e} {:e} {truth:e} {}", parts[0].amount, parts[0].smooth);
+    }
 }

@@ -100,8 +100,9 @@ impl<'run> Doubts<'run> {
             }
         }
         if path.swung_back() {
-            for (_, parts) in OUTCOMES.iter().zip(&mut contributions).filter(|(name, _)| LATE.contains(name)) {
-                parts.iter_mut().for_each(|part| part.smooth = false);
+            let late = OUTCOMES.iter().zip(&mut contributions).filter(|(name, _)| LATE.contains(name));
+            for part in late.flat_map(|(_, parts)| parts) {
+                part.smooth = false;
             }
         }
         self.round_times(setting.input.time_step, &mut contributions);
