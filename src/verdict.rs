@@ -188,20 +188,33 @@ fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaErr
     })
 }
 
+/// Numbers that differ by no more than this share of the larger are one number: 0.3 mm read in quanta of 0.1 mm, or an energy
+/// that went through a square root and back, is off by some 1e-16 of itself, and no measurement tells such a difference.
+const ROUNDING: f64 = 1e-12;
+
+/// What rounding may make of numbers such as these.
+fn rounding(a: f64, b: f64) -> f64 {
+    ROUNDING * a.abs().max(b.abs()).min(f64::MAX)
+}
+
+fn equal(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= rounding(a, b)
+}
+
 impl Bound {
-    /// Whether `value` (SI) meets it.
+    /// Whether `value` (SI) meets it. What is equal but for rounding is equal.
     #[must_use]
     pub fn holds(self, value: f64) -> bool {
         match self {
             Self::Compare { comparison, limit } => match comparison {
-                Comparison::Less => value < limit,
-                Comparison::LessEqual => value <= limit,
-                Comparison::Greater => value > limit,
-                Comparison::GreaterEqual => value >= limit,
-                Comparison::Equal => value == limit,
-                Comparison::NotEqual => value != limit,
+                Comparison::Less => value < limit && !equal(value, limit),
+                Comparison::LessEqual => value <= limit || equal(value, limit),
+                Comparison::Greater => value > limit && !equal(value, limit),
+                Comparison::GreaterEqual => value >= limit || equal(value, limit),
+                Comparison::Equal => equal(value, limit),
+                Comparison::NotEqual => !equal(value, limit),
             },
-            Self::Within { target, tolerance } => (value - target).abs() <= tolerance,
+            Self::Within { .. } => self.margin(value) >= 0.0,
         }
     }
 
@@ -229,14 +242,17 @@ impl Bound {
     #[must_use]
     pub fn margin(self, value: f64) -> f64 {
         match self {
+            Self::Compare { limit, .. } if equal(value, limit) => 0.0,
             Self::Compare { comparison, limit } => match comparison {
                 Comparison::Less | Comparison::LessEqual => limit - value,
                 Comparison::Greater | Comparison::GreaterEqual => value - limit,
-                // 0 − |…|, not −|…|: a report should not show −0.
-                Comparison::Equal => 0.0 - (value - limit).abs(),
+                Comparison::Equal => -(value - limit).abs(),
                 Comparison::NotEqual => (value - limit).abs(),
             },
-            Self::Within { target, tolerance } => tolerance - (value - target).abs(),
+            Self::Within { target, tolerance } => {
+                let margin = tolerance - (value - target).abs();
+                if margin.abs() <= rounding(value, target) { 0.0 } else { margin }
+            }
         }
     }
 }
