@@ -18,16 +18,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
         let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
-        return Some(Specimen {
-            name: name?.node.clone(),
-            mass,
-            mass_from: None,
-            mass_uncertainty: 0.0,
-            frame,
-            behaviour: None,
-            damping: 0.0,
-            coulomb: 0.0,
-        });
+        return Some(Specimen { frame, ..Specimen::new(&name?.node, mass, None) });
     }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {

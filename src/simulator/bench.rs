@@ -239,7 +239,7 @@ impl Bench {
     }
 
     pub fn displacement_of(&mut self, ram: usize) -> f64 {
-        self.rams[ram].displacement()
+        self.rams[ram].displacement(self.time)
     }
 
     /// N, as its cell feels it, with noise.
@@ -373,6 +373,7 @@ mod tests {
         near(after(BenchFault::ScaleDisplacement(25.4)), (127.0, 500.0));
         near(after(BenchFault::ClipForce(350.0)), (5.0, 350.0));
         near(after(BenchFault::Drift(3.0)), (5.0, 503.0));
+        near(after(BenchFault::DriftDisplacement(2e-4)), (5.2, 500.0));
         near(after(BenchFault::Spike(70.0)), (5.0, 570.0));
         near(after(BenchFault::Fracture { displacement: 0.003, left: 0.1 }), (5.0, 50.0));
     }
@@ -401,15 +402,12 @@ mod tests {
 
     const RAM: RamSettings = RamSettings { sign: 1.0, noise: 0.0, resolution: 0.0, limits: Interval { low: -0.01, high: 0.01 } };
 
-    fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
-    }
-
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
     fn frame() -> Frame {
+        let yielding = Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 };
         Frame::of_storeys(vec![
-            storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
-            storey(2000.0, Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 }),
+            Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
+            Storey::new(1.0, 2000.0, yielding),
         ])
     }
 
