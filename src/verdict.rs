@@ -4,7 +4,7 @@
 use crate::formula::{Formula, FormulaError, Operator, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
-use crate::record::{Beyond, Outcome, Record};
+use crate::record::{Beyond, History, Outcome, Record};
 use crate::rig::failpoint::{self, Guarding};
 
 /// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
@@ -103,7 +103,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
 fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
     let assess = |condition: &Condition| {
         let outcome = assess_condition(condition, rule, record);
-        drifted(condition, cut_short(condition, outcome, record), record)
+        drifted(condition, no_peak(condition, cut_short(condition, outcome, record), record), record)
     };
     let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
@@ -122,6 +122,38 @@ fn cut_short(condition: &Condition, outcome: ConditionOutcome, record: &Record) 
             ..outcome
         },
         None => outcome,
+    }
+}
+
+/// Results of an impact that would be larger had it gone on.
+const GROWING: [&str; 3] = ["max_displacement", "time_of_max_displacement", "absorbed_energy"];
+
+/// A largest displacement that was still growing as the run ended is no peak: that it keeps below a bound proves nothing, that it
+/// is past one does.
+fn no_peak(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
+    let decided = match (outcome.bound, outcome.verdict) {
+        (Some(Bound::Compare { comparison: Comparison::Greater | Comparison::GreaterEqual, .. }), verdict) => {
+            verdict == Verdict::Pass
+        }
+        (Some(Bound::Compare { comparison: Comparison::Less | Comparison::LessEqual, .. }), verdict) => verdict == Verdict::Fail,
+        _ => false,
+    };
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    let mut read = references.iter().filter(|reference| GROWING.contains(&reference.name));
+    let growing = read.find_map(|reference| {
+        let procedure = record.procedures.get(reference.procedure.0)?;
+        matches!(&procedure.history, History::Impact(history) if history.still_rising()).then_some(&procedure.name)
+    });
+    match growing {
+        Some(name) if !decided => ConditionOutcome {
+            verdict: Verdict::Inconclusive,
+            reason: outcome
+                .reason
+                .or_else(|| Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))),
+            ..outcome
+        },
+        _ => outcome,
     }
 }
 
