@@ -15,6 +15,10 @@ pub mod driven;
 mod escalate;
 #[cfg(test)]
 mod escalate_tests;
+mod followed;
+#[cfg(test)]
+mod followed_tests;
+mod frame_steps;
 mod gate;
 mod gliding;
 mod hold;
@@ -49,6 +53,7 @@ mod stop;
 mod storey_impact;
 mod storey_summary;
 mod strike;
+mod striking;
 pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
