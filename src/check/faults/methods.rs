@@ -41,7 +41,8 @@ pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f6
 /// The tangent form with a bound on its tangent (N/m) below the specimen's stiffness.
 pub fn stiffer_than_tangent(span: Span, specimen: f64, bound: f64) -> Diagnostic {
     let (specimen, bound) = (shown(specimen, Dimension::STIFFNESS), shown(bound, Dimension::STIFFNESS));
-    let message = format!("the specimen reaches {specimen}, and the tangent is taken for no more than {bound}: it may be unstable");
+    let message =
+        format!("the specimen reaches {specimen}, and the tangent is taken for no more than {bound}: it may be unstable");
     Diagnostic::new(Code::StifferThanOperator, message)
         .at(span, "`max_tangent_ratio` times this is the most that is believed")
         .help("write the stiffness of the specimen where it is stiff, or a larger `max_tangent_ratio`")
