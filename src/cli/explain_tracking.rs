@@ -117,7 +117,7 @@ pub(super) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> 
 
 /// What tracking is to make of the energy of a run, from the share that the rig misses of its increments.
 pub(super) fn energy(plan: &Plan, procedure: usize) -> Vec<Vec<String>> {
-    let Some((foretold, _)) = tracking::foretold(plan, procedure) else { return Vec::new() };
+    let Some(tracking::Forecast { foretold, .. }) = tracking::foretold(plan, procedure) else { return Vec::new() };
     let share = significant(100.0 * foretold.share.abs(), 2);
     let does = if foretold.share < 0.0 { "put in" } else { "taken out" };
     let held = foretold.passed.map_or_else(String::new, |time| format!("; held at about {}", readable(time, Dimension::TIME)));

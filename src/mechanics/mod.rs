@@ -7,6 +7,7 @@ pub mod contact;
 pub mod cyclic;
 pub mod damping;
 pub mod energy;
+pub mod following;
 pub mod forecast;
 pub mod frame;
 pub mod frame_properties;
