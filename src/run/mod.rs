@@ -18,6 +18,8 @@ mod escalate_tests;
 mod followed;
 #[cfg(test)]
 mod followed_tests;
+#[cfg(test)]
+mod forecast_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
