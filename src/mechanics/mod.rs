@@ -34,6 +34,6 @@ pub mod structure;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use integrator::critical_time_step;

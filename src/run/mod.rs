@@ -50,6 +50,9 @@ mod shake_results;
 mod shaking;
 mod stepping;
 mod stiffer;
+#[cfg(test)]
+mod stiffer_tests;
+mod stiffness_on_the_way;
 mod stiffness_ramp;
 mod stop;
 mod storey_impact;

@@ -110,6 +110,10 @@ impl Stepped for Struck<'_> {
         Balance { error: floor.energies.error, input: self.setting.body.striker_energy() }
     }
 
+    fn is_struck(&self) -> bool {
+        self.solver.striker().contact_force > 0.0
+    }
+
     fn over(&self) -> bool {
         self.solver.over(self.until)
     }
