@@ -16,8 +16,8 @@ use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::monitor;
 use crate::mechanics::structure::Structure;
 use crate::plan::{
-    Contact, Escalate, Impact, Limits, Link, Mode, Plan, ProcedureKind, Shake, Stepping, StoreyImpact, VIRTUAL_SPEED,
-    VirtualLink, step_count,
+    BlowOn, Contact, Escalate, Impact, Limits, Link, Mode, Plan, ProcedureKind, Shake, Stepping, StoreyImpact, Striker,
+    VIRTUAL_SPEED, VirtualLink, step_count,
 };
 
 /// What is foretold of a procedure.
@@ -73,16 +73,22 @@ fn scope(plan: &Plan, link: &VirtualLink, stepping: &Stepping, (time_step, durat
 }
 
 fn of_impact(plan: &Plan, impact: &Impact, link: &VirtualLink) -> Option<Forecast> {
-    of_blows(plan, impact, std::iter::once(plan.strikers.get(impact.striker)?.velocity), link)
+    of_blows(plan, impact, &[plan.strikers.get(impact.striker)?.velocity], link)
 }
 
 /// Blow by blow, each as on a specimen that none has struck: the worst of them, at the time in its own blow.
 fn of_escalate(plan: &Plan, escalate: &Escalate, link: &VirtualLink) -> Option<Forecast> {
     let velocities = escalate.velocities.iter().map(Formula::constant).collect::<Option<Vec<f64>>>()?;
-    of_blows(plan, &escalate.blow, velocities.into_iter(), link)
+    match &escalate.blow {
+        BlowOn::Specimen(impact) => of_blows(plan, impact, &velocities, link),
+        BlowOn::Storey(impact) => {
+            let fastest = escalate.fastest(plan.strikers.get(impact.striker)?);
+            of_storey_blows(plan, impact, &fastest, &velocities, link)
+        }
+    }
 }
 
-fn of_blows(plan: &Plan, impact: &Impact, velocities: impl Iterator<Item = f64>, link: &VirtualLink) -> Option<Forecast> {
+fn of_blows(plan: &Plan, impact: &Impact, velocities: &[f64], link: &VirtualLink) -> Option<Forecast> {
     let (specimen, striker) = (plan.specimens.get(impact.specimen)?, plan.strikers.get(impact.striker)?);
     let behaviour = specimen.behaviour.as_ref()?;
     // An earlier procedure's stiffness is near the specimen's own.
@@ -101,15 +107,18 @@ fn of_blows(plan: &Plan, impact: &Impact, velocities: impl Iterator<Item = f64>,
         resolution: 0.0,
     };
     let input = structure.struck_by(striker, &impact.stepping);
-    let blows = forecast::MOST_STEPS.div_ceil(scope.steps.max(1));
-    let each = velocities
-        .take(usize::try_from(blows).unwrap_or(usize::MAX))
-        .map(|velocity| {
-            let input = ImpactInput { striker_velocity: velocity, ..input };
-            forecast::of_impact(&input, behaviour, impact.until, &scope)
-        })
-        .max_by(|one, other| one.share.abs().total_cmp(&other.share.abs()));
-    Some(Forecast { foretold: each?, time_step, omega: (stiffness / structure.mass).sqrt() })
+    let foretold = worst(velocities, &scope, |velocity| {
+        let input = ImpactInput { striker_velocity: velocity, ..input };
+        Some(forecast::of_impact(&input, behaviour, impact.until, &scope))
+    })?;
+    Some(Forecast { foretold, time_step, omega: (stiffness / structure.mass).sqrt() })
+}
+
+/// The worst of the blows, as many from the first on as there are steps to look at.
+fn worst(velocities: &[f64], scope: &Scope, foretold: impl Fn(f64) -> Option<Foretold>) -> Option<Foretold> {
+    let blows = usize::try_from(forecast::MOST_STEPS.div_ceil(scope.steps.max(1))).unwrap_or(usize::MAX);
+    let each = velocities.iter().take(blows).filter_map(|velocity| foretold(*velocity));
+    each.max_by(|one, other| one.share.abs().total_cmp(&other.share.abs()))
 }
 
 fn law(contact: &Contact) -> Option<ContactLaw> {
@@ -169,8 +178,19 @@ fn of_shake(plan: &Plan, shake: &Shake, link: &VirtualLink) -> Option<Forecast> 
 }
 
 fn of_storey_impact(plan: &Plan, impact: &StoreyImpact, link: &VirtualLink) -> Option<Forecast> {
-    let frame = plan.specimens.get(impact.specimen)?.frame.as_ref()?;
     let striker = plan.strikers.get(impact.striker)?;
+    of_storey_blows(plan, impact, striker, &[striker.velocity], link)
+}
+
+/// With the time step that the blow of `striker` needs.
+fn of_storey_blows(
+    plan: &Plan,
+    impact: &StoreyImpact,
+    striker: &Striker,
+    velocities: &[f64],
+    link: &VirtualLink,
+) -> Option<Forecast> {
+    let frame = plan.specimens.get(impact.specimen)?.frame.as_ref()?;
     let properties = FrameProperties::of(frame, &impact.damping.known()?).ok()?;
     let law = law(&impact.contact)?;
     let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
@@ -187,7 +207,10 @@ fn of_storey_impact(plan: &Plan, impact: &StoreyImpact, link: &VirtualLink) -> O
         gravity: striker.gravity,
         law,
     };
-    let foretold = forecast::of_storey_impact(&input, frame, impact.until, &scope)?;
+    let foretold = worst(velocities, &scope, |velocity| {
+        let input = FrameImpactInput { striker_velocity: velocity, ..input };
+        forecast::of_storey_impact(&input, frame, impact.until, &scope)
+    })?;
     Some(Forecast { foretold, time_step, omega: properties.modes.angular_frequency(0) })
 }
 
@@ -233,7 +256,10 @@ const fn stepping_of(kind: &ProcedureKind) -> Option<&Stepping> {
         ProcedureKind::Impact(impact) => Some(&impact.stepping),
         ProcedureKind::StoreyImpact(impact) => Some(&impact.stepping),
         ProcedureKind::Shake(shake) => Some(&shake.stepping),
-        ProcedureKind::Escalate(escalate) => Some(&escalate.blow.stepping),
+        ProcedureKind::Escalate(escalate) => Some(match &escalate.blow {
+            BlowOn::Specimen(impact) => &impact.stepping,
+            BlowOn::Storey(impact) => &impact.stepping,
+        }),
         _ => None,
     }
 }

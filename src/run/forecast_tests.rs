@@ -6,7 +6,9 @@ use super::testing::{elastic_plan, impact, number, run_unwatched, struck_frame};
 use crate::check::tracking::foretold;
 use crate::formula::Formula::Constant;
 use crate::formula::ProcedureId;
-use crate::plan::{Between, Escalate, Impact, Integrator, Link, Mode, Plan, ProcedureKind, Settle, Stepping, Until, VirtualLink};
+use crate::plan::{
+    Between, BlowOn, Escalate, Impact, Integrator, Link, Mode, Plan, ProcedureKind, Settle, Stepping, Until, VirtualLink,
+};
 use crate::record::{History, Outcome};
 use crate::rig::virtual_rig;
 
@@ -90,7 +92,7 @@ fn blows_are_foretold() {
     let blow = ringing(Mode::StepAndPause);
     let escalate = Escalate {
         own: ProcedureId(0),
-        blow: blow.clone(),
+        blow: BlowOn::Specimen(blow),
         velocities: [0.5, 1.0].map(Constant).to_vec(),
         condition: Vec::new(),
         between: Between::Home,

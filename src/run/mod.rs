@@ -2,6 +2,7 @@
 
 mod attribution;
 mod axes;
+mod blow;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -33,6 +34,8 @@ mod move_to;
 pub mod need;
 #[cfg(test)]
 mod need_tests;
+#[cfg(test)]
+mod path_matrix_tests;
 mod propagation;
 #[cfg(test)]
 mod propagation_tests;
@@ -300,6 +303,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
+        ProcedureKind::FrameUnload(unload) => unload::perform_frame(unload, plan, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),
     }

@@ -28,6 +28,11 @@ const ONE_SIDED: f64 = 0.2;
 /// And half the difference at ±u from that at ±u/2.
 const HALVED: f64 = 0.1;
 
+/// Suppositions about the specimen that come to results so near to each other, of the larger, agree.
+const AGREED: f64 = 0.2;
+/// A way taken again that leaves the recorded one for more than this share of the largest displacement is not known by it.
+const UNSEEN: f64 = 1e-3;
+
 /// The results as the run with one source moved gives them, and the critical time step, which follows from inputs alone.
 type Values = [f64; OUTCOMES.len() + 1];
 
@@ -74,22 +79,22 @@ impl<'run> Doubts<'run> {
         let input = &setting.input;
         let path = RecordedPath::new(readings.collect(), input.stiffness, input.force_noise, input.resolution);
         let path = path.ok_or("nothing was recorded")?;
-        let nominal = self.values(setting, &path, Distortion::NONE);
         let again = rerun(&setting.input, self.plan.until, setting.steps, &path, Distortion::NONE).summary;
         if !same(&again, recorded) {
             return Err("the recorded way, taken again, does not lead to the recorded results".to_owned());
         }
-        let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); nominal.len()];
-        for source in sources {
-            let at = |by| self.moved(setting, &path, source, by);
-            let [up, half_up, half_down, down] = [at(1.0)?, at(0.5)?, at(-0.5)?, at(-1.0)?];
-            for (index, parts) in contributions.iter_mut().enumerate() {
-                let (amount, smooth) = effect(nominal[index], [up[index], half_up[index], half_down[index], down[index]]);
-                parts.push(Contribution { source, amount, smooth });
+        // What the specimen may have done for all the record tells: the most that any of it makes of a source is told.
+        let mut contributions: Vec<Vec<Contribution>> = Vec::new();
+        for rule in path.rules() {
+            let found =
+                self.supposing(setting, &path.clone().supposing(rule), &sources, sampled.then_some(steps.len() as u64))?;
+            if contributions.is_empty() {
+                contributions = found;
+            } else {
+                for (told, other) in contributions.iter_mut().zip(found) {
+                    widen(told, &other);
+                }
             }
-        }
-        if sampled {
-            self.sample(setting, &path, steps.len() as u64, &nominal, &mut contributions);
         }
         self.round_times(setting.input.time_step, &mut contributions);
         let names = OUTCOMES.iter().copied().chain(["critical_time_step"]);
@@ -102,6 +107,32 @@ impl<'run> Doubts<'run> {
             }
         }
         Ok(())
+    }
+
+    /// What each source contributes to each result, if the specimen keeps to the rule of `path`; of readings too where the
+    /// steps that have them are given.
+    fn supposing(
+        &self,
+        setting: &Setting,
+        path: &RecordedPath,
+        sources: &[Source],
+        sampled: Option<u64>,
+    ) -> Result<Vec<Vec<Contribution>>, String> {
+        let (nominal, _) = self.values(setting, path, Distortion::NONE);
+        let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); nominal.len()];
+        for source in sources {
+            let at = |by| self.moved(setting, path, *source, by);
+            let moved = [at(1.0)?, at(0.5)?, at(-0.5)?, at(-1.0)?];
+            let seen = moved.iter().all(|(_, seen)| *seen);
+            for (index, parts) in contributions.iter_mut().enumerate() {
+                let (amount, smooth) = effect(nominal[index], moved.map(|(values, _)| values[index]));
+                parts.push(Contribution { source: *source, amount, smooth: smooth && (seen || amount == 0.0) });
+            }
+        }
+        if let Some(steps) = sampled {
+            self.sample(setting, path, steps, &nominal, &mut contributions);
+        }
+        Ok(contributions)
     }
 
     /// The sources that can be moved, each once.
@@ -140,7 +171,7 @@ impl<'run> Doubts<'run> {
     }
 
     /// The run again, with a source moved by `by` standard uncertainties. The time step stays: it was chosen, not measured.
-    fn moved(&self, setting: &Setting, path: &RecordedPath, source: Source, by: f64) -> Result<Values, String> {
+    fn moved(&self, setting: &Setting, path: &RecordedPath, source: Source, by: f64) -> Result<(Values, bool), String> {
         let declared = &self.whole.strikers[self.plan.striker];
         let mut striker = declared.clone();
         let mut distortion = Distortion::NONE;
@@ -168,11 +199,12 @@ impl<'run> Doubts<'run> {
         Ok(self.values(&moved, path, distortion))
     }
 
-    fn values(&self, setting: &Setting, path: &RecordedPath, distortion: Distortion) -> Values {
-        let found = rerun(&setting.input, self.plan.until, setting.steps, path, distortion).values;
+    /// And whether the record tells the way to them.
+    fn values(&self, setting: &Setting, path: &RecordedPath, distortion: Distortion) -> (Values, bool) {
+        let found = rerun(&setting.input, self.plan.until, setting.steps, path, distortion);
         let mut values = [setting.critical_time_step; OUTCOMES.len() + 1];
-        values[..OUTCOMES.len()].copy_from_slice(&found);
-        values
+        values[..OUTCOMES.len()].copy_from_slice(&found.values);
+        (values, found.unseen <= UNSEEN * found.summary.max_displacement.abs())
     }
 
     /// Draws errors of all readings: what each draw does, over the root of their number, is a contribution of its own, so that
@@ -191,7 +223,7 @@ impl<'run> Doubts<'run> {
         let first = self.blow.saturating_mul(MOST_DRAWS);
         for draw in first..first.saturating_add(draws) {
             let noise = Some(Noise { force, displacement, draw });
-            let found = self.values(setting, path, Distortion { noise, ..Distortion::NONE });
+            let (found, _) = self.values(setting, path, Distortion { noise, ..Distortion::NONE });
             let source = Source::Readings { procedure: self.procedure, draw };
             for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(nominal) {
                 // A result that does not exist has no uncertainty, and none is looked for in its draws.
@@ -231,6 +263,24 @@ fn effect(nominal: f64, [up, half_up, half_down, down]: [f64; 4]) -> (f64, bool)
         return (widest.max(central.abs()).max(halved.abs()).copysign(central), false);
     }
     (central, true)
+}
+
+/// Lets `told` be the most of what two suppositions make of one result: source by source of inputs that are moved, the draws
+/// of readings together, for it is their sum that tells. Where the two do not agree, none of them is sure.
+fn widen(told: &mut [Contribution], other: &[Contribution]) {
+    let drawn = |part: &Contribution| matches!(part.source, Source::Readings { .. });
+    let all_drawn =
+        |parts: &[Contribution]| parts.iter().filter(|part| drawn(part)).map(|part| part.amount.powi(2)).sum::<f64>().sqrt();
+    let (draws, of_other) = (all_drawn(told), all_drawn(other));
+    for (told, other) in told.iter_mut().zip(other) {
+        let (one, two, apart) = if drawn(told) {
+            (draws, of_other, (draws - of_other).abs())
+        } else {
+            (told.amount.abs(), other.amount.abs(), (told.amount - other.amount).abs())
+        };
+        let smooth = told.smooth && other.smooth && apart <= AGREED * one.max(two);
+        *told = Contribution { smooth, ..if two > one { *other } else { *told } };
+    }
 }
 
 /// Whether two runs came to the same.

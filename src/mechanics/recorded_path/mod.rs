@@ -2,13 +2,18 @@
 //! with an input moved a little and no model of the specimen. In: targets and what was read at them, in order. Out: what
 //! would be read at targets near those, step by step.
 //!
-//! The way is cut at its turning points into branches, each monotone. At step i the branch that the record was on at its
-//! step i holds; inside it the force is interpolated between the recorded points, beyond its ends it goes on along the
-//! tangent there. A specimen that was turned elsewhere comes back on another line: where the record turns at `X_m` and the
-//! way taken now at `X_m` + δ, the next branch is raised by (`K_end` − `K_start`)·δ, the tangents before and after the turn. That is
-//! exact of elastic specimens, for which it is nothing, and of those that unload along parallel lines; what they do when
-//! they yield backwards it is not. At the recorded targets the recorded readings come back as they were, to the bit.
+//! The record is cut into curves (`pieces`), on which the force is interpolated; beyond what was recorded of one it goes on
+//! along the tangent there. The way taken again goes from curve to curve at its own turns (`again`). What a curve does when
+//! its beginning has moved, the record does not tell: `Rule` says what is supposed. At the recorded targets the recorded
+//! readings come back as they were, to the bit.
 
+mod again;
+mod map;
+mod pieces;
+
+pub use again::Again;
+
+use self::pieces::{Branch, Piece};
 use super::tangent::NOISE_MULTIPLE;
 
 /// One step of the record.
@@ -20,6 +25,22 @@ pub struct Reading {
     pub displacement: f64,
     /// N
     pub force: f64,
+}
+
+/// What a specimen is supposed to do after it turned elsewhere. Where it goes back over the curve it came from it does so
+/// after every turn, and where it passes the place of an earlier turn it goes on with the curve that was left there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Its curve begins at the turn and keeps its shape: exact of elastic specimens and of elastic–plastic elements side by
+    /// side (Iwan 1967), however many. One that passed an earlier turn of the record elsewhere than through it, so that no
+    /// loop was closed, keeps the line that it settled on.
+    Shifted,
+    /// Its curve is stretched about where the one before it began, if it came back softer than it first was: exact of those
+    /// that lose stiffness and come back to the origin.
+    Pivoted,
+    /// As `Shifted`, and loops that did not close in the record keep their shape as well: of specimens that forget a turn
+    /// only as they flow on (Bouc and Wen) neither is exact.
+    Kept,
 }
 
 /// How the way differs from the recorded one.
@@ -59,23 +80,18 @@ impl Noise {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Branch {
-    /// Steps at its ends.
-    first: usize,
-    last: usize,
-    /// N/m; of a branch too short to tell, that of the one before it.
-    start_tangent: f64,
-    end_tangent: f64,
-}
+/// A way back whose stiffness fell by less than this share of what the stiffness of the whole way there fell by, kept it.
+const KEPT: f64 = 0.2;
 
-/// Readings along the way, in branches.
+/// Readings along the way, in branches and curves.
 #[derive(Clone, Debug)]
 pub struct RecordedPath {
     readings: Vec<Reading>,
     branches: Vec<Branch>,
-    /// The branch that ends in, or goes through, each reading.
-    branch_of: Vec<usize>,
+    pieces: Vec<Piece>,
+    /// Places no farther apart tell no difference of force, m.
+    least: f64,
+    rule: Rule,
 }
 
 impl RecordedPath {
@@ -83,58 +99,84 @@ impl RecordedPath {
     /// tell. None of no reading.
     #[must_use]
     pub fn new(readings: Vec<Reading>, stiffness: f64, force_noise: f64, resolution: f64) -> Option<Self> {
-        let mut branch_of = vec![0; readings.len()];
-        let mut bounds = vec![0];
-        let mut direction = 0.0;
-        for step in 1..readings.len() {
-            let moved = readings[step].target - readings[step - 1].target;
-            if moved * direction < 0.0 {
-                bounds.push(step - 1);
-            }
-            if moved != 0.0 {
-                direction = moved;
-            }
-            branch_of[step] = bounds.len() - 1;
+        if readings.is_empty() {
+            return None;
         }
-        bounds.push(readings.len().checked_sub(1)?);
         let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
-        let mut known = stiffness;
-        let branches = bounds.windows(2).map(|ends| {
-            let steps = &readings[ends[0]..=ends[1]];
-            let start = tangent(steps.iter(), least);
-            let end = tangent(steps.iter().rev(), least);
-            let start_tangent = start.unwrap_or(known);
-            known = end.unwrap_or(start_tangent);
-            Branch { first: ends[0], last: ends[1], start_tangent, end_tangent: known }
-        });
-        let branches = branches.collect();
-        Some(Self { readings, branches, branch_of })
+        let (branches, pieces) = pieces::cut(&readings, stiffness, force_noise, least);
+        Some(Self { readings, branches, pieces, least, rule: Rule::Shifted })
+    }
+
+    /// What the specimen may be supposed to do for all the record tells, the likeliest first.
+    #[must_use]
+    pub fn rules(&self) -> Vec<Rule> {
+        let softer = (1..self.branches.len()).any(|branch| self.pivot(branch).is_some());
+        let drifts = self.branches.iter().any(|branch| branch.drifts);
+        let possible = [(Rule::Shifted, true), (Rule::Pivoted, softer), (Rule::Kept, drifts)];
+        possible.into_iter().filter(|(_, possible)| *possible).map(|(rule, _)| rule).collect()
+    }
+
+    /// The same record, if the specimen is supposed to keep to a rule.
+    #[must_use]
+    pub fn supposing(self, rule: Rule) -> Self {
+        Self { rule, ..self }
     }
 
     /// Takes the way again from its beginning.
     #[must_use]
     pub fn again(&self, distortion: Distortion) -> Again<'_> {
-        Again { path: self, distortion, step: 0, branch: 0, raised: 0.0, place: self.readings[0].target }
+        Again::new(self, distortion)
     }
 
-    /// Displacement and force read at `place` (m) on `branch`, looked for from the reading of `step`.
-    fn at(&self, branch: usize, step: usize, place: f64) -> (f64, f64) {
-        let Branch { first, last, start_tangent, end_tangent } = self.branches[branch];
-        let here = self.readings[step];
+    /// Displacement and force where a branch may be stretched about; None of one that goes back over the curve it came from,
+    /// or as stiffly as the specimen first was.
+    fn pivot(&self, branch: usize) -> Option<[f64; 2]> {
+        let Branch { first_piece, retraces, .. } = self.branches[branch];
+        if retraces {
+            return None;
+        }
+        let mut origin = self.pieces[self.branches[branch - 1].last_piece];
+        while let Some(before) = origin.before {
+            origin = self.pieces[before];
+        }
+        let (begun, turn) = (self.readings[origin.begin], self.readings[self.pieces[first_piece].begin]);
+        let fallen = origin.start_tangent - (turn.force - begun.force) / (turn.target - begun.target);
+        let lost = origin.start_tangent - self.pieces[first_piece].start_tangent;
+        (fallen > 0.0 && lost > KEPT * fallen).then_some([begun.target, begun.force])
+    }
+
+    /// Displacement and force at `place` (m) on the curve of `piece`, looked for from the reading of `step`.
+    fn at(&self, piece: usize, step: usize, place: f64) -> (f64, f64) {
+        let mut index = piece;
+        // Where the curve was left and gone on with, on that side of it.
+        let piece = loop {
+            let piece = self.pieces[index];
+            let direction = self.branches[piece.branch].direction;
+            let beyond = |reading: usize| (place - self.readings[reading].target) * direction;
+            index = match (piece.before, piece.after) {
+                (Some(before), _) if beyond(piece.begin) < 0.0 => before,
+                (_, Some(after)) if beyond(piece.last) > 0.0 => after,
+                _ => break piece,
+            };
+        };
+        let direction = self.branches[piece.branch].direction;
+        let count = piece.last + 1 - piece.first;
+        let reading = |point: usize| self.readings[if point == 0 { piece.begin } else { piece.first + point - 1 }];
+        let mut from = (step + 1).saturating_sub(piece.first).min(count);
+        let here = reading(from);
         if place == here.target {
             return (here.displacement, here.force);
         }
-        let onwards = (self.readings[last].target - self.readings[first].target) * (place - here.target) > 0.0;
-        let mut from = step;
+        let onwards = (place - here.target) * direction > 0.0;
         loop {
-            let next = if onwards && from < last {
+            let next = if onwards && from < count {
                 from + 1
-            } else if !onwards && from > first {
+            } else if !onwards && from > 0 {
                 from - 1
             } else {
                 break;
             };
-            let (near, far) = (self.readings[from], self.readings[next]);
+            let (near, far) = (reading(from), reading(next));
             // Between the two, or at one of them.
             if (place - near.target) * (place - far.target) <= 0.0 && near.target != far.target {
                 let share = (place - near.target) / (far.target - near.target);
@@ -143,84 +185,10 @@ impl RecordedPath {
             }
             from = next;
         }
-        let end = self.readings[from];
-        let tangent = if from == last { end_tangent } else { start_tangent };
+        let end = reading(from);
+        let tangent = if from == count { piece.end_tangent } else { piece.start_tangent };
         let beyond = place - end.target;
         (end.displacement + beyond, end.force + tangent * beyond)
-    }
-}
-
-/// Slope of the least squares over the fewest readings that span more than `least` (m), two at least; None where all of
-/// them do not.
-fn tangent<'a>(readings: impl Iterator<Item = &'a Reading>, least: f64) -> Option<f64> {
-    let mut taken: Vec<(f64, f64)> = Vec::new();
-    for reading in readings {
-        taken.push((reading.target, reading.force));
-        if (reading.target - taken[0].0).abs() > least && taken.len() > 1 {
-            #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
-            let count = taken.len() as f64;
-            let (x, r) = taken.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
-            let (both, own) = taken.iter().fold((0.0, 0.0), |(both, own), point| {
-                (both + (point.0 - x) * (point.1 - r), own + (point.0 - x) * (point.0 - x))
-            });
-            return (own > 0.0).then(|| both / own);
-        }
-    }
-    None
-}
-
-/// The way as it is taken again.
-#[derive(Clone, Debug)]
-pub struct Again<'a> {
-    path: &'a RecordedPath,
-    distortion: Distortion,
-    step: usize,
-    branch: usize,
-    /// N, of the branch it is on.
-    raised: f64,
-    /// The last place, in metres of the record.
-    place: f64,
-}
-
-impl Again<'_> {
-    /// Where it begins (m), and what is read there: displacement (m) and force (N).
-    #[must_use]
-    pub fn start(&self) -> (f64, f64, f64) {
-        let place = self.path.readings[0].target;
-        let (displacement, force) = self.read(place);
-        (place * self.distortion.displacement_scale, displacement, force)
-    }
-
-    /// Displacement (m) and force (N) read at the target of the next step, m.
-    pub fn move_to(&mut self, target: f64) -> (f64, f64) {
-        let place = target / self.distortion.displacement_scale;
-        self.step += 1;
-        let branch = self.path.branch_of[self.nearest()];
-        while self.branch < branch {
-            let (before, after) = (self.path.branches[self.branch], self.path.branches[self.branch + 1]);
-            let turned_off = self.place - self.path.readings[before.last].target;
-            self.raised += (before.end_tangent - after.start_tangent) * turned_off;
-            self.branch += 1;
-        }
-        self.place = place;
-        self.read(place)
-    }
-
-    /// The step of the record that is looked from: past its end, its last.
-    fn nearest(&self) -> usize {
-        self.step.min(self.path.readings.len() - 1)
-    }
-
-    fn read(&self, place: f64) -> (f64, f64) {
-        let Distortion { force_scale, displacement_scale, zero, noise } = self.distortion;
-        let (displacement, force) = self.path.at(self.branch, self.nearest(), place);
-        let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * (force + self.raised) + zero);
-        if let Some(noise) = noise {
-            let [of_force, of_displacement] = noise.errors(self.step as u64);
-            force += of_force;
-            displacement += of_displacement;
-        }
-        (displacement, force)
     }
 }
 
