@@ -16,7 +16,7 @@ use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::monitor;
 use crate::mechanics::structure::Structure;
 use crate::plan::{
-    BlowOn, Contact, Escalate, Impact, Limits, Link, Mode, Plan, ProcedureKind, Shake, Stepping, StoreyImpact, Striker,
+    BlowOn, Contact, Escalate, Frame, Impact, Limits, Link, Mode, Plan, ProcedureKind, Shake, Stepping, StoreyImpact, Striker,
     VIRTUAL_SPEED, VirtualLink, step_count,
 };
 
@@ -57,14 +57,25 @@ pub fn foretold(plan: &Plan, procedure: usize) -> Option<Forecast> {
     }
 }
 
-/// How the rig follows the steps of a procedure; None where it misses nothing.
-fn scope(plan: &Plan, link: &VirtualLink, stepping: &Stepping, (time_step, duration): (f64, f64)) -> Option<Scope> {
+/// How the rig follows the steps of a procedure on a specimen of this stiffness (N/m, of a frame the stiffest floor's); None where it
+/// misses nothing.
+fn scope(
+    plan: &Plan,
+    link: &VirtualLink,
+    stepping: &Stepping,
+    (time_step, duration): (f64, f64),
+    stiffness: f64,
+) -> Option<Scope> {
+    let settle = &plan.rig.settle;
+    // |dF/dt| = K·e/lag, less what drifts.
+    let slow = (settle.force_rate - link.drift.abs()) * link.lag / stiffness;
     let pace = match stepping.mode {
         Mode::Continuous { time_scale } => Pace::Continuous { step: time_scale * time_step },
         Mode::StepAndPause => Pace::Paused {
             speed: Some(plan.limits.speed.high).filter(|speed| speed.is_finite()).unwrap_or(VIRTUAL_SPEED),
-            band: plan.rig.settle.band,
-            rest: stepping.pause.constant()? + if plan.rig.settle.band > 0.0 { plan.rig.settle.dwell } else { 0.0 },
+            band: settle.band,
+            slow: if settle.force_rate > 0.0 { slow } else { f64::INFINITY },
+            rest: stepping.pause.constant()? + if settle.band > 0.0 { settle.dwell } else { 0.0 },
         },
     };
     let manner = Manner { short: link.tracking, lag: link.lag, pace };
@@ -94,7 +105,7 @@ fn of_blows(plan: &Plan, impact: &Impact, velocities: &[f64], link: &VirtualLink
     // An earlier procedure's stiffness is near the specimen's own.
     let stiffness = impact.stiffness.constant().unwrap_or_else(|| behaviour.initial_stiffness());
     let time_step = time_step_before_the_run(impact)?;
-    let scope = scope(plan, link, &impact.stepping, (time_step, impact.duration.constant()?))?;
+    let scope = scope(plan, link, &impact.stepping, (time_step, impact.duration.constant()?), behaviour.initial_stiffness())?;
     let structure = Structure {
         mass: impact.mass.constant()?,
         damping: impact.damping.constant().unwrap_or(0.0),
@@ -134,6 +145,11 @@ fn law(contact: &Contact) -> Option<ContactLaw> {
     })
 }
 
+/// How much the force of a floor changes by displacements of all, at most, N/m.
+fn stiffest(frame: &Frame) -> f64 {
+    frame.stiffness.iter().map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>()).fold(0.0, f64::max)
+}
+
 /// A frame at rest before its first step.
 fn at_rest<'a>(
     properties: &'a FrameProperties,
@@ -164,7 +180,7 @@ fn of_shake(plan: &Plan, shake: &Shake, link: &VirtualLink) -> Option<Forecast> 
     let properties = FrameProperties::of(frame, &shake.damping.known()?).ok()?;
     let time_step = shake.stepping.time_step.evaluate(&NoResults, Some(properties.critical_time_step())).ok()?.value;
     let duration = shake.duration.as_ref().map_or(Some(ground.duration()), Formula::constant)?;
-    let scope = scope(plan, link, &shake.stepping, (time_step, duration))?;
+    let scope = scope(plan, link, &shake.stepping, (time_step, duration), stiffest(frame))?;
     let scale = shake.scale.constant()?;
     let ground_at = |time: f64| scale * acceleration_at(&ground.times, &ground.accelerations, time);
     let zero = vec![0.0; properties.matrices.order()];
@@ -196,7 +212,7 @@ fn of_storey_blows(
     let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
     let critical = properties.critical_on_impact(impact.struck, &Approach::of(striker, hertz));
     let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-    let scope = scope(plan, link, &impact.stepping, (time_step, impact.duration.constant()?))?;
+    let scope = scope(plan, link, &impact.stepping, (time_step, impact.duration.constant()?), stiffest(frame))?;
     let zero = vec![0.0; properties.matrices.order()];
     let input = FrameImpactInput {
         frame: at_rest(&properties, &impact.stepping, time_step, (&zero, &zero))?,

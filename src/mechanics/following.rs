@@ -13,8 +13,9 @@ pub struct Manner {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
-    /// Evenly at `speed` (m/s), all arriving at once; then until every one is inside `band` (m, 0: at once), and `rest` (s) more.
-    Paused { speed: f64, band: f64, rest: f64 },
+    /// Evenly at `speed` (m/s), all arriving at once; then until every one is inside `band` (m, 0: at once) and lags by no more than
+    /// `slow` (m), where the force changes as slowly as it must, and `rest` (s) more.
+    Paused { speed: f64, band: f64, slow: f64, rest: f64 },
     /// Past each target after so long, s of rig time.
     Continuous { step: f64 },
 }
@@ -71,11 +72,11 @@ impl Followers {
             }
             axis.reference = *aim;
         }
-        if let Pace::Paused { band, rest, .. } = pace
+        if let Pace::Paused { band, slow, rest, .. } = pace
             && lag > 0.0
         {
             let waits = self.axes.iter().zip(targets).map(|(axis, target)| {
-                let bound = band - (target - axis.reference).abs();
+                let bound = (band - (target - axis.reference).abs()).min(slow);
                 if bound > 0.0 { (axis.lagging.abs() / bound).ln().max(0.0) * lag } else { 0.0 }
             });
             let wait = waits.fold(0.0, f64::max) + rest;
@@ -143,7 +144,8 @@ mod tests {
     /// What is missed of each increment is late by Δt·t/(1 − t).
     #[test]
     fn what_is_missed_of_each_increment_is_late_too() {
-        let manner = Manner { short: 0.2, lag: 0.0, pace: Pace::Paused { speed: 1.0, band: 0.0, rest: 0.0 } };
+        let manner =
+            Manner { short: 0.2, lag: 0.0, pace: Pace::Paused { speed: 1.0, band: 0.0, slow: f64::INFINITY, rest: 0.0 } };
         let (found, delay) = cycle(manner, 1000);
         assert!((delay - 0.25).abs() < 1e-3, "{delay}");
         let late = std::f64::consts::TAU / 1000.0 * 0.25;
@@ -152,19 +154,21 @@ mod tests {
     }
 
     /// 1 mm at 10 mm/s with a lag of 50 ms: 0.5 mm·(1 − e⁻²) behind, which a rest of 0.1 s lets die by e⁻², and a band of 10 µm
-    /// ends at 10 µm.
+    /// ends at 10 µm, or sooner.
     #[test]
     fn a_pause_and_a_band_let_a_lag_die() {
-        let behind = |band: f64, rest: f64| {
-            let manner = Manner { short: 0.0, lag: 0.05, pace: Pace::Paused { speed: 0.01, band, rest } };
+        let behind = |band: f64, slow: f64, rest: f64| {
+            let manner = Manner { short: 0.0, lag: 0.05, pace: Pace::Paused { speed: 0.01, band, slow, rest } };
             let (mut followers, mut place) = (Followers::new(manner, 1), [0.0]);
             followers.go(&[1e-3], &mut place);
             1e-3 - place[0]
         };
         let arrived = 5e-4 * (1.0 - (-2.0_f64).exp());
-        assert!((behind(0.0, 0.0) - arrived).abs() < 1e-15);
-        assert!((behind(0.0, 0.1) - arrived * (-2.0_f64).exp()).abs() < 1e-15);
-        assert!((behind(1e-5, 0.0) - 1e-5).abs() < 1e-15);
-        assert!((behind(1e-5, 0.1) - 1e-5 * (-2.0_f64).exp()).abs() < 1e-15);
+        let any = f64::INFINITY;
+        assert!((behind(0.0, any, 0.0) - arrived).abs() < 1e-15);
+        assert!((behind(0.0, any, 0.1) - arrived * (-2.0_f64).exp()).abs() < 1e-15);
+        assert!((behind(1e-5, any, 0.0) - 1e-5).abs() < 1e-15);
+        assert!((behind(1e-5, any, 0.1) - 1e-5 * (-2.0_f64).exp()).abs() < 1e-15);
+        assert!((behind(1e-5, 2e-6, 0.0) - 2e-6).abs() < 1e-15, "the force decides");
     }
 }

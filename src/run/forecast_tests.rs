@@ -52,6 +52,7 @@ fn a_blow_on_a_lagging_rig_is_foretold() {
         plan
     };
     let banded = Settle { band: 1e-5, force_rate: 0.0, dwell: 0.05, timeout: 60.0 };
+    let calm = Settle { force_rate: 0.02, ..banded };
     let both = VirtualLink { tracking: 0.05, ..LAGGING };
     // Of paths that curve between the targets the forecast knows the ends alone.
     for (mode, link, settle, within) in [
@@ -60,6 +61,7 @@ fn a_blow_on_a_lagging_rig_is_foretold() {
         (Mode::StepAndPause, LAGGING, None, 1e-9),
         (Mode::StepAndPause, both, None, 1e-9),
         (Mode::StepAndPause, LAGGING, Some(banded), 1e-9),
+        (Mode::StepAndPause, LAGGING, Some(calm), 1e-9),
     ] {
         let (told, found) = shares(&late(mode, link, settle));
         assert!((told / found - 1.0).abs() < within, "{mode:?}, {settle:?}: foretold {told}, found {found}");
