@@ -20,6 +20,8 @@ mod followed;
 #[cfg(test)]
 mod followed_tests;
 #[cfg(test)]
+mod forecast_tests;
+#[cfg(test)]
 mod frame_sequence_tests;
 mod frame_steps;
 mod gate;
@@ -53,6 +55,9 @@ mod shake_results;
 mod shaking;
 mod stepping;
 mod stiffer;
+#[cfg(test)]
+mod stiffer_tests;
+mod stiffness_on_the_way;
 mod stiffness_ramp;
 mod stop;
 mod storey_impact;

@@ -33,6 +33,9 @@ const AGREED: f64 = 0.2;
 /// A way taken again that leaves the recorded one for more than this share of the largest displacement is not known by it.
 const UNSEEN: f64 = 1e-3;
 
+/// Results that wait for the end of the run.
+const LATE: [&str; 4] = ["residual_displacement", "impulse", "restoring_energy", "damping_energy"];
+
 /// The results as the run with one source moved gives them, and the critical time step, which follows from inputs alone.
 type Values = [f64; OUTCOMES.len() + 1];
 
@@ -94,6 +97,12 @@ impl<'run> Doubts<'run> {
                 for (told, other) in contributions.iter_mut().zip(found) {
                     widen(told, &other);
                 }
+            }
+        }
+        if path.swung_back() {
+            let late = OUTCOMES.iter().zip(&mut contributions).filter(|(name, _)| LATE.contains(name));
+            for part in late.flat_map(|(_, parts)| parts) {
+                part.smooth = false;
             }
         }
         self.round_times(setting.input.time_step, &mut contributions);
