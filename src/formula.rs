@@ -92,6 +92,11 @@ pub trait Results {
             _ => Vec::new(),
         }
     }
+
+    /// By how many of its standard uncertainties a source is moved here.
+    fn moved(&self, _: Source) -> f64 {
+        0.0
+    }
 }
 
 /// No procedure has run: constants only.

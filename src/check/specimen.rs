@@ -11,19 +11,27 @@ use crate::schema::{FieldType, Kind};
 use crate::source::Span;
 use crate::syntax::ast::ExprKind;
 
+/// Standard, of the mass that an impact takes from its specimen, kg.
+pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
+    if frame::is_frame(checker, block) {
+        return frame::frame(checker, block).map(|frame| frame.total_mass_uncertainty());
+    }
+    checker.constant(block, "mass_uncertainty")
+}
+
 /// A specimen whose entries are all right; None where a fault was reported.
 pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let declared = &checker.scope.blocks[block];
     let (name, head) = (declared.name, declared.block.head);
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
-        let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
+        let (mass, mass_uncertainty) = (frame.total_mass(), frame.total_mass_uncertainty());
         return Some(Specimen {
             name: name?.node.clone(),
             mass,
             mass_from: None,
-            mass_uncertainty: 0.0,
-            frame,
+            mass_uncertainty,
+            frame: Some((*frame).clone()),
             behaviour: None,
             damping: 0.0,
             coulomb: 0.0,

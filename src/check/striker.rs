@@ -71,7 +71,7 @@ pub fn uncertainty(checker: &mut Checker, block: usize, field: &'static str, val
 }
 
 /// Share of a value that its standard uncertainty may be: beyond it, nothing is linear, and 0 is no longer out of reach.
-const MOST_UNCERTAIN: f64 = 0.2;
+pub const MOST_UNCERTAIN: f64 = 0.2;
 
 fn entry_dimension(field: &str) -> Dimension {
     if field == "velocity_uncertainty" { Dimension::VELOCITY } else { Dimension::MASS }

@@ -115,6 +115,7 @@ codes! {
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
     E635 TooUncertain Error;
+    E639 DampingTooUncertain Error;
     E640 WhichStorey Error;
     E641 NoUseOnAFrame Error;
     E642 LawNeedsTangent Error;

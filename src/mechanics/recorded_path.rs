@@ -5,9 +5,11 @@
 //! The way is cut at its turning points into branches, each monotone. At step i the branch that the record was on at its
 //! step i holds; inside it the force is interpolated between the recorded points, beyond its ends it goes on along the
 //! tangent there. A specimen that was turned elsewhere comes back on another line: where the record turns at `X_m` and the
-//! way taken now at `X_m` + δ, the next branch is raised by (`K_end` − `K_start`)·δ, the tangents before and after the turn. That is
-//! exact of elastic specimens, for which it is nothing, and of those that unload along parallel lines; what they do when
-//! they yield backwards it is not. At the recorded targets the recorded readings come back as they were, to the bit.
+//! way taken now at `X_m` + δ, the next branch is moved along by ρδ and raised so that it begins where the way turned, ρ the
+//! share of δ that was plastic: (`K_start` − `K_end`)/(`K_start` − `K_low`) of the tangents before and after the turn and of
+//! the least tangent of the whole way. That is exact of elastic specimens, for which it is nothing, and of those that yield
+//! with kinematic hardening, forth and back: their loop goes along with the point that was turned at. At the recorded targets
+//! the recorded readings come back as they were, to the bit.
 
 use super::tangent::NOISE_MULTIPLE;
 
@@ -50,10 +52,11 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Errors of force (N) and displacement (m) of the reading at `step`.
+    /// Errors of force (N) and displacement (m) of the reading at `step` of the axis at this place.
     #[must_use]
-    pub fn errors(&self, step: u64) -> [f64; 2] {
-        let bits = drawn(self.draw, step);
+    pub fn errors(&self, step: u64, axis: u32) -> [f64; 2] {
+        // Two bits an axis; past the last of a word, another word.
+        let bits = drawn(self.draw, step ^ u64::from(axis / 32) << 40) >> (2 * (axis % 32));
         let signed = |bit: u64, size: f64| if bits & bit == 0 { size } else { -size };
         [signed(1, self.force), signed(2, self.displacement)]
     }
@@ -76,6 +79,8 @@ pub struct RecordedPath {
     branches: Vec<Branch>,
     /// The branch that ends in, or goes through, each reading.
     branch_of: Vec<usize>,
+    /// The least tangent at an end of a branch, N/m.
+    least_tangent: f64,
 }
 
 impl RecordedPath {
@@ -107,14 +112,22 @@ impl RecordedPath {
             known = end.unwrap_or(start_tangent);
             Branch { first: ends[0], last: ends[1], start_tangent, end_tangent: known }
         });
-        let branches = branches.collect();
-        Some(Self { readings, branches, branch_of })
+        let branches: Vec<Branch> = branches.collect();
+        let tangents = branches.iter().flat_map(|branch| [branch.start_tangent, branch.end_tangent]);
+        let least_tangent = tangents.fold(stiffness, f64::min);
+        Some(Self { readings, branches, branch_of, least_tangent })
+    }
+
+    /// Follows the way from its beginning.
+    #[must_use]
+    pub fn walk(&self) -> Walk<'_> {
+        Walk { path: self, step: 0, branch: 0, along: 0.0, raised: 0.0, place: self.readings[0].target }
     }
 
     /// Takes the way again from its beginning.
     #[must_use]
     pub fn again(&self, distortion: Distortion) -> Again<'_> {
-        Again { path: self, distortion, step: 0, branch: 0, raised: 0.0, place: self.readings[0].target }
+        Again { walk: self.walk(), distortion }
     }
 
     /// Displacement and force read at `place` (m) on `branch`, looked for from the reading of `step`.
@@ -169,54 +182,83 @@ fn tangent<'a>(readings: impl Iterator<Item = &'a Reading>, least: f64) -> Optio
     None
 }
 
-/// The way as it is taken again.
-#[derive(Clone, Debug)]
-pub struct Again<'a> {
+/// A way near the recorded one, as the record's own metres and newtons tell it.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk<'a> {
     path: &'a RecordedPath,
-    distortion: Distortion,
     step: usize,
     branch: usize,
-    /// N, of the branch it is on.
+    /// Of the branch it is on, against where it was recorded: m and N.
+    along: f64,
     raised: f64,
-    /// The last place, in metres of the record.
+    /// The last place, m.
     place: f64,
 }
 
-impl Again<'_> {
-    /// Where it begins (m), and what is read there: displacement (m) and force (N).
+impl Walk<'_> {
+    /// The recorded reading of this step; past the end of the record, of its last.
     #[must_use]
-    pub fn start(&self) -> (f64, f64, f64) {
-        let place = self.path.readings[0].target;
-        let (displacement, force) = self.read(place);
-        (place * self.distortion.displacement_scale, displacement, force)
+    pub fn recorded(&self) -> &Reading {
+        &self.path.readings[self.nearest()]
     }
 
-    /// Displacement (m) and force (N) read at the target of the next step, m.
-    pub fn move_to(&mut self, target: f64) -> (f64, f64) {
-        let place = target / self.distortion.displacement_scale;
+    /// Displacement (m) and force (N) where it is.
+    #[must_use]
+    pub fn here(&self) -> (f64, f64) {
+        let (displacement, force) = self.path.at(self.branch, self.nearest(), self.place - self.along);
+        (displacement + self.along, force + self.raised)
+    }
+
+    /// Goes to the place of the next step, m: displacement (m) and force (N) there.
+    pub fn move_to(&mut self, place: f64) -> (f64, f64) {
         self.step += 1;
         let branch = self.path.branch_of[self.nearest()];
         while self.branch < branch {
             let (before, after) = (self.path.branches[self.branch], self.path.branches[self.branch + 1]);
-            let turned_off = self.place - self.path.readings[before.last].target;
-            self.raised += (before.end_tangent - after.start_tangent) * turned_off;
+            let turned_off = self.place - self.along - self.path.readings[before.last].target;
+            let (ends, starts) = (before.end_tangent, after.start_tangent);
+            let (fallen, most) = (starts - ends, starts - self.path.least_tangent);
+            let plastic = if fallen > 0.0 && most > 0.0 { (fallen / most).min(1.0) } else { 0.0 };
+            self.raised += (plastic * starts - fallen) * turned_off;
+            self.along += plastic * turned_off;
             self.branch += 1;
         }
         self.place = place;
-        self.read(place)
+        self.here()
     }
 
     /// The step of the record that is looked from: past its end, its last.
     fn nearest(&self) -> usize {
         self.step.min(self.path.readings.len() - 1)
     }
+}
 
-    fn read(&self, place: f64) -> (f64, f64) {
+/// The way as it is taken again.
+#[derive(Clone, Debug)]
+pub struct Again<'a> {
+    walk: Walk<'a>,
+    distortion: Distortion,
+}
+
+impl Again<'_> {
+    /// Where it begins (m), and what is read there: displacement (m) and force (N).
+    #[must_use]
+    pub fn start(&self) -> (f64, f64, f64) {
+        let (displacement, force) = self.told(self.walk.here());
+        (self.walk.place * self.distortion.displacement_scale, displacement, force)
+    }
+
+    /// Displacement (m) and force (N) read at the target of the next step, m.
+    pub fn move_to(&mut self, target: f64) -> (f64, f64) {
+        let there = self.walk.move_to(target / self.distortion.displacement_scale);
+        self.told(there)
+    }
+
+    fn told(&self, (displacement, force): (f64, f64)) -> (f64, f64) {
         let Distortion { force_scale, displacement_scale, zero, noise } = self.distortion;
-        let (displacement, force) = self.path.at(self.branch, self.nearest(), place);
-        let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * (force + self.raised) + zero);
+        let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * force + zero);
         if let Some(noise) = noise {
-            let [of_force, of_displacement] = noise.errors(self.step as u64);
+            let [of_force, of_displacement] = noise.errors(self.walk.step as u64, 0);
             force += of_force;
             displacement += of_displacement;
         }
@@ -252,6 +294,53 @@ mod tests {
         for (target, reading) in TARGETS.iter().zip(&path.readings).skip(1) {
             assert_eq!(again.move_to(*target), (reading.displacement, reading.force));
         }
+    }
+
+    /// Forth past yield, back past yield, forth again, and turned elsewhere each time: kinematic hardening, whose loop lies
+    /// between two lines of 100 N/m, 40 N off the middle, and yields where it meets them.
+    #[test]
+    fn turned_elsewhere_it_yields_backwards_where_its_loop_went() {
+        const STEP: f64 = 1e-3;
+        let drive = |turns: [f64; 3]| {
+            let mut place: f64 = 0.0;
+            let mut places = vec![0.0];
+            for turn in turns {
+                for _ in 0..2000 {
+                    if (turn - place).abs() < 0.5 * STEP {
+                        break;
+                    }
+                    place += STEP * (turn - place).signum();
+                    places.push(place);
+                }
+                place = turn;
+                places.pop();
+                places.push(place);
+            }
+            places
+        };
+        let bend = |places: &[f64]| {
+            let (mut force, mut last) = (0.0_f64, 0.0);
+            let bent = |place: &f64| {
+                force = (force + 1000.0 * (place - last)).clamp(100.0 * place - 40.0, 100.0 * place + 40.0);
+                last = *place;
+                force
+            };
+            places.iter().map(bent).collect::<Vec<f64>>()
+        };
+        let places = drive([0.3, -0.2, 0.25]);
+        let readings = places.iter().zip(bend(&places));
+        let readings = readings.map(|(target, force)| Reading { target: *target, displacement: *target, force }).collect();
+        let path = RecordedPath::new(readings, 1000.0, 0.0, 0.0).unwrap();
+        // As many steps, each way a little longer or shorter.
+        let other: Vec<f64> = places.iter().map(|place| place * 1.02 + 1e-3 * (7.0 * place).cos() - 1e-3).collect();
+        let mut walk = path.walk();
+        for (step, (place, by_hand)) in other.iter().zip(bend(&other)).enumerate().skip(1) {
+            let (_, force) = walk.move_to(*place);
+            // Within the step in which it yields, a recorded line is cut short.
+            assert!((force - by_hand).abs() < 1000.0 * STEP, "step {step} at {place}: {force}, by hand {by_hand}");
+        }
+        let (_, end) = walk.here();
+        assert!((end - bend(&other).last().unwrap()).abs() < 1e-9, "{end}");
     }
 
     /// Wherever it is taken, and past its end, an elastic specimen stays elastic.

@@ -3,6 +3,7 @@
 
 use super::Run;
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+use crate::plan::{ProcedureKind, ShakeDamping, Storey};
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, ProcedureRecord};
 use crate::uncertainty::{Contribution, Source};
@@ -107,22 +108,74 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
                 plan.specimens.get(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.mass, s.mass_uncertainty));
             (format!("{name}.mass"), From::Plan, Some(value), Some(u), Dimension::MASS)
         }
-        Source::ForceScale => {
+        Source::StoreyMass { specimen, storey } => {
+            let (name, value, u) = storey_of(run, specimen, storey, |it| (it.mass, it.mass_uncertainty));
+            (format!("{name}.storeys[{storey}].mass"), From::Plan, value, u, Dimension::MASS)
+        }
+        Source::StoreyStiffness { specimen, storey } => {
+            let (name, value, u) = storey_of(run, specimen, storey, |it| (it.stiffness, it.stiffness_uncertainty));
+            (format!("{name}.storeys[{storey}].stiffness"), From::Plan, value, u, Dimension::STIFFNESS)
+        }
+        Source::DampingRatio { procedure, mode } => damping_ratio(run, procedure, mode),
+        Source::GroundScale(index) => {
+            let (name, u) = plan.grounds.get(index).map_or(("", 0.0), |ground| (ground.name.as_str(), ground.scale_uncertainty));
+            (format!("factor on {name}"), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+        }
+        Source::ForceScale(axis) => {
             let u = calibration.force_uncertainty;
-            ("force calibration".to_owned(), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+            (of_axis(run, "force calibration", axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
-        Source::DisplacementScale => {
+        Source::DisplacementScale(axis) => {
             let u = calibration.displacement_uncertainty;
-            ("displacement calibration".to_owned(), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+            (of_axis(run, "displacement calibration", axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
-        Source::ForceZero => {
-            ("zero of the load cell".to_owned(), From::Rig, Some(0.0), Some(calibration.zero_uncertainty), Dimension::FORCE)
+        Source::ForceZero(axis) => {
+            let name = of_axis(run, "zero of the load cell", axis);
+            (name, From::Rig, Some(0.0), Some(calibration.zero_uncertainty), Dimension::FORCE)
         }
         Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
     Line { input, from, value, uncertainty, dimension, contribution: part.amount, sensitivity, draws: None, smooth: part.smooth }
+}
+
+/// An instrument by its axis, where there are several.
+fn of_axis(run: &Run<'_>, what: &str, axis: usize) -> String {
+    if run.plan.degrees_of_freedom() == 1 { what.to_owned() } else { format!("{what}, axis {}", axis + 1) }
+}
+
+/// The specimen's name, and a number of one of its storeys with its uncertainty.
+fn storey_of<'a>(
+    run: &Run<'a>,
+    specimen: usize,
+    storey: usize,
+    read: fn(&Storey) -> (f64, f64),
+) -> (&'a str, Option<f64>, Option<f64>) {
+    let Some(specimen) = run.plan.specimens.get(specimen) else { return ("", None, None) };
+    let found = specimen.frame.as_ref().and_then(|frame| frame.storeys.get(storey)).map(read);
+    (&specimen.name, found.map(|found| found.0), found.map(|found| found.1))
+}
+
+fn damping_ratio(
+    run: &Run<'_>,
+    procedure: ProcedureId,
+    mode: usize,
+) -> (String, From, Option<f64>, Option<f64>, Dimension) {
+    let damping = run.plan.procedures.get(procedure.0).and_then(|planned| match &planned.kind {
+        ProcedureKind::Shake(shake) => Some((&planned.name, &shake.damping, shake.damping_uncertainty)),
+        ProcedureKind::StoreyImpact(impact) => Some((&planned.name, &impact.damping, impact.damping_uncertainty)),
+        _ => None,
+    });
+    let Some((name, damping, uncertainty)) = damping else {
+        return ("damping_ratio".to_owned(), From::Plan, None, None, Dimension::NUMBER);
+    };
+    let (label, ratio) = match damping {
+        ShakeDamping::Rayleigh(ratio) => (format!("{name}.damping_ratio"), Some(ratio)),
+        ShakeDamping::Modal(ratios) => (format!("{name}.damping_ratio[{mode}]"), ratios.get(mode)),
+    };
+    let value = ratio.and_then(|ratio| ratio.evaluate(run.record, None).ok()).map(|ratio| ratio.value);
+    (label, From::Plan, value, Some(uncertainty), Dimension::NUMBER)
 }
 
 /// Value and dimension of a fitted result, and how much of its uncertainty is of this source.

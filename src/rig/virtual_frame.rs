@@ -324,7 +324,7 @@ mod tests {
     const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
 
     fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
+        Storey { mass: 1.0, mass_uncertainty: 0.0, stiffness, stiffness_uncertainty: 0.0, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
     }
 
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.

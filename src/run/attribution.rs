@@ -8,7 +8,7 @@ use crate::mechanics::backbone::SHARED;
 use crate::plan::{Calibration, ProcedureKind};
 use crate::quantity::Dimension;
 use crate::record::{BilinearFit, History, NamedResult};
-use crate::uncertainty::{Contribution, Source, combined};
+use crate::uncertainty::{Contribution, Source, combined, share};
 
 /// Results of a fit that lie on one line, slope first.
 const LINES: [(&str, &str); 2] = [("stiffness", "intercept_force"), ("damping", "coulomb_force")];
@@ -85,9 +85,9 @@ fn of_calibration(result: &NamedResult, value: f64, calibration: &Calibration) -
     let (force, displacement) = (mass.as_f64(), length.as_f64() - mass.as_f64());
     let zero = if SHIFTED.contains(&result.name) { calibration.zero_uncertainty } else { 0.0 };
     let parts = [
-        (Source::ForceScale, value * force * calibration.force_uncertainty),
-        (Source::DisplacementScale, value * displacement * calibration.displacement_uncertainty),
-        (Source::ForceZero, zero),
+        (Source::ForceScale(0), value * force * calibration.force_uncertainty),
+        (Source::DisplacementScale(0), value * displacement * calibration.displacement_uncertainty),
+        (Source::ForceZero(0), zero),
     ];
     parts.into_iter().filter(|(_, amount)| *amount != 0.0).map(|(source, amount)| Contribution::new(source, amount)).collect()
 }
@@ -110,11 +110,7 @@ fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, inputs: &Inpu
         part.amount *= ratio / damping;
     }
     for part in in_stiffness {
-        let amount = -0.5 * ratio / known.value * part.amount;
-        match parts.iter_mut().find(|known| known.source == part.source) {
-            Some(same) => same.amount += amount,
-            None => parts.push(Contribution::new(part.source, amount)),
-        }
+        share(&mut parts, Contribution::new(part.source, -0.5 * ratio / known.value * part.amount));
     }
     if let Some(result) = results.iter_mut().find(|result| result.name == "damping_ratio")
         && parts.iter().all(|part| part.amount.is_finite())

@@ -4,7 +4,7 @@
 
 use super::cycle::results;
 use super::inputs::Inputs;
-use super::propagation::draws_of;
+use super::study::draws_of;
 use crate::formula::ResultValue;
 use crate::mechanics::cyclic::loop_of;
 use crate::mechanics::recorded_path::{Distortion, Noise};
@@ -34,12 +34,12 @@ pub(super) fn propagate(
     let nominal = values(history);
     let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); OF_LOOPS.len()];
     let at: [(Source, f64, Moving); 3] = [
-        (Source::ForceScale, calibration.force_uncertainty, |by| Distortion { force_scale: 1.0 + by, ..Distortion::NONE }),
-        (Source::DisplacementScale, calibration.displacement_uncertainty, |by| Distortion {
+        (Source::ForceScale(0), calibration.force_uncertainty, |by| Distortion { force_scale: 1.0 + by, ..Distortion::NONE }),
+        (Source::DisplacementScale(0), calibration.displacement_uncertainty, |by| Distortion {
             displacement_scale: 1.0 + by,
             ..Distortion::NONE
         }),
-        (Source::ForceZero, calibration.zero_uncertainty, |by| Distortion { zero: by, ..Distortion::NONE }),
+        (Source::ForceZero(0), calibration.zero_uncertainty, |by| Distortion { zero: by, ..Distortion::NONE }),
     ];
     for (source, uncertainty, distortion) in at.into_iter().filter(|(_, uncertainty, _)| *uncertainty > 0.0) {
         let (up, down) = (moved(distortion(uncertainty)), moved(distortion(-uncertainty)));
@@ -85,7 +85,7 @@ fn distorted(history: &CycleHistory, distortion: Distortion) -> CycleHistory {
     let Distortion { force_scale, displacement_scale, zero, noise } = distortion;
     let mut other = CycleHistory { backbone: None, ..history.clone() };
     for step in &mut other.steps {
-        let [of_force, of_displacement] = noise.map_or([0.0; 2], |noise| noise.errors(step.step));
+        let [of_force, of_displacement] = noise.map_or([0.0; 2], |noise| noise.errors(step.step, 0));
         step.displacement = displacement_scale * step.displacement + of_displacement;
         step.restoring_force = force_scale * step.restoring_force + zero + of_force;
     }
@@ -157,9 +157,9 @@ mod tests {
             let parts = &record.procedures[0].result(name).unwrap().contributions;
             let of = |source| parts.iter().find(|part| part.source == source).map_or(0.0, |part| part.amount);
             for (source, by_hand) in [
-                (Source::ForceScale, 0.01 * force * value),
-                (Source::DisplacementScale, 0.003 * displacement * value),
-                (Source::ForceZero, zero),
+                (Source::ForceScale(0), 0.01 * force * value),
+                (Source::DisplacementScale(0), 0.003 * displacement * value),
+                (Source::ForceZero(0), zero),
             ] {
                 let found = of(source);
                 assert!((found - by_hand).abs() < 1e-4 * 0.01 * value.abs(), "{name}: {found}, by hand {by_hand}");

@@ -15,7 +15,7 @@ use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult};
-use crate::uncertainty::{Contribution, combined};
+use crate::uncertainty::{Contribution, combined, share};
 use crate::verdict::{Verdict, assess_condition};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -153,13 +153,7 @@ fn largest(blows: &[Blow], name: &'static str) -> NamedResult {
 fn sum(blows: &[Blow], name: &'static str, total: Option<f64>) -> NamedResult {
     let mut parts: Vec<Contribution> = Vec::new();
     for part in blows.iter().flat_map(|blow| contributions(blow, name)) {
-        match parts.iter_mut().find(|known| known.source == part.source) {
-            Some(known) => {
-                known.amount += part.amount;
-                known.smooth &= part.smooth;
-            }
-            None => parts.push(part),
-        }
+        share(&mut parts, part);
     }
     told(name, Dimension::ENERGY, total, parts)
 }

@@ -48,6 +48,7 @@ mod stop;
 mod storey_impact;
 mod storey_summary;
 mod strike;
+mod study;
 pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -77,6 +78,8 @@ pub trait Observer {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
     fn step_done(&mut self, report: &StepReport);
     fn procedure_finished(&mut self, name: &str);
+    /// The uncertainty of the results is being worked out, by runs taken again: so many of so many are done.
+    fn studying(&mut self, _done: usize, _of: usize) {}
     /// Asked after every step: true stops the run after holding the rig.
     fn stop_requested(&self) -> bool;
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is

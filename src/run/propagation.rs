@@ -5,31 +5,24 @@
 
 use super::impact::Setting;
 use super::inputs::Inputs;
-use crate::formula::{ProcedureId, ResultValue, Results};
+use super::study::{CLOSE, Effort, Study, Tick, Unknown, draws, give};
+use crate::formula::{ProcedureId, Results};
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath};
-use crate::mechanics::rerun::{OUTCOMES, rerun};
+use crate::mechanics::rerun::{OUTCOMES, Outcome, rerun};
 use crate::mechanics::summary::ImpactSummary;
-use crate::plan::{Contact, Impact, Plan, Striker};
+use crate::plan::{Contact, Impact, Link, Plan, Striker};
 use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
-use crate::uncertainty::{Contribution, Moved, Source, combined, sources_of};
+use crate::uncertainty::{Contribution, Moved, Source, sources_of};
 
-/// Draws of the readings' errors at most: the standard uncertainty they give is known to 1/√(2·64), 9 %.
-const MOST_DRAWS: u16 = 64;
-/// And at least.
-const FEWEST_DRAWS: u16 = 8;
-/// Steps that all draws take together, about: what a long run is allowed to cost.
-const STEPS_OF_DRAWS: u64 = 512_000;
-/// The run taken again as it was must come out as it did, relatively.
-const CLOSE: f64 = 1e-9;
-/// What moving a source up does may differ by so much from what moving it down does, of the larger; beyond it the result
-/// does not follow the source smoothly. Twice what half the difference may be off by.
-const ONE_SIDED: f64 = 0.2;
-/// And half the difference at ±u from that at ±u/2.
-const HALVED: f64 = 0.1;
+/// Why no uncertainty is told of a run.
+pub(super) const LEADS_ELSEWHERE: &str = "the recorded way, taken again, does not lead to the recorded results";
 
-/// The results as the run with one source moved gives them, and the critical time step, which follows from inputs alone.
-type Values = [f64; OUTCOMES.len() + 1];
+/// One run to take.
+struct Job {
+    setting: Setting,
+    distortion: Distortion,
+}
 
 /// Everything uncertain about a blow.
 #[derive(Clone, Copy)]
@@ -53,16 +46,18 @@ impl<'run> Doubts<'run> {
         Self { blow: u16::try_from(index).unwrap_or(u16::MAX), ..self }
     }
 
-    /// Gives `results` their contributions. The error says why nothing is known of them.
+    /// Gives `results` their contributions.
     pub(super) fn propagate(
         &self,
         setting: &Setting,
         steps: &[ImpactStep],
         recorded: &ImpactSummary,
         results: &mut [NamedResult],
-    ) -> Result<(), String> {
+        tick: Tick,
+    ) -> Result<(), Unknown> {
         let sources = self.sources();
-        let sampled = self.noise.force > 0.0 || self.noise.resolution > 0.0;
+        let (force, displacement) = reading_errors(self.whole, self.noise);
+        let sampled = force > 0.0 || displacement > 0.0;
         if sources.is_empty() && !sampled {
             return Ok(());
         }
@@ -73,32 +68,31 @@ impl<'run> Doubts<'run> {
         });
         let input = &setting.input;
         let path = RecordedPath::new(readings.collect(), input.stiffness, input.force_noise, input.resolution);
-        let path = path.ok_or("nothing was recorded")?;
-        let nominal = self.values(setting, &path, Distortion::NONE);
-        let again = rerun(&setting.input, self.plan.until, setting.steps, &path, Distortion::NONE).summary;
-        if !same(&again, recorded) {
-            return Err("the recorded way, taken again, does not lead to the recorded results".to_owned());
+        let path = path.ok_or_else(|| "nothing was recorded".to_owned())?;
+        let again = rerun(input, self.plan.until, setting.steps, &path, Distortion::NONE);
+        if !same(&again.summary, recorded) {
+            return Err(LEADS_ELSEWHERE.to_owned().into());
         }
-        let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); nominal.len()];
+        let nominal = values(setting, &again);
+        let effort = Effort::of(steps.len() as u64, sources.len(), 0, sampled);
+        let mut study = Study { moved: Vec::new(), draws: Vec::new() };
         for source in sources {
-            let at = |by| self.moved(setting, &path, source, by);
-            let [up, half_up, half_down, down] = [at(1.0)?, at(0.5)?, at(-0.5)?, at(-1.0)?];
-            for (index, parts) in contributions.iter_mut().enumerate() {
-                let (amount, smooth) = effect(nominal[index], [up[index], half_up[index], half_down[index], down[index]]);
-                parts.push(Contribution { source, amount, smooth });
-            }
+            let jobs = effort.moves().iter().map(|by| self.moved(setting, source, *by)).collect::<Result<_, String>>()?;
+            study.moved.push((source, jobs));
         }
-        if sampled {
-            self.sample(setting, &path, steps.len() as u64, &nominal, &mut contributions);
+        for (draw, source) in draws(self.procedure, self.blow, effort.draws) {
+            let distortion = Distortion { noise: Some(Noise { force, displacement, draw }), ..Distortion::NONE };
+            study.draws.push((source, Job { setting: *setting, distortion }));
         }
-        self.round_times(setting.input.time_step, &mut contributions);
+        let take = |Job { setting, distortion }: &Job| {
+            values(setting, &rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion))
+        };
+        let mut contributions = study.contributions(&nominal, &take, tick).map_err(Unknown::Stop)?;
+        round_times(self.procedure, input.time_step, &mut contributions);
         let names = OUTCOMES.iter().copied().chain(["critical_time_step"]);
         for (name, parts) in names.zip(contributions) {
-            let Some(result) = results.iter_mut().find(|result| result.name == name) else { continue };
-            let known = parts.iter().all(|part| part.amount.is_finite());
-            result.contributions = if known { parts.into_iter().filter(|part| part.amount != 0.0).collect() } else { Vec::new() };
-            if let ResultValue::Number { value: Some(_), uncertainty } = &mut result.value {
-                *uncertainty = combined(&result.contributions);
+            if let Some(result) = results.iter_mut().find(|result| result.name == name) {
+                give(result, parts);
             }
         }
         Ok(())
@@ -128,9 +122,9 @@ impl<'run> Doubts<'run> {
             (Source::StrikerMass(*striker), mass_uncertainty),
             (Source::StrikerVelocity(*striker), velocity_uncertainty),
             (Source::SpecimenMass(*specimen), self.plan.mass_uncertainty),
-            (Source::ForceScale, calibration.force_uncertainty),
-            (Source::DisplacementScale, calibration.displacement_uncertainty),
-            (Source::ForceZero, calibration.zero_uncertainty),
+            (Source::ForceScale(0), calibration.force_uncertainty),
+            (Source::DisplacementScale(0), calibration.displacement_uncertainty),
+            (Source::ForceZero(0), calibration.zero_uncertainty),
         ];
         let stated = stated.into_iter().filter(|(_, uncertainty)| *uncertainty > 0.0).map(|(source, _)| source);
         sources.extend(stated);
@@ -139,8 +133,8 @@ impl<'run> Doubts<'run> {
         sources
     }
 
-    /// The run again, with a source moved by `by` standard uncertainties. The time step stays: it was chosen, not measured.
-    fn moved(&self, setting: &Setting, path: &RecordedPath, source: Source, by: f64) -> Result<Values, String> {
+    /// The run to take with a source moved by `by` standard uncertainties. The time step stays: it was chosen, not measured.
+    fn moved(&self, setting: &Setting, source: Source, by: f64) -> Result<Job, String> {
         let declared = &self.whole.strikers[self.plan.striker];
         let mut striker = declared.clone();
         let mut distortion = Distortion::NONE;
@@ -150,10 +144,11 @@ impl<'run> Doubts<'run> {
             Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
             Source::StrikerVelocity(_) => striker.velocity += by * striker.velocity_uncertainty,
             Source::SpecimenMass(_) => heavier = by * self.plan.mass_uncertainty,
-            Source::ForceScale => distortion.force_scale += by * calibration.force_uncertainty,
-            Source::DisplacementScale => distortion.displacement_scale += by * calibration.displacement_uncertainty,
-            Source::ForceZero => distortion.zero = by * calibration.zero_uncertainty,
-            Source::Fit { .. } | Source::Readings { .. } | Source::TimeStep { .. } => {}
+            Source::ForceScale(0) => distortion.force_scale += by * calibration.force_uncertainty,
+            Source::DisplacementScale(0) => distortion.displacement_scale += by * calibration.displacement_uncertainty,
+            Source::ForceZero(0) => distortion.zero = by * calibration.zero_uncertainty,
+            // Formulas are moved by it, where they read it; the rest is of frames or of no input.
+            _ => {}
         }
         let results = Moved { results: self.results, source, by };
         let mut inputs = Inputs::new(&results, self.procedure);
@@ -164,76 +159,37 @@ impl<'run> Doubts<'run> {
         moved.steps = setting.steps;
         // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion.
         moved.input.striker_velocity = setting.input.striker_velocity * (striker.velocity / declared.velocity);
-        Ok(self.values(&moved, path, distortion))
-    }
-
-    fn values(&self, setting: &Setting, path: &RecordedPath, distortion: Distortion) -> Values {
-        let found = rerun(&setting.input, self.plan.until, setting.steps, path, distortion).values;
-        let mut values = [setting.critical_time_step; OUTCOMES.len() + 1];
-        values[..OUTCOMES.len()].copy_from_slice(&found);
-        values
-    }
-
-    /// Draws errors of all readings: what each draw does, over the root of their number, is a contribution of its own, so that
-    /// results that suffer from the same errors are correlated as much as they do.
-    fn sample(
-        &self,
-        setting: &Setting,
-        path: &RecordedPath,
-        steps: u64,
-        nominal: &Values,
-        contributions: &mut [Vec<Contribution>],
-    ) {
-        let draws = draws_of(steps);
-        // Rounding to a quantum q is even over it: q/√12.
-        let (force, displacement) = (self.noise.force, self.noise.resolution / 12.0_f64.sqrt());
-        let first = self.blow.saturating_mul(MOST_DRAWS);
-        for draw in first..first.saturating_add(draws) {
-            let noise = Some(Noise { force, displacement, draw });
-            let found = self.values(setting, path, Distortion { noise, ..Distortion::NONE });
-            let source = Source::Readings { procedure: self.procedure, draw };
-            for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(nominal) {
-                // A result that does not exist has no uncertainty, and none is looked for in its draws.
-                if nominal.is_finite() {
-                    parts.push(Contribution::new(source, (found - nominal) / f64::from(draws).sqrt()));
-                }
-            }
-        }
-    }
-
-    /// A stop is told at the end of its step, up to Δt late; a peak at the nearer end, up to Δt/2 off.
-    fn round_times(&self, time_step: f64, contributions: &mut [Vec<Contribution>]) {
-        let source = Source::TimeStep { procedure: self.procedure };
-        for (name, off) in [("stop_time", time_step / 3.0_f64.sqrt()), ("time_of_max_displacement", time_step / 12.0_f64.sqrt())]
-        {
-            if let Some(index) = OUTCOMES.iter().position(|outcome| *outcome == name) {
-                contributions[index].push(Contribution::new(source, off));
-            }
-        }
+        Ok(Job { setting: moved, distortion })
     }
 }
 
-/// How many draws a run of so many steps is worth.
-pub(super) fn draws_of(steps: u64) -> u16 {
-    u16::try_from(STEPS_OF_DRAWS / steps.max(1)).unwrap_or(u16::MAX).clamp(FEWEST_DRAWS, MOST_DRAWS)
+/// What a blow comes to, and its critical time step, which follows from inputs alone.
+fn values(setting: &Setting, found: &Outcome) -> Vec<f64> {
+    found.values.iter().copied().chain([setting.critical_time_step]).collect()
 }
 
-/// What moving a source by ±u does, and whether that is smooth. `moved` is at +u, +u/2, −u/2, −u. Where the two sides, or
-/// the two sizes of the move, disagree, the largest change stands for it.
-fn effect(nominal: f64, [up, half_up, half_down, down]: [f64; 4]) -> (f64, bool) {
-    let (above, below, central, halved) = (up - nominal, nominal - down, 0.5 * (up - down), half_up - half_down);
-    let widest = above.abs().max(below.abs());
-    let rounding = CLOSE * nominal.abs();
-    let one_sided = (above - below).abs() > ONE_SIDED * widest + rounding;
-    let step_dependent = (central - halved).abs() > HALVED * widest + rounding;
-    if one_sided || step_dependent {
-        return (widest.max(central.abs()).max(halved.abs()).copysign(central), false);
+/// Standard deviations of one reading, N and m: noise, and rounding to a quantum q, which is even over it: q/√12.
+pub(super) fn reading_errors(plan: &Plan, declared: DeclaredNoise) -> (f64, f64) {
+    let quantum = match &plan.rig.link {
+        Link::Virtual(link) => link.force_resolution,
+        Link::Real(_) => plan.rig.calibration.newtons_per_count.unwrap_or(0.0).abs(),
+    };
+    let rounding = 12.0_f64.sqrt();
+    (declared.force.hypot(quantum / rounding), declared.resolution / rounding)
+}
+
+/// A stop is told at the end of its step, up to Δt late; a peak at the nearer end, up to Δt/2 off.
+pub(super) fn round_times(procedure: ProcedureId, time_step: f64, contributions: &mut [Vec<Contribution>]) {
+    let source = Source::TimeStep { procedure };
+    for (name, off) in [("stop_time", time_step / 3.0_f64.sqrt()), ("time_of_max_displacement", time_step / 12.0_f64.sqrt())] {
+        if let Some(index) = OUTCOMES.iter().position(|outcome| *outcome == name) {
+            contributions[index].push(Contribution::new(source, off));
+        }
     }
-    (central, true)
 }
 
 /// Whether two runs came to the same.
-fn same(one: &ImpactSummary, other: &ImpactSummary) -> bool {
+pub(super) fn same(one: &ImpactSummary, other: &ImpactSummary) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
     let read: [fn(&ImpactSummary) -> f64; 6] = [
         |summary| summary.max_displacement,

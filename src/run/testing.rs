@@ -68,7 +68,9 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
 pub(crate) fn struck_frame() -> Plan {
     let storey = |stiffness, yield_force| Storey {
         mass: 1.0,
+        mass_uncertainty: 0.0,
         stiffness,
+        stiffness_uncertainty: 0.0,
         height: None,
         behaviour: Behaviour::Bilinear { stiffness, yield_force, hardening: 0.05 },
         damping: 0.0,
@@ -80,6 +82,7 @@ pub(crate) fn struck_frame() -> Plan {
         striker: 0,
         struck: 1,
         damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
+        damping_uncertainty: 0.0,
         contact: Contact::Restitution { coefficient: Formula::Constant(0.5) },
         integrator: Integrator::Tangent,
         allow_unstable: false,

@@ -11,7 +11,9 @@ const MASSES: [f64; 2] = [2000.0, 1500.0];
 fn frame() -> Frame {
     let storey = |(mass, stiffness)| Storey {
         mass,
+        mass_uncertainty: 0.0,
         stiffness,
+        stiffness_uncertainty: 0.0,
         height: None,
         behaviour: Behaviour::Elastic { stiffness },
         damping: 0.0,

@@ -402,7 +402,7 @@ mod tests {
     const RAM: RamSettings = RamSettings { sign: 1.0, noise: 0.0, resolution: 0.0, limits: Interval { low: -0.01, high: 0.01 } };
 
     fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
+        Storey { mass: 1.0, mass_uncertainty: 0.0, stiffness, stiffness_uncertainty: 0.0, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
     }
 
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.

@@ -48,7 +48,9 @@ mod tests {
     fn rig(link: VirtualLink) -> VirtualFrame {
         let storey = |stiffness, damping, coulomb| Storey {
             mass: 1.0,
+            mass_uncertainty: 0.0,
             stiffness,
+            stiffness_uncertainty: 0.0,
             height: None,
             behaviour: Behaviour::Elastic { stiffness },
             damping,

@@ -54,7 +54,7 @@ fn shaken(mode: Mode) -> Plan {
         Mode::Continuous { .. } => Behaviour::Elastic { stiffness },
     };
     let storey =
-        |mass, stiffness| Storey { mass, stiffness, height: None, behaviour: behaviour(stiffness), damping: 0.0, coulomb: 0.0 };
+        |mass, stiffness| Storey { mass, mass_uncertainty: 0.0, stiffness, stiffness_uncertainty: 0.0, height: None, behaviour: behaviour(stiffness), damping: 0.0, coulomb: 0.0 };
     let mut plan = elastic_plan(300.0, Vec::new());
     plan.specimens[0].behaviour = None;
     plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey(2000.0, 3e6), storey(1500.0, 2e6)]));
@@ -62,6 +62,7 @@ fn shaken(mode: Mode) -> Plan {
         name: "quake".to_owned(),
         file: "quake.csv".to_owned(),
         scale: 1.0,
+        scale_uncertainty: 0.0,
         times: vec![0.0, 0.02, 0.04, 0.06],
         accelerations: vec![0.0, 8.0, -6.0, 0.0],
     }];
@@ -69,6 +70,7 @@ fn shaken(mode: Mode) -> Plan {
         specimen: 0,
         ground: 0,
         damping: ShakeDamping::Rayleigh(Constant(0.02)),
+        damping_uncertainty: 0.0,
         integrator: Integrator::Explicit,
         allow_unstable: false,
         i_modification: false,
