@@ -2,7 +2,7 @@
 //! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
 //! Out: an [`Estimate`], the value with its standard uncertainty.
 
-use crate::uncertainty::{Contribution, Moved, Source, combined, sources_of};
+use crate::uncertainty::{Contribution, Moved, Source, combined, combined_entries, sources_of};
 
 /// Position of a procedure in the plan, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -214,7 +214,12 @@ impl Formula {
             Self::CriticalTimeStep => Value::Number(critical.ok_or(FormulaError::Missing("critical"))?),
             Self::Result(reference) => {
                 match (results.result(*reference).ok_or(FormulaError::Missing(reference.name))?, reference.part) {
-                    (ResultValue::List(values), _) => Value::List(values),
+                    (ResultValue::List(values), Part::Value) => Value::List(values),
+                    (ResultValue::List(values), Part::Uncertainty) => {
+                        let entries = combined_entries(&results.contributions(*reference), values.len());
+                        let known: Option<Vec<f64>> = entries.into_iter().collect();
+                        Value::List(known.ok_or(FormulaError::Missing(reference.name))?)
+                    }
                     (ResultValue::Number { value, .. }, Part::Value) => {
                         Value::Number(value.ok_or(FormulaError::Missing(reference.name))?)
                     }

@@ -99,7 +99,7 @@ impl<'a> Checker<'a> {
             return self.fail(fault::no_uncertainty(text, name.span));
         };
         let formula = Formula::Result(ResultReference { part: Part::Uncertainty, ..reference });
-        Some(Typed::number(formula, typed.dimension, span))
+        Some(Typed { shape: typed.shape, ..Typed::number(formula, typed.dimension, span) })
     }
 
     /// What a block gives: a result, a derived value, or a field.

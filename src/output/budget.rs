@@ -12,6 +12,8 @@ use crate::uncertainty::{Contribution, Source};
 #[derive(Clone, Debug)]
 pub(super) struct Budget<'a> {
     pub result: &'a NamedResult,
+    /// Of a list, which of its numbers, from 0.
+    pub entry: Option<usize>,
     pub value: f64,
     /// u, of all lines together.
     pub uncertainty: f64,
@@ -63,18 +65,32 @@ impl Budget<'_> {
 pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureRecord) -> Vec<Budget<'a>> {
     let own = |part: &Contribution| matches!(part.source, Source::Fit { procedure, .. } if procedure == ProcedureId(index));
     let made = procedure.results.iter().filter(|result| !result.contributions.iter().all(own));
-    made.filter_map(|result| {
-        let ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } = result.value else { return None };
-        Some(Budget { result, value, uncertainty, lines: lines(run, &result.contributions) })
+    made.flat_map(|result| match &result.value {
+        ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } => {
+            let lines = lines(run, result.contributions.iter());
+            vec![Budget { result, entry: None, value: *value, uncertainty: *uncertainty, lines }]
+        }
+        ResultValue::Number { .. } => Vec::new(),
+        ResultValue::List(values) => of_entries(run, result, values),
     })
     .collect()
 }
 
+/// A budget for each number of a list whose uncertainty is known.
+fn of_entries<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> Vec<Budget<'a>> {
+    let known = values.iter().zip(result.entry_uncertainties()).enumerate();
+    let budget = |(entry, (value, uncertainty)): (usize, (&f64, Option<f64>))| {
+        let lines = lines(run, result.contributions.iter().filter(|part| part.entry == entry));
+        Some(Budget { result, entry: Some(entry), value: *value, uncertainty: uncertainty?, lines })
+    };
+    known.filter_map(budget).collect()
+}
+
 /// A line for each source; the draws of the readings are one.
-fn lines(run: &Run<'_>, contributions: &[Contribution]) -> Vec<Line> {
+fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution>) -> Vec<Line> {
     let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. });
-    let mut lines: Vec<Line> = contributions.iter().filter(|part| !drawn(part)).map(|part| line(run, part)).collect();
-    let draws: Vec<&Contribution> = contributions.iter().filter(drawn).collect();
+    let (draws, moved): (Vec<&Contribution>, Vec<&Contribution>) = contributions.partition(drawn);
+    let mut lines: Vec<Line> = moved.into_iter().map(|part| line(run, part)).collect();
     if let Some(first) = draws.first() {
         let together = draws.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
         let draws = Some(draws.len());

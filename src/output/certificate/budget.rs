@@ -5,14 +5,14 @@ use super::super::budget::{Budget, From, Line, budgets};
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
 use super::{results::percent, words};
-use crate::formula::{ProcedureId, ResultReference};
+use crate::formula::{ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::{minus, significant, typeset, unit};
 use crate::record::ProcedureRecord;
 use crate::verdict::COVERAGE;
 
 /// Told where no requirement reads a result of the procedure.
-const UNASKED: [&str; 2] = ["max_displacement", "absorbed_energy"];
+const UNASKED: [&str; 3] = ["max_displacement", "absorbed_energy", "max_base_shear"];
 
 /// A share of u² below which lines are told together.
 const SMALL: f64 = 1e-3;
@@ -20,7 +20,7 @@ const SMALL: f64 = 1e-3;
 pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let mut budgets = budgets(run, index, procedure);
     let asked = asked(run, index);
-    budgets.retain(|budget| asked.contains(&budget.result.name));
+    budgets.retain(|budget| asked.contains(&budget.result.name) && is_told(budget));
     if !budgets.is_empty() {
         body.extend(budgets.iter().map(one));
         body.push(Block::note(note(&budgets)));
@@ -38,9 +38,20 @@ fn asked(run: &Run<'_>, index: usize) -> Vec<&'static str> {
     if mine.is_empty() { UNASKED.to_vec() } else { mine }
 }
 
+/// Of a list, the budget of its largest number stands for all.
+fn is_told(budget: &Budget<'_>) -> bool {
+    let (Some(entry), ResultValue::List(values)) = (budget.entry, &budget.result.value) else { return true };
+    let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    largest.is_some_and(|(place, _)| place == entry)
+}
+
 fn one(budget: &Budget<'_>) -> Block {
+    let which = budget.entry.map_or_else(String::new, |entry| match budget.result.name {
+        "periods" => format!(", mode {}", entry + 1),
+        _ => format!(", storey {}", entry + 1),
+    });
     let columns = vec![
-        Column::words(format!("Uncertainty budget of {}", words(budget.result.name)), 3),
+        Column::words(format!("Uncertainty budget of {}{which}", words(budget.result.name)), 3),
         Column::words("Input ± u", 2),
         Column::numbers("Sensitivity"),
         Column::numbers("Contribution"),
@@ -50,7 +61,7 @@ fn one(budget: &Budget<'_>) -> Block {
 }
 
 fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
-    let Budget { result, value, uncertainty, lines } = budget;
+    let Budget { result, value, uncertainty, lines, .. } = budget;
     let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
     let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
     let mut rows: Vec<Vec<Text>> = told
