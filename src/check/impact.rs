@@ -4,10 +4,13 @@ use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::values;
 use super::fields::whole;
-use super::{integrator, mode, specimen, storey_impact};
-use crate::formula::{Formula, Operator};
-use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, Mode, ProcedureKind, Until};
+use super::{integrator, specimen, stepping, storey_impact};
+use crate::formula::Formula;
+use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Until, steps_in};
 use crate::schema::Kind;
+
+/// The step of a blow that names none: the critical one over this.
+pub const FINER: f64 = 20.0;
 
 pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     match storey_impact::struck_frame(checker, block) {
@@ -33,21 +36,9 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
     let stiffness = checker.stiffness_or_specimens(block, specimen_block);
     let damping = checker.quantity(block, "damping");
     let contact = contact(checker, block);
-    let mode = mode::mode(checker, block);
-    let integrator = integrator::integrator(checker, block, mode, contact.as_ref());
-    let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
-    let continuous = matches!(mode, Some(Mode::Continuous { .. }));
-    let unsaid = if continuous { "true" } else { "false" };
-    let i_modification = checker.word(block, "i_modification", unsaid).map(|word| word == "true");
-    let time_step = match checker.given(block, "time_step") {
-        Some(_) => checker.quantity(block, "time_step"),
-        None => Some(twentieth_of_critical()),
-    };
+    let stepping = stepping::stepping(checker, block, contact.as_ref(), FINER);
     let duration = checker.quantity(block, "duration");
     let until = until(checker, block);
-    let pause = checker.quantity(block, "pause");
-    let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
-    let inspect = triggers(checker, block);
     let impact = Impact {
         specimen: checker.scope.place_in_kind(specimen_block?),
         striker: checker.scope.place_in_kind(striker?),
@@ -56,26 +47,19 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         stiffness: stiffness?,
         damping: damping?,
         contact: contact?,
-        integrator: integrator?,
-        allow_unstable: allow_unstable?,
-        i_modification: i_modification?,
-        mode: mode?,
-        time_step: time_step?,
+        stepping: stepping?,
         duration: duration?,
         until: until?,
-        pause: pause?,
-        max_tangent_ratio: max_tangent_ratio?,
-        inspect: inspect?,
     };
     if let (Some(time_step), Some(duration)) = (time_step_before_the_run(&impact), impact.duration.constant())
-        && duration / time_step > MOST_STEPS
+        && steps_in(duration, time_step) > MOST_STEPS
     {
         let at = checker.given(block, "duration").map_or(head, |(_, entry)| entry.value.span);
-        let steps = (duration / time_step).ceil();
+        let steps = steps_in(duration, time_step);
         return checker.fail(values::too_many("steps", steps, MOST_STEPS, at, "shorten `duration` or take a longer `time_step`"));
     }
     no_frame?;
-    integrator::meets_the_contact(checker, block, impact.integrator, &impact.contact)?;
+    integrator::meets_the_contact(checker, block, impact.stepping.integrator, &impact.contact)?;
     Some(impact)
 }
 
@@ -87,10 +71,6 @@ pub fn until(checker: &mut Checker, block: usize) -> Option<Until> {
     })
 }
 
-pub fn twentieth_of_critical() -> Formula {
-    Formula::Binary(Operator::Divide, Box::new(Formula::CriticalTimeStep), Box::new(Formula::Constant(20.0)))
-}
-
 /// Δtc = (2π/10)·√(M/K) (Melo et al. 2006, eq. 7), where mass and stiffness are known before the run.
 pub fn critical_before_the_run(impact: &Impact) -> Option<f64> {
     let (mass, stiffness) = (impact.mass.constant()?, impact.stiffness.constant()?);
@@ -100,7 +80,7 @@ pub fn critical_before_the_run(impact: &Impact) -> Option<f64> {
 /// Δt, where it is known before the run.
 pub fn time_step_before_the_run(impact: &Impact) -> Option<f64> {
     let critical = critical_before_the_run(impact);
-    impact.time_step.evaluate(&crate::formula::NoResults, critical).ok().map(|estimate| estimate.value)
+    impact.stepping.time_step.evaluate(&crate::formula::NoResults, critical).ok().map(|estimate| estimate.value)
 }
 
 pub fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {

@@ -51,8 +51,8 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Op
     let assumed = impact.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
     let shortfall = assumed.map_or(0.0, |assumed| behaves - assumed);
-    let limit = longest_stable_step(impact.integrator, stiffest / mass, shortfall / mass);
-    if let (Integrator::AlphaOs { .. }, Some(assumed)) = (impact.integrator, assumed)
+    let limit = longest_stable_step(impact.stepping.integrator, stiffest / mass, shortfall / mass);
+    if let (Integrator::AlphaOs { .. }, Some(assumed)) = (impact.stepping.integrator, assumed)
         && behaves > assumed * (1.0 + 1e-9)
         && step <= limit
     {
@@ -60,10 +60,10 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Op
         let at = checker.given(block, "stiffness").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::stiffer_than_operator(at, behaves, assumed, limit));
     }
-    if step <= limit || impact.allow_unstable {
+    if step <= limit || impact.stepping.allow_unstable {
         return;
     }
     let head = checker.scope.blocks[block].block.head;
     let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
-    checker.faults.push(fault::unstable(at, impact.integrator, step, limit));
+    checker.faults.push(fault::unstable(at, impact.stepping.integrator, step, limit));
 }

@@ -41,6 +41,7 @@ mod rig;
 mod scope;
 mod shake;
 mod specimen;
+mod stepping;
 mod stiffness_ramp;
 mod storey_impact;
 mod striker;

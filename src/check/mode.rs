@@ -29,7 +29,7 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
 pub fn damping_twice(checker: &mut Checker, block: usize, impact: &Impact, specimen: Option<&Specimen>) {
     let computed = impact.damping.constant().is_none_or(|damping| damping > 0.0);
     let felt = specimen.is_some_and(|specimen| specimen.damping > 0.0);
-    if !(computed && felt && matches!(impact.mode, Mode::Continuous { .. })) {
+    if !(computed && felt && matches!(impact.stepping.mode, Mode::Continuous { .. })) {
         return;
     }
     let of_specimen = checker.scope.of_kind(Kind::Specimen).nth(impact.specimen).map(|(index, _)| index);

@@ -4,12 +4,12 @@
 use std::rc::Rc;
 
 use super::checker::Checker;
-use super::faults::{frames as fault, methods, values, whole};
-use super::fields::whole as whole_number;
-use super::{frame, impact, integrator, mode, shake, warnings};
-use crate::formula::NoResults;
+use super::faults::frames as fault;
+use super::fields::whole;
+use super::stepping::FrameSteps;
+use super::{frame, impact, integrator, shake, stepping, warnings};
 use crate::mechanics::frame_properties::{Approach, FrameProperties};
-use crate::plan::{Contact, Frame, MOST_STEPS, Mode, ProcedureKind, ShakeDamping, StoreyImpact, Striker};
+use crate::plan::{Contact, Frame, ProcedureKind, StoreyImpact, Striker};
 use crate::schema::Kind;
 
 /// The frame that a block strikes one storey of; None where it strikes one degree of freedom, or nothing that is known.
@@ -45,20 +45,9 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
     let damping = shake::damping(checker, block);
     let damping_uncertainty = shake::damping_uncertainty(checker, block, damping.as_ref());
     let contact = impact::contact(checker, block);
-    let mode = mode::mode(checker, block);
-    let integrator = integrator::integrator(checker, block, mode, contact.as_ref());
-    let allow_unstable = checker.word(block, "allow_unstable", "false").map(|word| word == "true");
-    let unsaid = if matches!(mode, Some(Mode::Continuous { .. })) { "true" } else { "false" };
-    let i_modification = checker.word(block, "i_modification", unsaid).map(|word| word == "true");
-    let time_step = match checker.given(block, "time_step") {
-        Some(_) => checker.quantity(block, "time_step"),
-        None => Some(impact::twentieth_of_critical()),
-    };
+    let stepping = stepping::stepping(checker, block, contact.as_ref(), impact::FINER);
     let duration = checker.quantity(block, "duration");
     let until = impact::until(checker, block);
-    let pause = checker.quantity(block, "pause");
-    let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
-    let inspect = impact::triggers(checker, block);
     if foreign {
         return None;
     }
@@ -69,18 +58,11 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
         damping: damping?,
         damping_uncertainty: damping_uncertainty?,
         contact: contact?,
-        integrator: integrator?,
-        allow_unstable: allow_unstable?,
-        i_modification: i_modification?,
-        mode: mode?,
-        time_step: time_step?,
+        stepping: stepping?,
         duration: duration?,
         until: until?,
-        pause: pause?,
-        max_tangent_ratio: max_tangent_ratio?,
-        inspect: inspect?,
     };
-    integrator::meets_the_contact(checker, block, impact.integrator, &impact.contact)?;
+    integrator::meets_the_contact(checker, block, impact.stepping.integrator, &impact.contact)?;
     Some(ProcedureKind::StoreyImpact(impact))
 }
 
@@ -93,7 +75,7 @@ fn storey(checker: &mut Checker, block: usize, specimen: usize, frame: Option<&R
         return checker.fail(fault::which_storey(name, storeys?, head, declared));
     };
     let at = entry.value.span;
-    let storey = whole_number(checker.constant(block, "storey")?)?;
+    let storey = whole(checker.constant(block, "storey")?)?;
     let storey = usize::try_from(storey).ok()?;
     if storey > storeys? {
         return checker.fail(fault::no_such_storey(name, storeys?, at, declared));
@@ -110,53 +92,21 @@ fn approach(impact: &StoreyImpact, striker: &Striker) -> Option<Approach> {
     Some(Approach::of(striker, hertz))
 }
 
-/// What the time step must be held against, as far as it is known before the run: the shortest period, stability, what a
-/// limit force needs, the number of steps.
+/// What the time step must be held against, as far as it is known before the run: what that of any frame must be, and what a
+/// limit force needs.
 pub fn judge(checker: &mut Checker, block: usize, impact: &StoreyImpact, frame: &Frame, striker: &Striker) {
-    let head = checker.scope.blocks[block].block.head;
-    mode::storeys_damped_twice(checker, block, (impact.specimen, impact.mode, &impact.damping), frame);
-    let at = |checker: &Checker, field| checker.given(block, field).map_or(head, |(_, entry)| entry.value.span);
-    let Some(damping) = impact.damping.known() else { return };
-    let ratios = at(checker, "damping_ratio");
-    if let ShakeDamping::Modal(given) = &impact.damping
-        && given.len() != frame.degrees_of_freedom()
-    {
-        checker.faults.push(fault::damping_ratios(given.len(), frame.degrees_of_freedom(), ratios));
-        return;
-    }
-    let properties = match FrameProperties::of(frame, &damping) {
-        Ok(properties) => properties,
-        Err(reason) => {
-            checker.faults.push(fault::damping_impossible(&reason.to_string(), ratios));
-            return;
-        }
+    let StoreyImpact { specimen, damping, stepping, .. } = impact;
+    let steps = FrameSteps { specimen: *specimen, frame, damping, stepping, duration: impact.duration.constant() };
+    let critical = |properties: &FrameProperties| {
+        approach(impact, striker).map(|approach| properties.critical_on_impact(impact.struck, &approach))
     };
-    let critical = approach(impact, striker).map(|approach| properties.critical_on_impact(impact.struck, &approach));
-    let Ok(step) = impact.time_step.evaluate(&NoResults, critical).map(|estimate| estimate.value) else { return };
-    let step_at = at(checker, "time_step");
-    let behaves = if checker.real_rig.is_some() { None } else { Some(frame) };
-    let limit = properties.longest_stable_step(impact.integrator, behaves);
-    if step > limit {
-        checker.faults.push(if impact.allow_unstable {
-            fault::unstable_though(step_at, step, limit)
-        } else {
-            methods::unstable(step_at, impact.integrator, step, limit)
-        });
-        return;
-    }
-    if let Some(critical) = critical.filter(|critical| step > *critical) {
-        checker.faults.push(whole::step_above_critical(step_at, step, critical));
-    }
+    let Some((properties, step)) = stepping::judge(checker, block, &steps, critical) else { return };
     if let Contact::Limit { force } = &impact.contact
         && let Some(force) = force.constant()
     {
-        warnings::limit_force(checker, step_at, step, (properties.struck_mass(impact.struck), force), striker);
-    }
-    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-    let rows = impact.duration.constant().map(|duration| (duration / step).ceil() * frame.degrees_of_freedom() as f64);
-    if let Some(rows) = rows.filter(|rows| *rows > MOST_STEPS) {
-        let help = "shorten `duration` or take a longer `time_step`";
-        checker.faults.push(values::too_many("steps of its storeys", rows, MOST_STEPS, at(checker, "duration"), help));
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
+        warnings::limit_force(checker, at, step, (properties.struck_mass(impact.struck), force), striker);
     }
 }
 

@@ -10,9 +10,9 @@ use crate::mechanics::forecast::{self, Foretold};
 use crate::mechanics::frame::{FrameInput, Tangents, storeys_of};
 use crate::mechanics::frame_properties::FrameProperties;
 use crate::mechanics::ground::{acceleration_at, peak_velocity};
-use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::monitor;
-use crate::plan::{Contact, Ground, Impact, Limits, Link, Plan, ProcedureKind, Shake, Specimen};
+use crate::mechanics::structure::Structure;
+use crate::plan::{Contact, Ground, Impact, Limits, Link, Plan, ProcedureKind, Shake, Specimen, step_count};
 
 /// Share of the input energy at which tracking holds a run.
 fn bound(limits: &Limits) -> f64 {
@@ -43,24 +43,19 @@ fn of_impact(plan: &Plan, impact: &Impact, missed: f64, bound: f64) -> Option<(F
     // An earlier procedure's stiffness is near the specimen's own.
     let stiffness = impact.stiffness.constant().unwrap_or_else(|| behaviour.initial_stiffness());
     let time_step = time_step_before_the_run(impact)?;
-    let input = ImpactInput {
+    let structure = Structure {
         mass: impact.mass.constant()?,
         damping: impact.damping.constant().unwrap_or(0.0),
         stiffness,
-        striker_mass: striker.mass,
-        striker_velocity: striker.velocity,
-        gap: striker.gap,
-        gravity: striker.gravity,
-        time_step,
-        max_tangent_ratio: impact.max_tangent_ratio.constant()?,
-        law: law(&impact.contact)?,
-        integrator: impact.integrator,
         operator_stiffness: stiffness,
-        i_modification: impact.i_modification,
+        law: law(&impact.contact)?,
+        time_step,
+        max_tangent_ratio: impact.stepping.max_tangent_ratio.constant()?,
         force_noise: 0.0,
         resolution: 0.0,
     };
-    let steps = whole(impact.duration.constant()? / time_step);
+    let input = structure.struck_by(striker, &impact.stepping);
+    let steps = step_count(impact.duration.constant()?, time_step);
     Some((forecast::of_impact(&input, behaviour, (impact.until, steps), missed, bound), time_step))
 }
 
@@ -81,18 +76,18 @@ fn of_shake(shake: &Shake, specimen: &Specimen, ground: &Ground, missed: f64, bo
     let frame = specimen.frame.as_ref()?;
     let properties = FrameProperties::of(frame, &shake.damping.known()?).ok()?;
     let matrices = &properties.matrices;
-    let time_step = shake.time_step.evaluate(&NoResults, Some(properties.critical_time_step())).ok()?.value;
+    let time_step = shake.stepping.time_step.evaluate(&NoResults, Some(properties.critical_time_step())).ok()?.value;
     let scale = shake.scale.constant()?;
     let ground_at = |time: f64| scale * acceleration_at(&ground.times, &ground.accelerations, time);
     let zero = vec![0.0; matrices.order()];
     let mut load = zero.clone();
     matrices.ground_load(ground_at(0.0), &mut load);
-    let largest_ratio = shake.max_tangent_ratio.constant()?;
+    let largest_ratio = shake.stepping.max_tangent_ratio.constant()?;
     let input = FrameInput {
         matrices,
         operator_stiffness: &matrices.stiffness,
-        integrator: shake.integrator,
-        i_modification: shake.i_modification,
+        integrator: shake.stepping.integrator,
+        i_modification: shake.stepping.i_modification,
         tangents: storeys_of(&matrices.stiffness).map_or(Tangents::Initial, |_| Tangents::Storeys { largest_ratio }),
         time_step,
         initial_displacement: &zero,
@@ -104,19 +99,8 @@ fn of_shake(shake: &Shake, specimen: &Specimen, ground: &Ground, missed: f64, bo
     let duration = shake.duration.as_ref().map_or(Some(ground.duration()), Formula::constant)?;
     let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
     let energy = 0.5 * frame.total_mass() * velocity * velocity;
-    let foretold = forecast::of_frame(&input, frame, (&ground_at, whole(duration / time_step)), energy, missed, bound)?;
+    let foretold = forecast::of_frame(&input, frame, (&ground_at, step_count(duration, time_step)), energy, missed, bound)?;
     Some((foretold, time_step))
-}
-
-/// Steps; 50 for 0.5 s of 0.01 s, whatever rounding says of the ratio.
-fn whole(ratio: f64) -> u64 {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "saturating; the forecast has a bound of its own"
-    )]
-    let steps = (ratio * (1.0 - 1e-12)).ceil() as u64;
-    steps
 }
 
 /// Says of every procedure that tracking would stop it. `blocks` are those of the plan's procedures, `rig` that of its rig.
@@ -128,8 +112,8 @@ pub fn warn(checker: &mut Checker, plan: &Plan, blocks: &[usize], rig: Option<us
         let Some((Foretold { share, passed: Some(time) }, time_step)) = foretold(plan, index) else { continue };
         let head = checker.scope.blocks[*block].block.head;
         let corrected = match &plan.procedures[index].kind {
-            ProcedureKind::Impact(impact) => impact.i_modification,
-            ProcedureKind::Shake(shake) => shake.i_modification,
+            ProcedureKind::Impact(impact) => impact.stepping.i_modification,
+            ProcedureKind::Shake(shake) => shake.stepping.i_modification,
             _ => false,
         };
         // The error goes with the delay, and that with the step.

@@ -382,9 +382,10 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Calibration, Contact, Impact, Integrator, Limits, Mode, Procedure, ProcedureKind, Report, RigPlan, Settle,
-            Specimen, Striker, Until,
+            Behaviour, Calibration, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
+            Stepping, Striker, Until,
         };
+        use crate::run::testing::every;
         let specimen = Specimen {
             name: "beam".to_owned(),
             mass: 1.0,
@@ -403,16 +404,9 @@ mod tests {
             stiffness: Constant(327.65),
             damping: Constant(0.0),
             contact: Contact::Rigid,
-            integrator: Integrator::Tangent,
-            allow_unstable: false,
-            i_modification: false,
-            mode: Mode::StepAndPause,
-            time_step: Constant(0.01),
+            stepping: Stepping { max_tangent_ratio: Constant(2.0), ..every(0.01) },
             duration: Constant(1.0),
             until: Until::StrikerStop,
-            pause: Constant(0.0),
-            max_tangent_ratio: Constant(2.0),
-            inspect: Vec::new(),
         };
         Plan {
             title: "Example 1".to_owned(),

@@ -17,11 +17,17 @@ use crate::record::{ImpactHistory, ProcedureRecord, ShakeHistory};
 
 /// What is foretold of one impact; nothing where the rig declares nothing that it misses.
 pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, history: &ImpactHistory) -> Vec<Vec<String>> {
-    let pause = impact.pause.constant().unwrap_or(0.0);
+    let pause = impact.stepping.pause.constant().unwrap_or(0.0);
     let ends = history.steps.first().zip(history.steps.last());
     let wall = ends.map_or(0.0, |(first, last)| last.wall_time - first.wall_time);
-    let run = Ran { mode: impact.mode, pause, time_step: history.time_step, wall, steps: ends.map_or(0, |(_, last)| last.step) };
-    let (late, unsettled) = (delay(plan, &run), uncertain(plan, impact.mode));
+    let run = Ran {
+        mode: impact.stepping.mode,
+        pause,
+        time_step: history.time_step,
+        wall,
+        steps: ends.map_or(0, |(_, last)| last.step),
+    };
+    let (late, unsettled) = (delay(plan, &run), uncertain(plan, impact.stepping.mode));
     let input = |name: &str| procedure.inputs.iter().find(|(field, ..)| *field == name).map(|(_, estimate, _)| estimate.value);
     let (Some(mass), Some(stiffness)) = (input("mass"), input("stiffness")) else { return Vec::new() };
     let amplitude = history.steps.iter().map(|step| step.computed.abs()).fold(0.0, f64::max);
@@ -29,7 +35,7 @@ pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, hi
     if (late == 0.0 && unsettled == 0.0) || amplitude == 0.0 {
         return Vec::new();
     }
-    if impact.i_modification {
+    if impact.stepping.i_modification {
         return vec![vec!["growth by tracking".to_owned(), CORRECTED.to_owned()]];
     }
     let growth = Growth { omega: (stiffness / mass).sqrt(), late, relative: unsettled / amplitude };
@@ -69,17 +75,23 @@ impl Growth {
 /// The same of a frame: what a delay is to each mode, and how the largest displacement may grow in it. Beside it stands the damping
 /// of the mode, which works the other way.
 pub(super) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> Vec<Vec<String>> {
-    let pause = shake.pause.constant().unwrap_or(0.0);
+    let pause = shake.stepping.pause.constant().unwrap_or(0.0);
     let ends = history.steps.first().zip(history.steps.last());
     let wall = ends.map_or(0.0, |(first, last)| last.wall_time - first.wall_time);
-    let run = Ran { mode: shake.mode, pause, time_step: history.time_step, wall, steps: ends.map_or(0, |(_, last)| last.step) };
-    let (late, unsettled) = (delay(plan, &run), uncertain(plan, shake.mode));
+    let run = Ran {
+        mode: shake.stepping.mode,
+        pause,
+        time_step: history.time_step,
+        wall,
+        steps: ends.map_or(0, |(_, last)| last.step),
+    };
+    let (late, unsettled) = (delay(plan, &run), uncertain(plan, shake.stepping.mode));
     let sizes = history.steps.iter().flat_map(|step| &step.computed).map(|place| place.abs());
     let amplitude = sizes.fold(0.0, f64::max);
     let Some(modes) = history.modes.as_ref().filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
         return Vec::new();
     };
-    if shake.i_modification {
+    if shake.stepping.i_modification {
         return vec![vec!["growth by tracking".to_owned(), CORRECTED.to_owned()]];
     }
     let mut rows = vec![late_by(late, unsettled)];

@@ -31,6 +31,7 @@ pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
+pub mod structure;
 pub mod summary;
 pub mod tangent;
 

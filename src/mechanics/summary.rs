@@ -35,7 +35,7 @@ pub struct ImpactSummary {
     /// As a fraction of the input.
     pub energy_error: f64,
     /// The structure was still on its way where X was largest: not a peak.
-    pub peak_is_final: bool,
+    pub still_rising: bool,
     /// The striker has stopped, and the run ended with a contact force.
     pub last_blow_cut: bool,
 }
@@ -91,7 +91,7 @@ impl SummaryBuilder {
                 absorbed_energy: 0.0,
                 striker_energy: input.striker_energy(),
                 energy_error: 0.0,
-                peak_is_final: false,
+                still_rising: false,
                 last_blow_cut: false,
             },
         }
@@ -148,7 +148,7 @@ impl SummaryBuilder {
             _ => None,
         };
         // A run that goes on past its largest X has seen a peak, whichever way the structure moves as it ends.
-        self.summary.peak_is_final =
+        self.summary.still_rising =
             self.last_velocity > 0.0 && self.summary.residual_displacement >= self.summary.max_displacement;
         self.summary.last_blow_cut = self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
         if self.summary.max_displacement == f64::NEG_INFINITY {

@@ -1,7 +1,7 @@
 //! Frames of storeys and the motion of the ground under them: many degrees of freedom, one for each floor, counted from the
 //! ground up. In: what `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
-use super::{Behaviour, Contact, InspectTrigger, Integrator, Mode, Until};
+use super::{Behaviour, Contact, Stepping, Until};
 use crate::formula::Formula;
 use crate::mechanics::frame::Damping;
 
@@ -134,23 +134,11 @@ pub struct Shake {
     pub damping: ShakeDamping,
     /// Standard, of each damping ratio; 0 where none is stated.
     pub damping_uncertainty: f64,
-    pub integrator: Integrator,
-    /// Whether it runs beyond the stability limit of its integrator.
-    pub allow_unstable: bool,
-    /// Whether readings are corrected to the targets, r* = `r_m` − K(`d_m` − d̃).
-    pub i_modification: bool,
-    pub mode: Mode,
-    /// c of "the tangent stays in 0 .. c·K".
-    pub max_tangent_ratio: Formula,
-    /// s; may read `critical`.
-    pub time_step: Formula,
+    pub stepping: Stepping,
     /// Factor on the record.
     pub scale: Formula,
     /// s of virtual time. None: to the end of the record.
     pub duration: Option<Formula>,
-    /// s, at every step.
-    pub pause: Formula,
-    pub inspect: Vec<InspectTrigger>,
 }
 
 /// A striker on one floor of a frame.
@@ -166,22 +154,10 @@ pub struct StoreyImpact {
     /// Standard, of each damping ratio; 0 where none is stated.
     pub damping_uncertainty: f64,
     pub contact: Contact,
-    pub integrator: Integrator,
-    /// Whether it runs beyond the stability limit of its integrator.
-    pub allow_unstable: bool,
-    /// Whether readings are corrected to the place that was commanded.
-    pub i_modification: bool,
-    pub mode: Mode,
-    /// s; may read `critical`.
-    pub time_step: Formula,
+    pub stepping: Stepping,
     /// s, at most.
     pub duration: Formula,
     pub until: Until,
-    /// s, at every step.
-    pub pause: Formula,
-    /// c of "the tangent stays in 0 .. c·K".
-    pub max_tangent_ratio: Formula,
-    pub inspect: Vec<InspectTrigger>,
 }
 
 /// Fractions of critical damping.

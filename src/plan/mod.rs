@@ -11,6 +11,7 @@ mod identification;
 mod integrator;
 mod portal;
 mod rig;
+mod stepping;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};
@@ -30,6 +31,7 @@ pub use rig::{
     AxisPlan, Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
     SafeState, Settle, VirtualLink,
 };
+pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::Unload;
 
 #[derive(Clone, Debug)]
@@ -276,9 +278,6 @@ impl ProcedureKind {
     }
 }
 
-/// Steps of one impact, at most: a record of them takes some 2 GB. `check` counts them where it can, `run` where it must.
-pub const MOST_STEPS: f64 = 1e7;
-
 #[derive(Clone, Debug)]
 pub struct Impact {
     pub specimen: usize,
@@ -293,22 +292,10 @@ pub struct Impact {
     /// C of eqs. 4–5, N·s/m
     pub damping: Formula,
     pub contact: Contact,
-    pub integrator: Integrator,
-    /// Whether it runs beyond the stability limit of its integrator.
-    pub allow_unstable: bool,
-    /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
-    pub i_modification: bool,
-    pub mode: Mode,
-    /// s; may read `critical`.
-    pub time_step: Formula,
+    pub stepping: Stepping,
     /// Upper bound of virtual time, s.
     pub duration: Formula,
     pub until: Until,
-    /// s, at every step.
-    pub pause: Formula,
-    /// c of "K_t is clamped to [0, c·K0]".
-    pub max_tangent_ratio: Formula,
-    pub inspect: Vec<InspectTrigger>,
 }
 
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! Continuous runs on the virtual rig: beside step and pause, against closed forms, and played back from their record.
 
-use super::testing::{elastic_plan, impact, run_unwatched};
+use super::testing::{elastic_plan, every, impact, run_unwatched};
 use crate::formula::Formula::Constant;
-use crate::plan::{Contact, Impact, Integrator, Interval, Link, Mode, Move, Plan, ProcedureKind, Until, VirtualLink};
+use crate::plan::{Contact, Impact, Integrator, Interval, Link, Mode, Move, Plan, ProcedureKind, Stepping, Until, VirtualLink};
 use crate::record::{History, ImpactStep, Outcome, Record};
 
 const STIFFNESS: f64 = 300.0;
@@ -16,13 +16,15 @@ fn steps(record: &Record) -> &[ImpactStep] {
     }
 }
 
+/// Steps by explicit Newmark, corrected to the targets where the actuator does not stop.
+fn explicit(mode: Mode, time_step: f64) -> Stepping {
+    Stepping { mode, integrator: Integrator::Explicit, i_modification: mode != Mode::StepAndPause, ..every(time_step) }
+}
+
 /// Let go at 10 mm from rest, with the striker out of reach, for half a second.
 fn let_go(mode: Mode, damping: f64, coulomb: f64, time_step: f64) -> Plan {
     let blow = Impact {
-        mode,
-        integrator: Integrator::Explicit,
-        i_modification: mode != Mode::StepAndPause,
-        time_step: Constant(time_step),
+        stepping: explicit(mode, time_step),
         duration: Constant(0.5),
         until: Until::Duration,
         ..impact(Constant(STIFFNESS))
@@ -81,13 +83,7 @@ fn friction_takes_its_force_times_the_way() {
 #[test]
 fn without_damping_both_modes_are_the_same_run() {
     let by = |mode| {
-        let blow = Impact {
-            mode,
-            integrator: Integrator::Explicit,
-            i_modification: mode != Mode::StepAndPause,
-            time_step: Constant(1e-3),
-            ..impact(Constant(327.65))
-        };
+        let blow = Impact { stepping: explicit(mode, 1e-3), ..impact(Constant(327.65)) };
         run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(blow)]))
     };
     let (one, other) = (by(CONTINUOUS), by(Mode::StepAndPause));
@@ -109,11 +105,8 @@ fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
     let damper = 50.0;
     let worst = |contact: Contact, time_step: f64| {
         let blow = Impact {
-            mode: CONTINUOUS,
-            integrator: Integrator::Explicit,
-            i_modification: true,
+            stepping: explicit(CONTINUOUS, time_step),
             contact,
-            time_step: Constant(time_step),
             duration: Constant(0.2),
             until: Until::Duration,
             ..impact(Constant(STIFFNESS))
@@ -153,13 +146,7 @@ fn a_blow_is_no_trend_to_go_on_with() {
     use crate::run::tape::{begin, record};
 
     let time_step = 1e-3;
-    let blow = Impact {
-        mode: CONTINUOUS,
-        integrator: Integrator::Explicit,
-        i_modification: true,
-        time_step: Constant(time_step),
-        ..impact(Constant(STIFFNESS))
-    };
+    let blow = Impact { stepping: explicit(CONTINUOUS, time_step), ..impact(Constant(STIFFNESS)) };
     let plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
@@ -189,7 +176,7 @@ fn the_reading_is_corrected_to_the_target() {
         // The striker flies by: its energy is what the shares are of.
         plan.limits.tracking_energy_error = Interval { low: 0.0, high: 1e6 };
         if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
-            blow.i_modification = correct;
+            blow.stepping.i_modification = correct;
         }
         plan
     };

@@ -1,6 +1,6 @@
 //! Blows of rising energy, as run on a virtual rig.
 
-use super::testing::{elastic_plan, impact, number, run_unwatched};
+use super::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::formula::Formula::{self, Constant};
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Test, Unload, Until};
@@ -16,7 +16,7 @@ fn below(limit: f64) -> Condition {
 }
 
 fn blow() -> Impact {
-    Impact { time_step: Constant(2e-4), duration: Constant(0.4), ..impact(Constant(2e4)) }
+    Impact { stepping: every(2e-4), duration: Constant(0.4), ..impact(Constant(2e4)) }
 }
 
 fn rising(velocities: &[f64], limit: f64, between: Between) -> Escalate {

@@ -7,6 +7,7 @@ use super::inputs::Inputs;
 use super::propagation::Doubts;
 use super::results::result;
 use super::session::Session;
+use super::stepping::stable;
 use super::stop::Stop;
 use super::strike::Strike;
 use crate::formula::Estimate;
@@ -14,10 +15,10 @@ use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::critical_time_step;
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::method::longest_stable_step;
+use crate::mechanics::structure::Structure;
 use crate::mechanics::summary::ImpactSummary;
-use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until};
+use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until, step_count, steps_in};
 use crate::quantity::Dimension;
-use crate::quantity::display::stated;
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 
@@ -87,40 +88,34 @@ impl Setting {
         let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
         let law = law(&plan.contact, inputs)?;
         let critical_time_step = critical_time_step(mass, stiffness);
-        let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical_time_step))?.value;
+        let stepping = &plan.stepping;
+        let critical = Some(critical_time_step);
+        let time_step = inputs.positive_estimate("time_step", &stepping.time_step, Dimension::TIME, critical)?.value;
         let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
-        let max_tangent_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
-        // 0.5 s of 0.01 s are 50 steps, whatever rounding says of the ratio.
-        let steps = (duration / time_step * (1.0 - 1e-12)).ceil();
-        if steps > MOST_STEPS {
+        let pause = inputs.not_negative("pause", &stepping.pause, Dimension::TIME)?;
+        let max_tangent_ratio = inputs.positive("max_tangent_ratio", &stepping.max_tangent_ratio, Dimension::NUMBER)?;
+        if steps_in(duration, time_step) > MOST_STEPS {
             return Err(Stop::BadInput {
                 field: "time_step",
                 value: time_step,
                 wanted: format!("long enough for at most {MOST_STEPS} steps").into(),
             });
         }
-        stable(plan, time_step, stiffness / mass)?;
-        let input = ImpactInput {
+        // What `check` could not know yet: the stability limit by the stiffness of an earlier procedure.
+        stable(stepping, time_step, longest_stable_step(stepping.integrator, stiffness / mass, 0.0))?;
+        let structure = Structure {
             mass,
             damping,
             stiffness,
-            striker_mass: striker.mass,
-            striker_velocity: striker.velocity,
-            gap: striker.gap,
-            gravity: striker.gravity,
+            operator_stiffness,
+            law,
             time_step,
             max_tangent_ratio,
-            law,
-            integrator: plan.integrator,
-            operator_stiffness,
-            i_modification: plan.i_modification,
             force_noise: noise.force,
             resolution: noise.resolution,
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
-        let steps = steps as u64;
-        Ok(Self { input, critical_time_step, steps, pause })
+        let input = structure.struck_by(striker, stepping);
+        Ok(Self { input, critical_time_step, steps: step_count(duration, time_step), pause })
     }
 
     /// With more mass of the structure, kg.
@@ -134,16 +129,6 @@ impl Setting {
 /// as long as the specimen is not stiffer (physics, section 11; never a noisy secant).
 fn high_end(stiffness: Estimate) -> f64 {
     stiffness.value + 2.0 * stiffness.uncertainty.unwrap_or(0.0)
-}
-
-/// What `check` could not know yet: the stability limit by the stiffness of an earlier procedure.
-fn stable(plan: &Impact, time_step: f64, highest: f64) -> Result<(), Stop> {
-    let limit = longest_stable_step(plan.integrator, highest, 0.0);
-    if time_step <= limit || plan.allow_unstable {
-        return Ok(());
-    }
-    let wanted = format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
-    Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
 }
 
 pub(super) fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
@@ -180,7 +165,7 @@ pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Sessio
     if until == Until::StrikerStop && summary.stop_time.is_none() {
         session.event(EventKind::Remark, "the striker did not stop within the duration".to_owned());
     }
-    if summary.peak_is_final {
+    if summary.still_rising {
         let text = "the structure was still moving on at the end: its largest displacement is not a peak";
         session.event(EventKind::Remark, text.to_owned());
     }

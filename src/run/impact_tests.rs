@@ -1,10 +1,10 @@
 //! Impacts on plans built by hand: the paper's first example, remarks, limits, inspections, resolution of the rig.
 
-use super::testing::{elastic_plan, number, result_of, run_unwatched};
+use super::testing::{elastic_plan, every, number, result_of, run_unwatched};
 use super::{Inspection, Observer, StepReport, run};
 use crate::formula::Formula;
 use crate::mechanics::contact::StepState;
-use crate::plan::{Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Until, VirtualLink};
+use crate::plan::{Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Stepping, Until, VirtualLink};
 use crate::record::{EventKind, History, ImpactStep, Outcome, Record};
 use crate::rig::VirtualRig;
 
@@ -74,7 +74,10 @@ fn results_stand_in_the_order_of_the_reference_also_when_there_are_none() {
 fn pauses_take_rig_time_and_a_time_step_may_be_critical() {
     let twentieth =
         Formula::Binary(crate::formula::Operator::Divide, Box::new(Formula::CriticalTimeStep), Box::new(constant(20.0)));
-    let record = run_unwatched(&plan(Impact { time_step: twentieth, pause: constant(0.5), ..impact() }));
+    let record = run_unwatched(&plan(Impact {
+        stepping: Stepping { time_step: twentieth, pause: constant(0.5), ..every(0.01) },
+        ..impact()
+    }));
     assert!((value(&record, "time_step") - value(&record, "critical_time_step") / 20.0).abs() < 1e-15);
     let steps = steps(&record);
     let last = steps.last().unwrap();
@@ -129,7 +132,7 @@ fn an_energy_error_past_its_limit_aborts_after_recording_the_step() {
     };
     assert_eq!(within(impact()).outcome, Outcome::Completed);
     // A tangent held to a hundredth of K0 no longer closes the balance.
-    let record = within(Impact { max_tangent_ratio: constant(0.01), ..impact() });
+    let record = within(Impact { stepping: Stepping { max_tangent_ratio: constant(0.01), ..every(0.01) }, ..impact() });
     assert!(matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains("energy error")), "{:?}", record.outcome);
     let (last, before) = steps(&record).split_last().unwrap();
     assert!((last.energies.error / 5.0).abs() > 1e-6);
@@ -156,7 +159,7 @@ impl Observer for Onlooker {
 fn inspections_come_while_it_runs_and_change_nothing() {
     let triggers = vec![InspectTrigger::Every(10), InspectTrigger::At(0.05)];
     let mut onlooker = Onlooker(Vec::new());
-    let inspected = plan(Impact { inspect: triggers, ..impact() });
+    let inspected = plan(Impact { stepping: Stepping { inspect: triggers, ..every(0.01) }, ..impact() });
     let record = run(&inspected, &mut VirtualRig::of_plan(&inspected), &mut onlooker);
     assert_eq!(onlooker.0.len(), record.events.iter().filter(|event| event.kind == EventKind::Inspection).count());
     assert_eq!(onlooker.0[0], "inspection at 0.05 s of test time");
@@ -206,7 +209,8 @@ fn an_input_can_be_an_earlier_result_with_its_uncertainty() {
 #[test]
 fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
     let stiffening = |integrator| {
-        let mut plan = plan(Impact { integrator, time_step: constant(0.002), ..super::testing::impact(constant(310.0)) });
+        let mut plan =
+            plan(Impact { stepping: Stepping { integrator, ..every(0.002) }, ..super::testing::impact(constant(310.0)) });
         let points = vec![[-0.1, -90.0], [-0.02, -6.0], [0.0, 0.0], [0.02, 6.0], [0.1, 78.0]];
         let unloading = crate::plan::Unloading::AlongTheCurve;
         let table = crate::plan::Table { file: "points.csv".to_owned(), points, unloading, scale: 1.0 };

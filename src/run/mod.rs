@@ -42,6 +42,7 @@ mod session;
 mod shake;
 mod shake_results;
 mod shaking;
+mod stepping;
 mod stiffer;
 mod stiffness_ramp;
 mod stop;

@@ -7,7 +7,7 @@
 
 use crate::formula::{Formula, ResultReference, ResultValue, Results};
 use crate::mechanics::critical_time_step;
-use crate::plan::{DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp};
+use crate::plan::{DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp, steps_in};
 
 use super::{shake, storey_impact};
 
@@ -180,11 +180,11 @@ impl Reckoner<'_> {
             }
             ProcedureKind::StoreyImpact(impact) => {
                 let steps = rounded(storey_impact::steps(impact, self.plan)?) + 1.0;
-                Some(stepped(impact.mode, steps))
+                Some(stepped(impact.stepping.mode, steps))
             }
             ProcedureKind::Shake(shaking) => {
                 let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;
-                Some(stepped(shaking.mode, steps))
+                Some(stepped(shaking.stepping.mode, steps))
             }
             ProcedureKind::Cycle(cycle) => {
                 let begin = Counts { targets: self.way, readings: 2.0 + f64::from(cycle.samples), steps: 1.0, ways: 0.0 };
@@ -231,9 +231,9 @@ impl Reckoner<'_> {
 
     fn blow(&self, impact: &Impact) -> Option<Counts> {
         let critical = critical_time_step(self.number(&impact.mass)?, self.number(&impact.stiffness)?);
-        let time_step = impact.time_step.evaluate(&self.assumed, Some(critical)).ok()?.value;
-        let steps = (self.number(&impact.duration)? / time_step).ceil() + 1.0;
-        Some(stepped(impact.mode, steps))
+        let time_step = impact.stepping.time_step.evaluate(&self.assumed, Some(critical)).ok()?.value;
+        let steps = steps_in(self.number(&impact.duration)?, time_step) + 1.0;
+        Some(stepped(impact.stepping.mode, steps))
     }
 }
 

@@ -2,10 +2,12 @@
 
 use super::need::{self, FRAME};
 use super::tape::{self, tests::header};
-use super::testing::{elastic_plan, impact, ramp, result_of};
+use super::testing::{elastic_plan, every, impact, ramp, result_of};
 use super::{Unwatched, testing};
 use crate::formula::Formula::Constant;
-use crate::plan::{Cycle, DampingSweep, Interval, Level, Mode, Move, Plan, ProcedureKind, Sides, StiffnessRamp, Unload, Until};
+use crate::plan::{
+    Cycle, DampingSweep, Interval, Level, Mode, Move, Plan, ProcedureKind, Sides, Stepping, StiffnessRamp, Unload, Until,
+};
 use crate::record::Outcome;
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, Journal};
@@ -64,7 +66,8 @@ fn no_procedure_writes_more_than_it_is_reckoned_to() {
     let long = || crate::plan::Impact { until: Until::Duration, duration: Constant(3.0), ..impact(Constant(300.0)) };
     let mut measured = long();
     measured.stiffness = result_of(0, "stiffness");
-    let continuous = crate::plan::Impact { mode: Mode::Continuous { time_scale: 100.0 }, ..long() };
+    let continuous =
+        crate::plan::Impact { stepping: Stepping { mode: Mode::Continuous { time_scale: 100.0 }, ..every(0.01) }, ..long() };
     let to = |place| ProcedureKind::Move(Move { to: Constant(place), speed: None });
     let unload = ProcedureKind::Unload(Unload { specimen: 0, stiffness: Constant(200.0), within: None, speed: None });
     let plans = [

@@ -1,7 +1,7 @@
 //! Uncertainty of an impact's results: closed forms, the true virtual rig run again and again, the size of the move, results
 //! that share sources, requirements with a guard band.
 
-use super::testing::{elastic_plan, impact, number, ramp, result_of, run_unwatched};
+use super::testing::{elastic_plan, every, impact, number, ramp, result_of, run_unwatched};
 use crate::formula::Formula;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Behaviour, Calibration, Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
@@ -20,7 +20,7 @@ fn constant(value: f64) -> Formula {
 fn sticking(time_step: f64) -> Impact {
     Impact {
         contact: Contact::Restitution { coefficient: constant(0.0) },
-        time_step: constant(time_step),
+        stepping: every(time_step),
         ..impact(constant(STIFFNESS))
     }
 }
@@ -146,7 +146,7 @@ fn scatter(values: &[f64]) -> f64 {
 #[test]
 fn runs_of_the_true_rig_scatter_as_foretold() {
     const RUNS: u32 = 200;
-    let blow = || Impact { until: crate::plan::Until::Rebound, time_step: constant(2e-3), ..sticking(2e-3) };
+    let blow = || Impact { until: crate::plan::Until::Rebound, ..sticking(2e-3) };
     let with = |velocity: f64, mass: f64, force: f64| {
         let mut plan = plan(Impact { mass: constant(mass), ..blow() });
         plan.strikers[0].velocity = velocity;
@@ -272,7 +272,7 @@ fn a_record_that_does_not_lead_to_its_results_tells_none() {
         absorbed_energy: 0.0,
         striker_energy: 5.0,
         energy_error: 0.0,
-        peak_is_final: false,
+        still_rising: false,
         last_blow_cut: false,
     };
     let mut results = record.procedures[0].results.clone();

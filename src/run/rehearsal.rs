@@ -144,7 +144,7 @@ mod tests {
 
     fn plan() -> Plan {
         let mut blow = impact(result_of(1, "stiffness"));
-        blow.inspect = vec![InspectTrigger::Every(1000)];
+        blow.stepping.inspect = vec![InspectTrigger::Every(1000)];
         elastic_plan(
             320.0,
             vec![

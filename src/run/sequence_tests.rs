@@ -1,6 +1,6 @@
 //! Several blows on one specimen, with its damage carried on.
 
-use super::testing::{elastic_plan, impact, number, run_unwatched};
+use super::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::formula::Formula::{self, Constant};
 use crate::plan::{Behaviour, Contact, Impact, Plan, ProcedureKind, Unload, Until};
 use crate::record::{History, ImpactStep, Record, StepState};
@@ -13,7 +13,7 @@ fn perfectly_plastic(procedures: Vec<ProcedureKind>) -> Plan {
 }
 
 fn blow() -> Impact {
-    Impact { time_step: Constant(2e-4), duration: Constant(0.4), ..impact(Constant(2e4)) }
+    Impact { stepping: every(2e-4), duration: Constant(0.4), ..impact(Constant(2e4)) }
 }
 
 fn unload() -> ProcedureKind {

@@ -9,7 +9,7 @@ use super::storey_impact;
 use super::{Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
-use crate::plan::{Impact, Plan, Procedure, ProcedureKind};
+use crate::plan::{Impact, Plan, Procedure, ProcedureKind, step_count};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
 
@@ -267,8 +267,6 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
 
 fn steps_of_blow(impact: &Impact) -> Option<u64> {
     let critical = critical_time_step(impact.mass.constant()?, impact.stiffness.constant()?);
-    let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-    let ratio = impact.duration.constant()? / time_step;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
-    Some(ratio.ceil() as u64)
+    let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+    Some(step_count(impact.duration.constant()?, time_step))
 }

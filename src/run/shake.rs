@@ -7,15 +7,15 @@ use super::inputs::Inputs;
 use super::session::Session;
 use super::shake_results::{ShakeSummary, results};
 use super::shaking::Shaking;
+use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
 use super::watch::Watch;
 use crate::formula::{Formula, NoResults};
-use crate::mechanics::frame::{Damping, Tangents, storeys_of};
+use crate::mechanics::frame::Damping;
 use crate::mechanics::frame_properties::FrameProperties;
 use crate::mechanics::ground::peak_velocity;
-use crate::plan::{Frame, Ground, MOST_STEPS, Plan, Shake, ShakeDamping, rayleigh};
+use crate::plan::{Frame, Ground, Plan, Shake, ShakeDamping, rayleigh, step_count};
 use crate::quantity::Dimension;
-use crate::quantity::display::stated;
 use crate::record::{History, ShakeHistory};
 
 pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -38,15 +38,15 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     };
     let history = ShakeHistory {
         steps: Vec::new(),
-        damping_ratios: setting.properties.damping_ratios(),
-        modes: Some(setting.properties.modes.clone()),
-        time_step: setting.time_step,
-        critical_time_step: setting.properties.critical_time_step(),
+        damping_ratios: setting.frame.properties.damping_ratios(),
+        modes: Some(setting.frame.properties.modes.clone()),
+        time_step: setting.frame.time_step,
+        critical_time_step: setting.frame.critical_time_step,
     };
     let mut shaking = Shaking {
         setting: &setting,
         history,
-        summary: ShakeSummary::new(setting.properties.matrices.order()),
+        summary: ShakeSummary::new(setting.frame.properties.matrices.order()),
         watch: Watch::default(),
     };
     let stop = shaking.run(plan, ground, session).err();
@@ -58,31 +58,19 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
 pub(super) fn steps(shake: &Shake, plan: &Plan) -> Option<u64> {
     let frame = plan.specimens.get(shake.specimen)?.frame.as_ref()?;
     let critical = FrameProperties::of(frame, &Damping::None).ok()?.critical_time_step();
-    let time_step = shake.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+    let time_step = shake.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
     let duration = match &shake.duration {
         Some(duration) => duration.constant()?,
         None => plan.grounds.get(shake.ground)?.duration(),
     };
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
-    Some(steps_in(duration, time_step) as u64)
-}
-
-/// 0.5 s of 0.01 s are 50 steps, whatever rounding says of the ratio.
-pub(super) fn steps_in(duration: f64, time_step: f64) -> f64 {
-    (duration / time_step * (1.0 - 1e-12)).ceil()
+    Some(step_count(duration, time_step))
 }
 
 /// Everything known before the first step.
 pub(super) struct Setting {
-    pub(super) properties: FrameProperties,
-    pub(super) tangents: Tangents,
-    /// s
-    pub(super) time_step: f64,
-    pub(super) steps: u64,
+    pub(super) frame: FrameSteps,
     /// Factor on the record.
     pub(super) scale: f64,
-    /// s
-    pub(super) pause: f64,
     /// ½ ιᵀMι v², v the largest velocity of the ground, J: what its motion can put in, before it has.
     pub(super) ground_energy: f64,
 }
@@ -95,38 +83,16 @@ impl Setting {
         inputs: &mut Inputs<'_>,
         session: &Session<'_>,
     ) -> Result<Self, Stop> {
-        let (damping, ratio) = damping(&plan.damping, inputs)?;
-        let unmet = |reason: String| Stop::BadInput { field: "damping_ratio", value: ratio, wanted: reason.into() };
-        let properties = FrameProperties::of(frame, &damping).map_err(|reason| unmet(format!("other: {reason}")))?;
+        let properties = stepping::properties(frame, &plan.damping, inputs)?;
         let critical = properties.critical_time_step();
-        let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical))?.value;
-        let limit = properties.longest_stable_step(plan.integrator, Some(frame).filter(|_| session.reckoned()));
-        if time_step > limit && !plan.allow_unstable {
-            let wanted =
-                format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
-            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
-        }
+        let time_step = stepping::time_step(&plan.stepping, (frame, &properties), critical, inputs, session)?;
         let to_the_end = Formula::Constant(ground.duration());
         let duration = inputs.positive("duration", plan.duration.as_ref().unwrap_or(&to_the_end), Dimension::TIME)?;
         let scale = inputs.number("scale", &plan.scale, Dimension::NUMBER)?;
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
-        let largest_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
-        let steps = steps_in(duration, time_step);
-        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-        let floors = frame.degrees_of_freedom() as f64;
-        if steps * floors > MOST_STEPS {
-            let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
-            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
-        }
-        let tangents = match storeys_of(&properties.matrices.stiffness) {
-            Some(_) => Tangents::Storeys { largest_ratio },
-            None => Tangents::Initial,
-        };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
-        let steps = steps as u64;
+        let steps = FrameSteps::new(properties, &plan.stepping, (time_step, critical, duration), inputs)?;
         let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
         let ground_energy = 0.5 * frame.total_mass() * velocity * velocity;
-        Ok(Self { properties, tangents, time_step, steps, scale, pause, ground_energy })
+        Ok(Self { frame: steps, scale, ground_energy })
     }
 }
 

@@ -8,6 +8,7 @@ use super::gliding::{Gliding, Passing};
 use super::session::Session;
 use super::shake::Setting;
 use super::shake_results::ShakeSummary;
+use super::stepping::FrameSteps;
 use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::triggers::Triggers;
@@ -27,10 +28,11 @@ pub(super) struct Shaking<'a> {
 
 impl Shaking<'_> {
     pub(super) fn run(&mut self, plan: &Shake, ground: &Ground, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Setting { properties, tangents, time_step, steps, scale, pause, .. } = self.setting;
+        let Setting { frame: FrameSteps { properties, tangents, time_step, steps, pause, .. }, scale, .. } = self.setting;
+        let stepping = &plan.stepping;
         let matrices = &properties.matrices;
         let ground_at = |time| scale * acceleration_at(&ground.times, &ground.accelerations, time);
-        let mut triggers = Triggers::new(&plan.inspect);
+        let mut triggers = Triggers::new(&stepping.inspect);
         // X starts where the actuators were sent to, and R₀ is read there once, before the first step.
         let start = session.guard.commanded().to_vec();
         let reading = session.guard.read()?;
@@ -40,8 +42,8 @@ impl Shaking<'_> {
         let solver = FrameSolver::new(&FrameInput {
             matrices,
             operator_stiffness: &matrices.stiffness,
-            integrator: plan.integrator,
-            i_modification: plan.i_modification,
+            integrator: stepping.integrator,
+            i_modification: stepping.i_modification,
             tangents: *tangents,
             time_step: *time_step,
             initial_displacement: &start,
@@ -59,14 +61,9 @@ impl Shaking<'_> {
         let mut at_rest = solver.state().clone();
         at_rest.measured_displacement.clone_from(&reading.displacement);
         self.take(&at_rest, ground_at(0.0), Tracking::default(), session);
-        let mut stiffer = StifferStoreys::new(
-            &self.setting.properties.matrices,
-            plan.integrator,
-            *time_step,
-            session.guard.declared_noise(),
-            &reading,
-        );
-        let mut gliding = match plan.mode {
+        let mut stiffer =
+            StifferStoreys::new(matrices, stepping.integrator, *time_step, session.guard.declared_noise(), &reading);
+        let mut gliding = match stepping.mode {
             Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, *time_step)),
             Mode::StepAndPause => None,
         };

@@ -9,7 +9,7 @@ use super::gliding::{Gliding, Passing};
 use super::impact::{law, remark};
 use super::inputs::Inputs;
 use super::session::Session;
-use super::shake::{damping, steps_in};
+use super::stepping::{self, FrameSteps};
 use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::storey_summary::{StoreySummary, of_floor, results};
@@ -18,13 +18,13 @@ use super::watch::Watch;
 use crate::formula::NoResults;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver, StrikerState};
-use crate::mechanics::frame::{Damping, FrameInput, FrameState, Tangents, storeys_of};
+use crate::mechanics::frame::{Damping, FrameInput, FrameState};
 use crate::mechanics::frame_properties::{Approach, FrameProperties};
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::monitor::Tracking;
-use crate::plan::{Contact, Frame, MOST_STEPS, Mode, Plan, StoreyImpact, Striker};
+use crate::mechanics::structure::Structure;
+use crate::plan::{Contact, Frame, Mode, Plan, StoreyImpact, Striker, step_count};
 use crate::quantity::Dimension;
-use crate::quantity::display::stated;
 use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, StoreyImpactHistory};
 use crate::rig::Reading;
 
@@ -38,8 +38,8 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     );
     let blow = |setting: Option<&Setting>| ImpactHistory {
         steps: Vec::new(),
-        time_step: setting.map_or(0.0, |setting| setting.time_step),
-        critical_time_step: setting.map_or(0.0, |setting| setting.critical_time_step),
+        time_step: setting.map_or(0.0, |setting| setting.frame.time_step),
+        critical_time_step: setting.map_or(0.0, |setting| setting.frame.critical_time_step),
     };
     let mut history = StoreyImpactHistory {
         blow: blow(setting.as_ref().ok()),
@@ -58,9 +58,9 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
             };
         }
     };
-    history.modes = Some(setting.properties.modes.clone());
-    history.damping_ratios = setting.properties.damping_ratios();
-    let summary = StoreySummary::new(&setting.body, setting.properties.matrices.order());
+    history.modes = Some(setting.frame.properties.modes.clone());
+    history.damping_ratios = setting.frame.properties.damping_ratios();
+    let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
     let mut striking = Striking { setting: &setting, history, summary, watch: Watch::default() };
     let stop = striking.run(plan, session).err();
     let Striking { history, summary, watch, .. } = striking;
@@ -89,24 +89,15 @@ pub(super) fn steps(impact: &StoreyImpact, plan: &Plan) -> Option<u64> {
     };
     let approach = Approach::of(plan.strikers.get(impact.striker)?, hertz);
     let critical = properties.critical_on_impact(impact.struck, &approach);
-    let time_step = impact.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bound for display, saturating")]
-    Some(steps_in(impact.duration.constant()?, time_step) as u64)
+    let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
+    Some(step_count(impact.duration.constant()?, time_step))
 }
 
 /// Everything known before the first step.
 struct Setting {
-    properties: FrameProperties,
-    tangents: Tangents,
+    frame: FrameSteps,
     law: ContactLaw,
     striker: Striker,
-    /// s
-    time_step: f64,
-    /// s
-    critical_time_step: f64,
-    steps: u64,
-    /// s
-    pause: f64,
     /// The struck floor and the striker as an impact on one degree of freedom has them.
     body: ImpactInput,
 }
@@ -119,56 +110,28 @@ impl Setting {
         inputs: &mut Inputs<'_>,
         session: &Session<'_>,
     ) -> Result<Self, Stop> {
-        let (damping, ratio) = damping(&plan.damping, inputs)?;
-        let unmet = |reason: String| Stop::BadInput { field: "damping_ratio", value: ratio, wanted: reason.into() };
-        let properties = FrameProperties::of(frame, &damping).map_err(|reason| unmet(format!("other: {reason}")))?;
+        let properties = stepping::properties(frame, &plan.damping, inputs)?;
         let law = law(&plan.contact, inputs)?;
         let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
         let critical = properties.critical_on_impact(plan.struck, &Approach::of(striker, hertz));
-        let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical))?.value;
-        let limit = properties.longest_stable_step(plan.integrator, Some(frame).filter(|_| session.reckoned()));
-        if time_step > limit && !plan.allow_unstable {
-            let wanted =
-                format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
-            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
-        }
+        let time_step = stepping::time_step(&plan.stepping, (frame, &properties), critical, inputs, session)?;
         let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
-        let largest_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
-        let steps = steps_in(duration, time_step);
-        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-        let floors = frame.degrees_of_freedom() as f64;
-        if steps * floors > MOST_STEPS {
-            let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
-            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
-        }
-        let tangents = match storeys_of(&properties.matrices.stiffness) {
-            Some(_) => Tangents::Storeys { largest_ratio },
-            None => Tangents::Initial,
-        };
+        let steps = FrameSteps::new(properties, &plan.stepping, (time_step, critical, duration), inputs)?;
         let noise = session.guard.declared_noise();
         let stiffness = frame.stiffness[plan.struck][plan.struck];
-        let body = ImpactInput {
-            mass: properties.struck_mass(plan.struck),
+        let body = Structure {
+            mass: steps.properties.struck_mass(plan.struck),
             damping: 0.0,
             stiffness,
-            striker_mass: striker.mass,
-            striker_velocity: striker.velocity,
-            gap: striker.gap,
-            gravity: striker.gravity,
-            time_step,
-            max_tangent_ratio: largest_ratio,
-            law,
-            integrator: plan.integrator,
             operator_stiffness: stiffness,
-            i_modification: plan.i_modification,
+            law,
+            time_step,
+            max_tangent_ratio: steps.max_tangent_ratio,
             force_noise: noise.force,
             resolution: noise.resolution,
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_STEPS")]
-        let steps = steps as u64;
-        let striker = striker.clone();
-        Ok(Self { properties, tangents, law, striker, time_step, critical_time_step: critical, steps, pause, body })
+        let body = body.struck_by(striker, &plan.stepping);
+        Ok(Self { frame: steps, law, striker: striker.clone(), body })
     }
 }
 
@@ -181,23 +144,19 @@ struct Striking<'a> {
 
 impl Striking<'_> {
     fn run(&mut self, plan: &StoreyImpact, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Setting { properties, steps, pause, .. } = self.setting;
-        let mut triggers = Triggers::new(&plan.inspect);
+        let FrameSteps { properties, time_step, steps, pause, .. } = &self.setting.frame;
+        let stepping = &plan.stepping;
+        let mut triggers = Triggers::new(&stepping.inspect);
         // X starts where the actuators were sent to, and R₀ is read there once, before the first step.
         let start = session.guard.commanded().to_vec();
         let reading = session.guard.read()?;
         let unloaded = vec![0.0; properties.matrices.order()];
         let mut solver = self.solver(plan, &start, &reading, &unloaded)?;
         let mut monitors = Monitors::new(&start, &reading);
-        let mut stiffer = StifferStoreys::new(
-            &self.setting.properties.matrices,
-            plan.integrator,
-            self.setting.time_step,
-            session.guard.declared_noise(),
-            &reading,
-        );
-        let mut gliding = match plan.mode {
-            Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, self.setting.time_step)),
+        let mut stiffer =
+            StifferStoreys::new(&properties.matrices, stepping.integrator, *time_step, session.guard.declared_noise(), &reading);
+        let mut gliding = match stepping.mode {
+            Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, *time_step)),
             Mode::StepAndPause => None,
         };
         let mut at_rest = solver.frame().clone();
@@ -234,13 +193,13 @@ impl Striking<'_> {
     }
 
     fn solver(&self, plan: &StoreyImpact, start: &[f64], reading: &Reading, unloaded: &[f64]) -> Result<FrameImpactSolver, Stop> {
-        let Setting { properties, tangents, law, striker, time_step, body, .. } = self.setting;
+        let Setting { frame: FrameSteps { properties, tangents, time_step, .. }, law, striker, body } = self.setting;
         let input = FrameImpactInput {
             frame: FrameInput {
                 matrices: &properties.matrices,
                 operator_stiffness: &properties.matrices.stiffness,
-                integrator: plan.integrator,
-                i_modification: plan.i_modification,
+                integrator: plan.stepping.integrator,
+                i_modification: plan.stepping.i_modification,
                 tangents: *tangents,
                 time_step: *time_step,
                 initial_displacement: start,

@@ -38,11 +38,11 @@ impl Strike {
     }
 
     pub(super) fn run(&mut self, plan: &Impact, session: &mut Session<'_>) -> Result<(), Stop> {
-        if let Mode::Continuous { time_scale } = plan.mode {
+        if let Mode::Continuous { time_scale } = plan.stepping.mode {
             return continuous::run(self, plan, time_scale, session);
         }
         let Setting { input, steps, pause, .. } = self.setting;
-        let mut triggers = Triggers::new(&plan.inspect);
+        let mut triggers = Triggers::new(&plan.stepping.inspect);
         // X starts where the actuator was sent to, and R₀ is read there once, before the first step.
         let start = session.commanded();
         let (measured, restoring_force) = session.read()?;
@@ -52,7 +52,7 @@ impl Strike {
         self.take(&first, monitor.tracking(), session);
         let DeclaredNoise { force, resolution } = session.guard.declared_noise();
         let judged = Judged {
-            integrator: plan.integrator,
+            integrator: plan.stepping.integrator,
             operator_stiffness: input.operator_stiffness,
             mobility: 1.0 / input.mass,
             time_step: input.time_step,

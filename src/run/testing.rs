@@ -3,7 +3,8 @@
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
     Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, Integrator, Limits, Link, Mode, Plan, Procedure, ProcedureKind,
-    RampFit, Report, RigPlan, Settle, ShakeDamping, Specimen, StiffnessRamp, Storey, StoreyImpact, Striker, Until, VirtualLink,
+    RampFit, Report, RigPlan, Settle, ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyImpact, Striker, Until,
+    VirtualLink,
 };
 use crate::record::Record;
 use crate::rig::VirtualRig;
@@ -84,16 +85,9 @@ pub(crate) fn struck_frame() -> Plan {
         damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
         damping_uncertainty: 0.0,
         contact: Contact::Restitution { coefficient: Formula::Constant(0.5) },
-        integrator: Integrator::Tangent,
-        allow_unstable: false,
-        i_modification: false,
-        mode: Mode::StepAndPause,
-        time_step: Formula::Constant(0.01),
+        stepping: Stepping { max_tangent_ratio: Formula::Constant(2.0), ..every(0.01) },
         duration: Formula::Constant(0.25),
         until: Until::Duration,
-        pause: Formula::Constant(0.0),
-        max_tangent_ratio: Formula::Constant(2.0),
-        inspect: Vec::new(),
     };
     let mut plan = elastic_plan(1.0, vec![ProcedureKind::StoreyImpact(blow)]);
     plan.specimens[0].frame = Some(frame);
@@ -127,13 +121,20 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         stiffness,
         damping: Formula::Constant(0.0),
         contact: Contact::Rigid,
+        stepping: every(0.01),
+        duration: Formula::Constant(0.5),
+        until: Until::StrikerStop,
+    }
+}
+
+/// Steps of `time_step` (s) by the tangent form, with no pause.
+pub(crate) fn every(time_step: f64) -> Stepping {
+    Stepping {
         integrator: Integrator::Tangent,
         allow_unstable: false,
         i_modification: false,
         mode: Mode::StepAndPause,
-        time_step: Formula::Constant(0.01),
-        duration: Formula::Constant(0.5),
-        until: Until::StrikerStop,
+        time_step: Formula::Constant(time_step),
         pause: Formula::Constant(0.0),
         max_tangent_ratio: Formula::Constant(10.0),
         inspect: Vec::new(),

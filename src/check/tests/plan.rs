@@ -80,9 +80,9 @@ fn the_whole_plan_of_the_reference_checks_to_si() {
     let ProcedureKind::DampingSweep(sweep) = &sweep.kind else { panic!("a sweep") };
     assert_eq!(sweep.velocities[0], Formula::Constant(0.0005));
     let ProcedureKind::Impact(hit) = &hit.kind else { panic!("an impact") };
-    assert!(matches!(hit.contact, Contact::Rigid) && hit.time_step.reads_critical_time_step());
+    assert!(matches!(hit.contact, Contact::Rigid) && hit.stepping.time_step.reads_critical_time_step());
     assert_eq!(hit.stiffness.as_result().map(|result| result.name), Some("stiffness"));
-    assert!(matches!(hit.inspect[..], [InspectTrigger::Every(20), InspectTrigger::ForceDrop(0.1)]));
+    assert!(matches!(hit.stepping.inspect[..], [InspectTrigger::Every(20), InspectTrigger::ForceDrop(0.1)]));
     assert_eq!(plan.requirements.len(), 3);
     assert_eq!(plan.requirements[0].conditions[0].text, "hit.max_displacement <= 8.5 mm");
     assert_eq!((plan.report.figures.len(), plan.report.formats.len(), plan.files.len()), (4, 3, 2));

@@ -95,10 +95,10 @@ pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, h
 fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
     let time = |value| number::text(value, Dimension::TIME);
     let mut sentences = vec![
-        integrated(shake.integrator, &shake.damping, &history.damping_ratios),
+        integrated(shake.stepping.integrator, &shake.damping, &history.damping_ratios),
         format!("Time step {}; a tenth of the shortest period is {}.", time(history.time_step), time(history.critical_time_step)),
     ];
-    sentences.extend(method::driven(shake.i_modification, shake.mode));
+    sentences.extend(method::driven(shake.stepping.i_modification, shake.stepping.mode));
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
         sentences.push(format!(
             "The record is linear between its samples, and each step reads it at its end: {}.",

@@ -10,7 +10,7 @@ use crate::record::ImpactHistory;
 pub(super) fn note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut Vec<Block>) {
     let Some(ProcedureKind::Impact(impact)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
     let mut sentences = vec![integrator(impact)];
-    sentences.extend(driven(impact.i_modification, impact.mode));
+    sentences.extend(driven(impact.stepping.i_modification, impact.stepping.mode));
     sentences.extend(tracking(history));
     body.push(Block::paragraph(sentences.join(" ")));
 }
@@ -36,8 +36,8 @@ pub(super) fn driven(i_modification: bool, mode: Mode) -> Vec<String> {
 }
 
 fn integrator(impact: &Impact) -> String {
-    let unstable = if impact.allow_unstable { " The plan allows a time step beyond its stability limit." } else { "" };
-    let named = match impact.integrator {
+    let unstable = if impact.stepping.allow_unstable { " The plan allows a time step beyond its stability limit." } else { "" };
+    let named = match impact.stepping.integrator {
         Integrator::Tangent => {
             "constant average acceleration with the measured tangent stiffness (Melo et al. 2006, eqs. 2 to 6)"
         }

@@ -44,17 +44,17 @@ fn told(run: &Run<'_>, impact: &StoreyImpact, procedure: &ProcedureRecord, histo
     };
     let mut sentences = vec![
         format!("Floor {} is struck. Contact law: {}.", history.struck + 1, contact_law(&impact.contact)),
-        frames::integrated(impact.integrator, &impact.damping, &history.damping_ratios),
+        frames::integrated(impact.stepping.integrator, &impact.damping, &history.damping_ratios),
         format!("Time step {step}; {critical} {}.", time(history.blow.critical_time_step)),
     ];
-    if impact.i_modification {
+    if impact.stepping.i_modification {
         sentences.push(
             "The forces were corrected to where the floors were to be, r* = r − K(d measured − d commanded), with the initial \
              stiffness (I-modification)."
                 .to_owned(),
         );
     }
-    if let Mode::Continuous { time_scale } = impact.mode {
+    if let Mode::Continuous { time_scale } = impact.stepping.mode {
         sentences.push(format!(
             "The actuators did not stop at the steps: they moved together at {} times the virtual time, and what dampers of the \
              storeys do at that speed is in the restoring forces.",

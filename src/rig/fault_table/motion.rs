@@ -3,11 +3,11 @@
 
 use super::stage::{STIFFNESS, plan, plan_of, run, run_without};
 use crate::formula::Formula;
-use crate::plan::{Impact, InspectTrigger, Interval, Plan, ProcedureKind};
+use crate::plan::{Impact, InspectTrigger, Interval, Plan, ProcedureKind, Stepping};
 use crate::record::journal::EntryKind;
 use crate::record::{EventKind, Outcome};
 use crate::rig::failpoint::Guarding;
-use crate::run::testing::impact;
+use crate::run::testing::{every, impact};
 
 #[test]
 fn a_ram_that_sticks_or_lags_is_a_following_error() {
@@ -39,9 +39,8 @@ fn a_force_beyond_its_limit_holds_the_rig() {
 fn blow(inspect: Vec<InspectTrigger>) -> Plan {
     let strike = Impact {
         mass: Formula::Constant(500.0),
-        time_step: Formula::Constant(0.01),
+        stepping: Stepping { inspect, ..every(0.01) },
         duration: Formula::Constant(0.3),
-        inspect,
         ..impact(Formula::Constant(STIFFNESS))
     };
     let mut plan = plan_of(vec![ProcedureKind::Impact(strike)]);
@@ -67,7 +66,7 @@ fn an_energy_error_beyond_its_limit_holds_the_rig() {
         let mut plan = blow(Vec::new());
         plan.limits.energy_error = Interval { low: 0.0, high: 1e-3 };
         if let ProcedureKind::Impact(strike) = &mut plan.procedures[0].kind {
-            strike.max_tangent_ratio = Formula::Constant(ratio);
+            strike.stepping.max_tangent_ratio = Formula::Constant(ratio);
         }
         plan
     };

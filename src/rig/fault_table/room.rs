@@ -5,12 +5,12 @@ use super::unnumbered::{grbl, modbus};
 use crate::formula::Formula::Constant;
 use crate::plan::{Dialect, Impact, Interval, Plan, ProcedureKind, StiffnessRamp, Until};
 use crate::run::need::{self, FRAME, WALL};
-use crate::run::testing::{impact, ramp, result_of};
+use crate::run::testing::{every, impact, ramp, result_of};
 
 fn procedures() -> Vec<ProcedureKind> {
     let blow = Impact {
         mass: Constant(20.0),
-        time_step: Constant(1e-3),
+        stepping: every(1e-3),
         duration: Constant(0.1),
         until: Until::Duration,
         ..impact(result_of(0, "stiffness"))

@@ -7,10 +7,10 @@ use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
     Behaviour, Between, Comparison, Condition, Cycle, Escalate, Frame, Ground, Impact, InspectTrigger, Integrator, Level, Mode,
-    Move, ProcedureKind, Shake, ShakeDamping, Sides, StiffnessRamp, Storey, Test, Unload, Until,
+    Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until,
 };
 use crate::quantity::Dimension;
-use crate::run::testing::{elastic_plan, impact, ramp, result_of};
+use crate::run::testing::{elastic_plan, every, impact, ramp, result_of};
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
 
@@ -27,7 +27,8 @@ fn yielding(procedures: Vec<ProcedureKind>) -> Plan {
 
 /// Five steps.
 fn short(mode: Mode) -> Impact {
-    Impact { mode, duration: Constant(0.05), until: Until::Duration, ..impact(Constant(300.0)) }
+    let stepping = Stepping { mode, ..every(0.01) };
+    Impact { stepping, duration: Constant(0.05), until: Until::Duration, ..impact(Constant(300.0)) }
 }
 
 fn cycle(rate: Option<f64>) -> Cycle {
@@ -71,16 +72,14 @@ fn shaken(mode: Mode) -> Plan {
         ground: 0,
         damping: ShakeDamping::Rayleigh(Constant(0.02)),
         damping_uncertainty: 0.0,
-        integrator: Integrator::Explicit,
-        allow_unstable: false,
-        i_modification: false,
-        mode,
-        max_tangent_ratio: Constant(2.0),
-        time_step: Constant(0.01),
+        stepping: Stepping {
+            integrator: Integrator::Explicit,
+            mode,
+            inspect: if mode == Mode::StepAndPause { vec![InspectTrigger::Every(4)] } else { Vec::new() },
+            ..every(0.01)
+        },
         scale: Constant(1.0),
         duration: None,
-        pause: Constant(0.0),
-        inspect: if mode == Mode::StepAndPause { vec![InspectTrigger::Every(4)] } else { Vec::new() },
     };
     plan.procedures = elastic_plan(300.0, vec![ProcedureKind::Shake(shake)]).procedures;
     plan

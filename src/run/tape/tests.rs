@@ -118,7 +118,7 @@ fn plan() -> Plan {
         rate: Some(crate::formula::Formula::Constant(60.0)),
     };
     let mut blow = impact(result_of(0, "stiffness"));
-    blow.inspect = vec![InspectTrigger::Every(7)];
+    blow.stepping.inspect = vec![InspectTrigger::Every(7)];
     let home = Move { to: crate::formula::Formula::Constant(0.0), speed: None };
     elastic_plan(
         300.0,

@@ -10,7 +10,7 @@ use psd::output::{Provenance, Run};
 use psd::plan::{
     Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure, FigureKind, Impact,
     InspectTrigger, Integrator, Interval, Limits, Link, Mode, Parameter, Plan, PlanFile, Procedure, ProcedureKind, RampFit,
-    Report, Requirement, RigPlan, Settle, Specimen, StiffnessRamp, Striker, Test, Until, VirtualLink,
+    Report, Requirement, RigPlan, Settle, Specimen, Stepping, StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::quantity::Dimension;
 use psd::record::{
@@ -310,16 +310,18 @@ fn plan() -> Plan {
                 stiffness: result(0, "stiffness"),
                 damping: constant(0.0),
                 contact: Contact::Rigid,
-                integrator: Integrator::Tangent,
-                allow_unstable: false,
-                i_modification: false,
-                mode: Mode::StepAndPause,
-                time_step: constant(TIME_STEP),
+                stepping: Stepping {
+                    integrator: Integrator::Tangent,
+                    allow_unstable: false,
+                    i_modification: false,
+                    mode: Mode::StepAndPause,
+                    time_step: constant(TIME_STEP),
+                    pause: constant(0.5),
+                    max_tangent_ratio: constant(1.5),
+                    inspect: vec![InspectTrigger::Every(20)],
+                },
                 duration: constant(0.4),
                 until: Until::StrikerStop,
-                pause: constant(0.5),
-                max_tangent_ratio: constant(1.5),
-                inspect: vec![InspectTrigger::Every(20)],
             }),
         ),
     ];

@@ -1,0 +1,85 @@
+//! What the steps of a frame need before the first one, whatever moves it: its properties, a time step that it can be
+//! integrated with, how many steps there are, tangents. In: a frame of the plan and how the plan steps. Out: numbers, each
+//! inside its domain. It knows no ground and no striker.
+
+use super::inputs::Inputs;
+use super::session::Session;
+use super::shake::damping;
+use super::stop::Stop;
+use crate::mechanics::frame::{Tangents, storeys_of};
+use crate::mechanics::frame_properties::FrameProperties;
+use crate::plan::{Frame, MOST_STEPS, ShakeDamping, Stepping, step_count, steps_in};
+use crate::quantity::Dimension;
+use crate::quantity::display::stated;
+
+/// Everything the steps of a frame need.
+pub(super) struct FrameSteps {
+    pub properties: FrameProperties,
+    pub tangents: Tangents,
+    /// c of `K_t within [0, c·K]`
+    pub max_tangent_ratio: f64,
+    /// s
+    pub time_step: f64,
+    /// s
+    pub critical_time_step: f64,
+    pub steps: u64,
+    /// s
+    pub pause: f64,
+}
+
+/// The properties of a frame with this damping.
+pub(super) fn properties(frame: &Frame, plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<FrameProperties, Stop> {
+    let (damping, value) = damping(plan, inputs)?;
+    FrameProperties::of(frame, &damping).map_err(|reason| Stop::BadInput {
+        field: "damping_ratio",
+        value,
+        wanted: format!("other: {reason}").into(),
+    })
+}
+
+/// The time step, s, `critical` (s) the critical one: what `check` could not know of it is held against stability here.
+pub(super) fn time_step(
+    plan: &Stepping,
+    (frame, properties): (&Frame, &FrameProperties),
+    critical: f64,
+    inputs: &mut Inputs<'_>,
+    session: &Session<'_>,
+) -> Result<f64, Stop> {
+    let time_step = inputs.positive_estimate("time_step", &plan.time_step, Dimension::TIME, Some(critical))?.value;
+    stable(plan, time_step, properties.longest_stable_step(plan.integrator, Some(frame).filter(|_| session.reckoned())))?;
+    Ok(time_step)
+}
+
+/// Whether a plan may take a time step, `limit` the longest that is stable (s).
+pub(super) fn stable(plan: &Stepping, time_step: f64, limit: f64) -> Result<(), Stop> {
+    if time_step <= limit || plan.allow_unstable {
+        return Ok(());
+    }
+    let wanted = format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
+    Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
+}
+
+impl FrameSteps {
+    /// Steps of `time_step` in `duration`; both times, and the critical step, in s.
+    pub(super) fn new(
+        properties: FrameProperties,
+        plan: &Stepping,
+        (time_step, critical_time_step, duration): (f64, f64, f64),
+        inputs: &mut Inputs<'_>,
+    ) -> Result<Self, Stop> {
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let max_tangent_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+        let floors = properties.matrices.order() as f64;
+        if steps_in(duration, time_step) * floors > MOST_STEPS {
+            let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
+            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
+        }
+        let tangents = match storeys_of(&properties.matrices.stiffness) {
+            Some(_) => Tangents::Storeys { largest_ratio: max_tangent_ratio },
+            None => Tangents::Initial,
+        };
+        let steps = step_count(duration, time_step);
+        Ok(Self { properties, tangents, max_tangent_ratio, time_step, critical_time_step, steps, pause })
+    }
+}
