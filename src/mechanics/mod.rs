@@ -12,6 +12,7 @@ pub mod forecast;
 pub mod frame;
 pub mod frame_path;
 pub mod frame_properties;
+pub mod frame_rerun;
 pub mod ground;
 pub mod identification;
 pub mod impact;

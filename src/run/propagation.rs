@@ -6,7 +6,7 @@
 use super::impact::Setting;
 use super::inputs::Inputs;
 use super::study::{CLOSE, Effort, Study, Tick, Unknown, draws, give};
-use crate::formula::{ProcedureId, Results};
+use crate::formula::{Formula, ProcedureId, Results};
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath};
 use crate::mechanics::rerun::{OUTCOMES, Outcome, rerun};
 use crate::mechanics::summary::ImpactSummary;
@@ -102,17 +102,7 @@ impl<'run> Doubts<'run> {
     fn sources(&self) -> Vec<Source> {
         let Impact { striker, specimen, mass, stiffness, damping, contact, .. } = self.plan;
         let mut references = Vec::new();
-        let mut read = vec![mass, stiffness, damping];
-        match contact {
-            Contact::Rigid => {}
-            Contact::Limit { force } => read.push(force),
-            Contact::Restitution { coefficient } => read.push(coefficient),
-            Contact::Hertz { stiffness, loss, force_limit } => {
-                read.extend([stiffness, loss]);
-                read.extend(force_limit);
-            }
-        }
-        for formula in read {
+        for formula in [mass, stiffness, damping].into_iter().chain(contact_formulas(contact)) {
             formula.collect_references(&mut references);
         }
         let mut sources = sources_of(&references, self.results);
@@ -166,6 +156,16 @@ impl<'run> Doubts<'run> {
 /// What a blow comes to, and its critical time step, which follows from inputs alone.
 fn values(setting: &Setting, found: &Outcome) -> Vec<f64> {
     found.values.iter().copied().chain([setting.critical_time_step]).collect()
+}
+
+/// What a contact law reads.
+pub(super) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
+    match contact {
+        Contact::Rigid => Vec::new(),
+        Contact::Limit { force } => vec![force],
+        Contact::Restitution { coefficient } => vec![coefficient],
+        Contact::Hertz { stiffness, loss, force_limit } => [stiffness, loss].into_iter().chain(force_limit).collect(),
+    }
 }
 
 /// Standard deviations of one reading, N and m: noise, and rounding to a quantum q, which is even over it: q/√12.

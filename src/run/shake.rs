@@ -3,8 +3,10 @@
 //! from them. The steps themselves are `shaking`'s.
 
 use super::Performed;
+use super::frame_doubts::FrameDoubts;
 use super::inputs::Inputs;
 use super::session::Session;
+use super::shake_doubts;
 use super::shake_results::{ShakeSummary, results};
 use super::shaking::Shaking;
 use super::stepping::{self, FrameSteps};
@@ -49,8 +51,25 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
         summary: ShakeSummary::new(setting.frame.properties.matrices.order()),
         watch: Watch::default(),
     };
-    let stop = shaking.run(plan, ground, session).err();
-    let results = results(shaking.history.modes.as_ref(), Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty()));
+    let mut stop = shaking.run(plan, ground, session).err();
+    let mut results =
+        results(shaking.history.modes.as_ref(), Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty()));
+    if let (Some(frame), None) = (frame, &stop) {
+        let doubts = FrameDoubts {
+            whole,
+            specimen: plan.specimen,
+            frame,
+            damping: &plan.damping,
+            damping_uncertainty: plan.damping_uncertainty,
+            stepping: &plan.stepping,
+            results: inputs.results(),
+            procedure: inputs.procedure(),
+            noise: session.guard.declared_noise(),
+        };
+        let mut tick = |done, of| session.study(done, of);
+        let found = shake_doubts::propagate(&doubts, plan, ground, &setting, &shaking.history, &mut results, &mut tick);
+        stop = session.told_of(found);
+    }
     Performed { results, history: History::Shake(shaking.history), stop }
 }
 

@@ -7,11 +7,13 @@ use super::Performed;
 use super::axes::{Monitors, Told, report, together};
 use super::gliding::{Gliding, Passing};
 use super::impact::{law, remark};
+use super::frame_doubts::FrameDoubts;
 use super::inputs::Inputs;
 use super::session::Session;
 use super::stepping::{self, FrameSteps};
 use super::stiffer::StifferStoreys;
 use super::stop::Stop;
+use super::storey_doubts;
 use super::storey_summary::{StoreySummary, of_floor, results};
 use super::triggers::Triggers;
 use super::watch::Watch;
@@ -62,13 +64,30 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     history.damping_ratios = setting.frame.properties.damping_ratios();
     let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
     let mut striking = Striking { setting: &setting, history, summary, watch: Watch::default() };
-    let stop = striking.run(plan, session).err();
+    let mut stop = striking.run(plan, session).err();
     let Striking { history, summary, watch, .. } = striking;
     let summary = (!history.floors.is_empty()).then_some(summary);
     if let (Some(summary), None) = (&summary, &stop) {
         remark(&summary.blow(), plan.until, session);
     }
-    Performed { results: results(summary.as_ref(), watch.worst, &history), history: History::StoreyImpact(history), stop }
+    let mut results = results(summary.as_ref(), watch.worst, &history);
+    if let (Some(frame), Some(summary), None) = (frame, &summary, &stop) {
+        let doubts = FrameDoubts {
+            whole,
+            specimen: plan.specimen,
+            frame,
+            damping: &plan.damping,
+            damping_uncertainty: plan.damping_uncertainty,
+            stepping: &plan.stepping,
+            results: inputs.results(),
+            procedure: inputs.procedure(),
+            noise: session.guard.declared_noise(),
+        };
+        let mut tick = |done, of| session.study(done, of);
+        let found = storey_doubts::propagate(&doubts, plan, &setting, &history, &summary.blow(), &mut results, &mut tick);
+        stop = session.told_of(found);
+    }
+    Performed { results, history: History::StoreyImpact(history), stop }
 }
 
 /// Where each floor is to pass in this step, and how fast.
@@ -94,12 +113,12 @@ pub(super) fn steps(impact: &StoreyImpact, plan: &Plan) -> Option<u64> {
 }
 
 /// Everything known before the first step.
-struct Setting {
-    frame: FrameSteps,
-    law: ContactLaw,
-    striker: Striker,
+pub(super) struct Setting {
+    pub(super) frame: FrameSteps,
+    pub(super) law: ContactLaw,
+    pub(super) striker: Striker,
     /// The struck floor and the striker as an impact on one degree of freedom has them.
-    body: ImpactInput,
+    pub(super) body: ImpactInput,
 }
 
 impl Setting {
