@@ -36,11 +36,11 @@ pub enum Source {
     },
     /// The factor on a record of the ground, by its place among the plan's grounds.
     GroundScale(usize),
-    /// The factor between the newtons of a load cell and newtons, by its axis from 0: each cell is an instrument of its own.
+    /// The factor between newtons and those of the load cell of an axis, by its place; each axis has a cell of its own.
     ForceScale(usize),
-    /// The factor between the metres of a transducer and metres, by its axis.
+    /// The factor between metres and those of the transducer of an axis, by its place.
     DisplacementScale(usize),
-    /// A load cell's reading of no force, by its axis.
+    /// What the load cell of an axis, by its place, reads of no force.
     ForceZero(usize),
     /// Noise and resolution of a procedure's readings: one of the draws by which they are sampled.
     Readings {

@@ -6,7 +6,7 @@ use super::choice::Chosen;
 use super::faults::{axes as fault, rigs, values};
 use super::rig::{CheckedRig, place_of};
 use super::{calendar, real_rig};
-use crate::plan::{AxisPlan, Dialect, Specimen};
+use crate::plan::{AxisCalibration, AxisPlan, Dialect, Specimen};
 use crate::source::Span;
 
 /// The axes that a rig lists; none where it says nothing of them.
@@ -17,11 +17,11 @@ pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<AxisPlan>> {
     if chosen.is_empty() {
         return checker.fail(values::empty_list(at));
     }
-    let axes: Vec<Option<AxisPlan>> = chosen.iter().map(|chosen| axis(checker, chosen, place)).collect();
+    let axes: Vec<Option<AxisPlan>> = chosen.iter().map(|chosen| axis(checker, block, chosen, place)).collect();
     axes.into_iter().collect()
 }
 
-fn axis<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<AxisPlan> {
+fn axis<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>, place: Place) -> Option<AxisPlan> {
     let sign = match chosen.span("sign") {
         Some(_) => {
             checker.chosen_argument(chosen, "sign").map(|word| Some(if word.variant.name == "negative" { -1.0 } else { 1.0 }))
@@ -37,13 +37,7 @@ fn axis<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Opt
     let (resolution, noise) =
         (checker.optional_argument(chosen, "resolution", place), checker.optional_argument(chosen, "noise", place));
     let force_range = checker.bounds_argument(chosen, "force_range", place);
-    let (reference, due) = (checker.text_argument(chosen, "calibration"), checker.text_argument(chosen, "calibration_due"));
-    if let Some(Some((day, at))) = &due
-        && !calendar::is_day(day)
-    {
-        return checker.fail(rigs::not_a_day(day, *at));
-    }
-    let text = |given: Option<(String, Span)>| given.map(|(text, _)| text);
+    let calibration = calibration(checker, block, chosen, place);
     Some(AxisPlan {
         sign: sign?,
         gate: gate?,
@@ -52,8 +46,38 @@ fn axis<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Opt
         resolution: resolution?,
         noise: noise?,
         force_range: force_range?,
-        calibration: text(reference?),
-        calibration_due: text(due?),
+        calibration: calibration?,
+    })
+}
+
+/// Where the numbers of one axis are traced to.
+fn calibration<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>, place: Place) -> Option<AxisCalibration> {
+    let mut day = |name: &str| match checker.text_argument(chosen, name)? {
+        Some((day, at)) if !calendar::is_day(&day) => checker.fail(rigs::not_a_day(&day, at)),
+        day => Some(day),
+    };
+    let (due, displacement_due) = (day("calibration_due"), day("displacement_calibration_due"));
+    let mut text = |name: &str| checker.text_argument(chosen, name).map(|given| given.map(|(text, _)| text));
+    let (reference, displacement) = (text("calibration"), text("displacement_calibration"));
+    let (force_class, displacement_class) = (text("force_class"), text("displacement_class"));
+    let mut number = |name: &str| checker.optional_argument(chosen, name, place);
+    let (force, length) = (number("force_uncertainty"), number("displacement_uncertainty"));
+    let zero = number("zero_uncertainty");
+    let (displacement, displacement_due) = (displacement?, displacement_due?);
+    if let (None, None, Some((_, at))) = (&displacement, checker.given(block, "displacement_calibration"), &displacement_due) {
+        return checker.fail(rigs::day_of_no_calibration("displacement_calibration_due", *at));
+    }
+    let text = |given: Option<(String, Span)>| given.map(|(text, _)| text);
+    Some(AxisCalibration {
+        reference: reference?,
+        due: text(due?),
+        force_class: force_class?,
+        displacement,
+        displacement_due: text(displacement_due),
+        displacement_class: displacement_class?,
+        force_uncertainty: force?,
+        displacement_uncertainty: length?,
+        zero_uncertainty: zero?,
     })
 }
 

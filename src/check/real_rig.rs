@@ -270,9 +270,9 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     if reference || due {
         checker.faults.push(fault::not_certifiable(&rig.plan.name, head, reference, due));
     }
-    if let (Some((_, None)), Some((_, entry))) =
-        (&rig.plan.calibration.displacement, checker.given(block, "displacement_calibration"))
-    {
+    let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
+    let of_rig = checker.given(block, "displacement_calibration").or_else(|| checker.given(block, "axes"));
+    if let (true, Some((_, entry))) = (calibrations.iter().any(no_day), of_rig) {
         checker.faults.push(fault::displacement_without_day(&rig.plan.name, entry.value.span));
     }
     if axes.clone().any(|axis| link.readings_of(axis).resolution == 0.0) {

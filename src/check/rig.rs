@@ -200,7 +200,7 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
     if own.is_none()
         && let Some((_, entry)) = checker.given(block, "displacement_calibration_due")
     {
-        return checker.fail(rigs::day_of_no_calibration(&entry.key));
+        return checker.fail(rigs::day_of_no_calibration(&entry.key.node, entry.key.span));
     }
     let (force, displacement) =
         (checker.constant(block, "force_uncertainty"), checker.constant(block, "displacement_uncertainty"));

@@ -166,11 +166,8 @@ fn settle(
     tape::same_rig(&recorded.identity, &rig.identity(), arguments.re_referenced)?;
     tape::same_resolution(recorded.noise, rig.declared_noise())?;
     let found = rig.read()?;
-    let axes = 0..plan.rig.axes().unwrap_or(1);
-    let band = axes.clone().map(|axis| 4.0 * link.readings_of(axis).resolution).fold(plan.rig.settle.band, f64::max);
-    let force = axes.map(|axis| link.gate_of(axis).zero.max(6.0 * link.readings_of(axis).noise)).fold(0.0, f64::max);
-    let bands = Bands { displacement: band, force };
-    let decision = tape::decide(played, &RigBody::of(rig), &found, bands, arguments.accept_relaxation)?;
+    let bands = Bands::of(&plan.rig, link);
+    let decision = tape::decide(played, &RigBody::of(rig), &found, &bands, arguments.accept_relaxation)?;
     Ok(ResumeBody {
         from: decision.from,
         by: arguments.operator.clone(),

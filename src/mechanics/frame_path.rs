@@ -30,15 +30,15 @@ pub struct FrameDistortion {
     pub displacement_scale: Vec<f64>,
     /// Added to every force, N.
     pub zero: Vec<f64>,
-    /// Added to every reading, with signs drawn for each axis by itself.
-    pub noise: Option<Noise>,
+    /// Added to every reading, with signs drawn for each axis by itself; of no axis, none.
+    pub noise: Vec<Noise>,
 }
 
 impl FrameDistortion {
     /// None, of so many axes.
     #[must_use]
     pub fn none(axes: usize) -> Self {
-        Self { force_scale: vec![1.0; axes], displacement_scale: vec![1.0; axes], zero: vec![0.0; axes], noise: None }
+        Self { force_scale: vec![1.0; axes], displacement_scale: vec![1.0; axes], zero: vec![0.0; axes], noise: Vec::new() }
     }
 }
 
@@ -201,7 +201,7 @@ impl FrameAgain<'_> {
         for axis in 0..self.force.len() {
             self.force[axis] = force_scale[axis] * self.force[axis] + zero[axis];
             self.displacement[axis] *= displacement_scale[axis];
-            if let Some(noise) = noise {
+            if let Some(noise) = noise.get(axis) {
                 #[expect(clippy::cast_possible_truncation, reason = "at most MOST_STOREYS")]
                 let [of_force, of_displacement] = noise.errors(self.step as u64, axis as u32);
                 self.force[axis] += of_force;
@@ -266,7 +266,7 @@ mod tests {
                 force_scale: vec![1.1, 0.9, 1.2],
                 displacement_scale: vec![1.05, 0.95, 1.0],
                 zero: vec![1.0, 2.0, -3.0],
-                noise: None,
+                noise: Vec::new(),
             };
             let mut again = path.again(&distortion);
             for (step, target) in targets().iter().chain(&[[0.03, 0.01, -0.04]; 3]).enumerate().skip(1) {

@@ -3,9 +3,10 @@
 
 use super::Run;
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::{ProcedureKind, ShakeDamping, Storey};
+use crate::plan::{Plan, ProcedureKind, ShakeDamping, Storey};
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, ProcedureRecord};
+use crate::rig::named_axis;
 use crate::uncertainty::{Contribution, Source};
 
 /// The budget of one result.
@@ -102,7 +103,6 @@ fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution
 
 fn line(run: &Run<'_>, part: &Contribution) -> Line {
     let plan = run.plan;
-    let calibration = &plan.rig.calibration;
     let striker = |index: usize| plan.strikers.get(index);
     let (input, from, value, uncertainty, dimension) = match part.source {
         Source::Fit { procedure, result } => {
@@ -138,16 +138,16 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             (format!("factor on {name}"), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
         Source::ForceScale(axis) => {
-            let u = calibration.force_uncertainty;
-            (of_axis(run, "force calibration", axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+            let u = plan.rig.calibration_of(axis).force_uncertainty;
+            (of_axis("force calibration", plan, axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
         Source::DisplacementScale(axis) => {
-            let u = calibration.displacement_uncertainty;
-            (of_axis(run, "displacement calibration", axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+            let u = plan.rig.calibration_of(axis).displacement_uncertainty;
+            (of_axis("displacement calibration", plan, axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
         Source::ForceZero(axis) => {
-            let name = of_axis(run, "zero of the load cell", axis);
-            (name, From::Rig, Some(0.0), Some(calibration.zero_uncertainty), Dimension::FORCE)
+            let u = plan.rig.calibration_of(axis).zero_uncertainty;
+            (of_axis("zero of the load cell", plan, axis), From::Rig, Some(0.0), Some(u), Dimension::FORCE)
         }
         Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
@@ -156,9 +156,10 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
     Line { input, from, value, uncertainty, dimension, contribution: part.amount, sensitivity, draws: None, smooth: part.smooth }
 }
 
-/// An instrument by its axis, where there are several.
-fn of_axis(run: &Run<'_>, what: &str, axis: usize) -> String {
-    if run.plan.degrees_of_freedom() == 1 { what.to_owned() } else { format!("{what}, axis {}", axis + 1) }
+/// What a channel of the axis at this place is called; of a rig of one axis nothing is said of it.
+fn of_axis(what: &str, plan: &Plan, axis: usize) -> String {
+    let axes = plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom());
+    named_axis(axis, axes).map_or_else(|| what.to_owned(), |axis| format!("{what} of axis {axis}"))
 }
 
 /// The specimen's name, and a number of one of its storeys with its uncertainty.

@@ -1,6 +1,7 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod axis;
 mod behaviour;
 mod cycle;
 mod escalate;
@@ -18,6 +19,7 @@ use crate::formula::{Formula, ResultReference};
 use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 
+pub use axis::{AxisCalibration, AxisPlan};
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use escalate::{Between, Escalate, MOST_BLOWS};
@@ -28,8 +30,8 @@ pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, Sti
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
-    AxisPlan, Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
-    SafeState, Settle, VirtualLink,
+    Calibration, DeviceLink, Dialect, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan, SafeState,
+    Settle, VirtualLink,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::Unload;

@@ -1,6 +1,6 @@
 //! The rig of a checked plan: how it is reached, what it declares of its readings, when a reading counts.
 
-use super::{Interval, Limits};
+use super::{AxisPlan, Interval};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigPlan {
@@ -18,42 +18,6 @@ impl RigPlan {
     #[must_use]
     pub fn axes(&self) -> Option<usize> {
         self.link.as_real().map(|link| link.axes.len().max(1))
-    }
-
-    /// Factor on displacement and force signs of the axis at this place: +1 or −1.
-    #[must_use]
-    pub fn sign_of(&self, axis: usize) -> f64 {
-        self.own(axis).and_then(|own| own.sign).unwrap_or(self.sign)
-    }
-
-    /// Where the numbers of the axis at this place are traced to.
-    #[must_use]
-    pub fn calibration_of(&self, axis: usize) -> Calibration {
-        let all = self.calibration.clone();
-        let Some(own) = self.own(axis) else { return all };
-        Calibration { reference: own.calibration.clone().or(all.reference), due: own.calibration_due.clone().or(all.due), ..all }
-    }
-
-    /// The limits of the run for the axis at this place: its own narrow them.
-    #[must_use]
-    pub fn limits_of(&self, axis: usize, run: &Limits) -> Limits {
-        let narrowed = |all: Interval, own: Option<Interval>| own.map_or(all, |own| all.intersection(own));
-        self.own(axis).map_or(*run, |own| Limits {
-            displacement: narrowed(run.displacement, own.displacement),
-            force: narrowed(run.force, own.force),
-            ..*run
-        })
-    }
-
-    /// The limits of the run for every axis; empty where no axis has any of its own.
-    #[must_use]
-    pub fn limits_of_axes(&self, run: &Limits) -> Vec<Limits> {
-        let axes = self.link.as_real().map_or(0, |link| link.axes.len());
-        (0..axes).map(|axis| self.limits_of(axis, run)).collect()
-    }
-
-    fn own(&self, axis: usize) -> Option<&AxisPlan> {
-        self.link.as_real().and_then(|link| link.axes.get(axis))
     }
 }
 
@@ -156,46 +120,6 @@ pub struct RealLink {
     pub own_speed: f64,
     /// What each axis says of itself, lowest floor first; empty: one axis, all of which is said above.
     pub axes: Vec<AxisPlan>,
-}
-
-impl RealLink {
-    /// The gate of the axis at this place.
-    #[must_use]
-    pub fn gate_of(&self, axis: usize) -> Gate {
-        self.axes.get(axis).and_then(|own| own.gate).unwrap_or(self.gate)
-    }
-
-    /// What the axis at this place declares of its readings.
-    #[must_use]
-    pub fn readings_of(&self, axis: usize) -> ReadingRules {
-        let all = self.readings;
-        self.axes.get(axis).map_or(all, |own| ReadingRules {
-            resolution: own.resolution.unwrap_or(all.resolution),
-            noise: own.noise.unwrap_or(all.noise),
-            force_range: own.force_range.unwrap_or(all.force_range),
-            ..all
-        })
-    }
-}
-
-/// What one axis of a real rig says of itself. None: as the rig says of all.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct AxisPlan {
-    /// +1 or −1
-    pub sign: Option<f64>,
-    /// m
-    pub resolution: Option<f64>,
-    /// N
-    pub noise: Option<f64>,
-    /// N
-    pub force_range: Option<Interval>,
-    /// Beside the limits of the run, m and N.
-    pub displacement: Option<Interval>,
-    pub force: Option<Interval>,
-    pub gate: Option<Gate>,
-    pub calibration: Option<String>,
-    /// `YYYY-MM-DD`
-    pub calibration_due: Option<String>,
 }
 
 /// One device on one port.

@@ -33,7 +33,7 @@ pub(super) fn perform(plan: &Cycle, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     cycle_doubts::propagate(
         &cycling.history,
         samples,
-        &whole.rig.calibration,
+        &whole.rig.calibration_of(0),
         inputs,
         &session.guard.declared_noise(),
         &mut results,

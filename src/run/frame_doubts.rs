@@ -53,8 +53,8 @@ impl FrameDoubts<'_> {
         });
         let procedure = self.procedure;
         let modes = (0..ratios.len()).map(|mode| (Source::DampingRatio { procedure, mode }, self.damping_uncertainty));
-        let calibration = &self.whole.rig.calibration;
         let axes = (0..self.frame.degrees_of_freedom()).flat_map(|axis| {
+            let calibration = self.whole.rig.calibration_of(axis);
             [
                 (Source::ForceScale(axis), calibration.force_uncertainty),
                 (Source::DisplacementScale(axis), calibration.displacement_uncertainty),
@@ -75,49 +75,56 @@ impl FrameDoubts<'_> {
         }
     }
 
-    /// How much a study of so many steps takes, and the standard deviations of one reading, N and m.
-    pub fn effort(&self, steps: usize, sources: &[Source]) -> (Effort, (f64, f64)) {
-        let errors = reading_errors(self.whole, self.noise);
-        let sampled = errors.0 > 0.0 || errors.1 > 0.0;
+    /// How much a study of so many steps takes.
+    pub fn effort(&self, steps: usize, sources: &[Source]) -> Effort {
+        let sampled = self.errors(0).iter().any(|noise| noise.force > 0.0 || noise.displacement > 0.0);
         let alike = sources.iter().filter(|source| is_alike(**source)).count();
         let steps = steps as u64 * self.frame.degrees_of_freedom() as u64;
-        (Effort::of(steps, sources.len(), alike, sampled), errors)
+        Effort::of(steps, sources.len(), alike, sampled)
+    }
+
+    /// One draw of the errors of all readings, axis by axis.
+    fn errors(&self, draw: u16) -> Vec<Noise> {
+        let of_axis = |axis| {
+            let (force, displacement) = reading_errors(self.whole, self.noise, axis);
+            Noise { force, displacement, draw }
+        };
+        (0..self.frame.degrees_of_freedom()).map(of_axis).collect()
     }
 
     /// The runs to take: `job` makes one of moved sources and a distorted way.
     pub fn study<J>(
         &self,
         sources: &[Source],
-        (effort, (force, displacement)): (Effort, (f64, f64)),
+        effort: Effort,
         job: impl Fn(Shifts<'_>, FrameDistortion) -> Result<J, String>,
     ) -> Result<Study<J>, String> {
         let (drawn, moved): (Vec<Source>, Vec<Source>) =
             sources.iter().partition(|source| effort.together && is_alike(**source));
         let mut study = Study { moved: Vec::new(), draws: Vec::new() };
         for source in moved {
-            let at = |by: &f64| job(&[(source, *by)], self.distortion(&[(source, *by)], None));
+            let at = |by: &f64| job(&[(source, *by)], self.distortion(&[(source, *by)], Vec::new()));
             study.moved.push((source, effort.moves().iter().map(at).collect::<Result<_, String>>()?));
         }
         for (draw, source) in draws(self.procedure, 0, effort.draws) {
             // Inputs are drawn as a reading is that the run never has.
             let sign = |place: u64| Noise { force: 1.0, displacement: 0.0, draw }.errors(u64::MAX >> 16 ^ place, 0)[0];
             let shifts: Vec<(Source, f64)> = drawn.iter().zip(0..).map(|(source, place)| (*source, sign(place))).collect();
-            let noise = Some(Noise { force, displacement, draw });
-            study.draws.push((source, job(&shifts, self.distortion(&shifts, noise))?));
+            study.draws.push((source, job(&shifts, self.distortion(&shifts, self.errors(draw)))?));
         }
         Ok(study)
     }
 
-    fn distortion(&self, shifts: Shifts<'_>, noise: Option<Noise>) -> FrameDistortion {
-        let calibration = &self.whole.rig.calibration;
+    fn distortion(&self, shifts: Shifts<'_>, noise: Vec<Noise>) -> FrameDistortion {
         let mut distortion = FrameDistortion { noise, ..FrameDistortion::none(self.frame.degrees_of_freedom()) };
         for (source, by) in shifts {
+            let calibration = |axis| self.whole.rig.calibration_of(axis);
             match *source {
-                Source::ForceScale(axis) => distortion.force_scale[axis] += by * calibration.force_uncertainty,
+                Source::ForceScale(axis) => distortion.force_scale[axis] += by * calibration(axis).force_uncertainty,
                 Source::DisplacementScale(axis) => {
-                    distortion.displacement_scale[axis] += by * calibration.displacement_uncertainty;
+                    distortion.displacement_scale[axis] += by * calibration(axis).displacement_uncertainty;
                 }
-                Source::ForceZero(axis) => distortion.zero[axis] = by * calibration.zero_uncertainty,
+                Source::ForceZero(axis) => distortion.zero[axis] = by * calibration(axis).zero_uncertainty,
                 _ => {}
             }
         }

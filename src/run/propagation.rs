@@ -10,7 +10,7 @@ use crate::formula::{Formula, ProcedureId, Results};
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath};
 use crate::mechanics::rerun::{OUTCOMES, Outcome, rerun};
 use crate::mechanics::summary::ImpactSummary;
-use crate::plan::{Contact, Impact, Link, Plan, Striker};
+use crate::plan::{Contact, Impact, Link, Plan, ReadingRules, Striker};
 use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Moved, Source, sources_of};
@@ -56,7 +56,7 @@ impl<'run> Doubts<'run> {
         tick: Tick,
     ) -> Result<(), Unknown> {
         let sources = self.sources();
-        let (force, displacement) = reading_errors(self.whole, self.noise);
+        let (force, displacement) = reading_errors(self.whole, self.noise, 0);
         let sampled = force > 0.0 || displacement > 0.0;
         if sources.is_empty() && !sampled {
             return Ok(());
@@ -107,7 +107,7 @@ impl<'run> Doubts<'run> {
         }
         let mut sources = sources_of(&references, self.results);
         let Striker { mass_uncertainty, velocity_uncertainty, .. } = self.whole.strikers[*striker];
-        let calibration = &self.whole.rig.calibration;
+        let calibration = &self.whole.rig.calibration_of(0);
         let stated = [
             (Source::StrikerMass(*striker), mass_uncertainty),
             (Source::StrikerVelocity(*striker), velocity_uncertainty),
@@ -129,7 +129,7 @@ impl<'run> Doubts<'run> {
         let mut striker = declared.clone();
         let mut distortion = Distortion::NONE;
         let mut heavier = 0.0;
-        let calibration = &self.whole.rig.calibration;
+        let calibration = &self.whole.rig.calibration_of(0);
         match source {
             Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
             Source::StrikerVelocity(_) => striker.velocity += by * striker.velocity_uncertainty,
@@ -168,14 +168,18 @@ pub(super) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
     }
 }
 
-/// Standard deviations of one reading, N and m: noise, and rounding to a quantum q, which is even over it: q/√12.
-pub(super) fn reading_errors(plan: &Plan, declared: DeclaredNoise) -> (f64, f64) {
-    let quantum = match &plan.rig.link {
-        Link::Virtual(link) => link.force_resolution,
-        Link::Real(_) => plan.rig.calibration.newtons_per_count.unwrap_or(0.0).abs(),
+/// Standard deviations of one reading of the axis at this place, N and m: noise, and rounding to a quantum q, which is even
+/// over it: q/√12.
+pub(super) fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) -> (f64, f64) {
+    let (noise, resolution, quantum) = match &plan.rig.link {
+        Link::Virtual(link) => (declared.force, declared.resolution, link.force_resolution),
+        Link::Real(link) => {
+            let ReadingRules { noise, resolution, .. } = link.readings_of(axis);
+            (noise, resolution, plan.rig.calibration.newtons_per_count.unwrap_or(0.0).abs())
+        }
     };
     let rounding = 12.0_f64.sqrt();
-    (declared.force.hypot(quantum / rounding), declared.resolution / rounding)
+    (noise.hypot(quantum / rounding), resolution / rounding)
 }
 
 /// A stop is told at the end of its step, up to Δt late; a peak at the nearer end, up to Δt/2 off.

@@ -37,7 +37,7 @@ pub(super) fn propagate(
 ) -> Result<(), Unknown> {
     let sources = doubts.sources(&[&plan.scale], &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)]);
     let effort = doubts.effort(history.steps.len(), &sources);
-    if sources.is_empty() && effort.0.draws == 0 {
+    if sources.is_empty() && effort.draws == 0 {
         return Ok(());
     }
     let reading = |step: &crate::record::ShakeStep| FrameReading {

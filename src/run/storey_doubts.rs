@@ -44,7 +44,7 @@ pub(super) fn propagate(
         [(Source::StrikerMass(plan.striker), mass_uncertainty), (Source::StrikerVelocity(plan.striker), velocity_uncertainty)];
     let sources = doubts.sources(&contact_formulas(&plan.contact), &stated);
     let effort = doubts.effort(history.floors.len(), &sources);
-    if sources.is_empty() && effort.0.draws == 0 {
+    if sources.is_empty() && effort.draws == 0 {
         return Ok(());
     }
     let reading = |step: &FloorStep| FrameReading {

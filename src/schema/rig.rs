@@ -67,8 +67,22 @@ const AXIS: &[Variant] = &[Variant::with(
             .at_least_zero()
             .or_said("the rig's"),
         Field::bounds("force_range", Dimension::FORCE, true, "what its load cell can read").or_said("the rig's"),
-        Field::text("calibration", "reference of its calibration").or_said("the rig's"),
+        Field::text("calibration", "reference of its calibration; of its force alone, where its displacement has one")
+            .or_said("the rig's"),
         Field::text("calibration_due", "last day on which its calibration holds").or_said("the rig's"),
+        Field::text("force_class", "class of its force measurement").or_said("the rig's"),
+        Field::text("displacement_calibration", "reference of the calibration of its displacement").or_said("the rig's"),
+        Field::text("displacement_calibration_due", "last day on which that calibration holds").or_said("the rig's"),
+        Field::text("displacement_class", "class of its displacement measurement").or_said("the rig's"),
+        Field::quantity("force_uncertainty", Dimension::NUMBER, "standard uncertainty of its force calibration")
+            .within(0.0, 0.2)
+            .or_said("the rig's"),
+        Field::quantity("displacement_uncertainty", Dimension::NUMBER, "standard uncertainty of its displacement calibration")
+            .within(0.0, 0.2)
+            .or_said("the rig's"),
+        Field::quantity("zero_uncertainty", Dimension::FORCE, "standard uncertainty of its reading of no force")
+            .at_least_zero()
+            .or_said("the rig's"),
     ],
     "an actuator with its load cell",
 )];

@@ -37,6 +37,10 @@ rig bench {
       sign: negative,
       gate: probe(0.1 mm, stiffness: 180 kN/m .. 220 kN/m, zero: 20 N),
       calibration: "UKAS 4712",
+      displacement_calibration: "UKAS 4810",
+      displacement_calibration_due: "2027-05-01",
+      force_uncertainty: 0.4 %,
+      zero_uncertainty: 1.5 N,
     ),
   ]
 }
@@ -104,7 +108,8 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
     let proven = whole.proven();
     assert!(proven.contains("out of the record again, byte for byte"), "{proven}");
     let certificate = fs::read_to_string(whole.path("run").join("certificate.html")).unwrap();
-    for told in ["displacement 1", "force 2", "UKAS 4711", "UKAS 4712"] {
+    for told in ["displacement 1", "force 2", "UKAS 4711", "UKAS 4712", "UKAS 4810", "force 0.40\u{a0}%; zero of the force 1.5"]
+    {
         assert!(certificate.contains(told), "{told} is not on the certificate");
     }
     let mut virtual_run = std::process::Command::new(PSD);

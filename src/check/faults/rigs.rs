@@ -119,9 +119,9 @@ pub fn nothing_counts(key: &Ident, dialect: &Dialect) -> Diagnostic {
         .help(format!("remove `{field}`"))
 }
 
-pub fn day_of_no_calibration(key: &Ident) -> Diagnostic {
-    Diagnostic::new(Code::FieldWithoutUse, format!("`{}` has no use: no calibration of the displacement is named", key.node))
-        .at(key.span, "of which calibration?")
+pub fn day_of_no_calibration(field: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(Code::FieldWithoutUse, format!("`{field}` has no use: no calibration of the displacement is named"))
+        .at(at, "of which calibration?")
         .help("add `displacement_calibration = \"UKAS 4712\"`, or remove the day: `calibration_due` holds for both")
 }
 

@@ -2,6 +2,8 @@
 
 use super::{Files, Options, check};
 use crate::plan::{DeviceLink, Dialect, Gate, Interval, Link, ModbusMap, ModbusNumber, Plan, PortPlan, RealLink, SafeState};
+use crate::record::equipment::{Device, Equipment};
+use crate::rig::DeclaredNoise;
 
 /// A specimen without behaviour, a rig with these lines, and limits of both.
 fn text(rig: &str) -> String {
@@ -125,4 +127,37 @@ fn a_watchdog_as_long_as_a_request_is_long_enough() {
 fn a_file_that_is_no_device_is_found_when_it_is_opened_not_here() {
     let link = real(&text("link = serial(\"Cargo.toml\", native)\nsafe_state = hold"));
     assert_eq!(link.actuator.port.to_string(), "Cargo.toml");
+}
+
+#[test]
+fn an_axis_states_its_own_certificates_and_uncertainties_and_leaves_the_rest_to_the_rig() {
+    let rig = "link = serial(\"/dev/ttyUSB0\", native)\nsafe_state = hold\nforce_uncertainty = 0.5 %\nforce_class = \"0.5\"\n\
+        axes = [axis, axis(calibration: \"UKAS 4712\", displacement_calibration: \"UKAS 4800\",\n\
+        displacement_calibration_due: \"2027-04-01\", force_uncertainty: 1 %, displacement_uncertainty: 0.2 %,\n\
+        zero_uncertainty: 3 N, force_class: \"1\", displacement_class: \"0.5\")]";
+    let frame = "specimen frame { storeys = [storey(mass: 2 t, stiffness: 300 kN/m), storey(mass: 1 t, stiffness: 200 kN/m)] }";
+    let text = text(rig)
+        .replace("specimen beam { mass = 1 kg }", frame)
+        .replace("rig frame {", "rig press {")
+        .replace(
+            "move out { to = 1 mm }",
+            "ground motion { record = \"g.csv\" }\nshake quake { ground = motion\n time_step = 10 ms }",
+        )
+        .replace("\"light\" beam.mass < 2 kg", "\"drift\" max(quake.max_drift) < 30 mm");
+    let ground = [("g.csv", "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n")];
+    let options = Options { rig: Some("press".to_owned()), ..Options::default() };
+    let checked = check("plan.psd", &text, &Files(&ground), &options);
+    let plan = checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    let [lower, upper] = [0, 1].map(|axis| plan.rig.calibration_of(axis));
+    assert_eq!(lower, plan.rig.calibration);
+    assert_eq!((lower.reference.as_deref(), lower.force_uncertainty, lower.zero_uncertainty), (Some("UKAS 4711"), 0.005, 0.0));
+    assert_eq!((upper.reference.as_deref(), upper.due.as_deref()), (Some("UKAS 4712"), Some("2027-03-01")));
+    assert_eq!(upper.displacement, Some(("UKAS 4800".to_owned(), Some("2027-04-01".to_owned()))));
+    assert_eq!((upper.force_uncertainty, upper.displacement_uncertainty, upper.zero_uncertainty), (0.01, 0.002, 3.0));
+    assert_eq!((upper.force_class.as_deref(), upper.displacement_class.as_deref()), (Some("1"), Some("0.5")));
+    let identity = crate::rig::virtual_rig(&plan).identity();
+    let told = Equipment::of(&plan, Device::of(&identity, DeclaredNoise::default()));
+    let rows = told.channels.iter().map(|channel| (channel.axis, channel.uncertainty, channel.certificate.as_deref()));
+    let wanted = [(1, 0.0, "UKAS 4711"), (1, 0.005, "UKAS 4711"), (2, 0.002, "UKAS 4800"), (2, 0.01, "UKAS 4712")];
+    assert!(rows.eq(wanted.map(|(axis, uncertainty, text)| (axis, uncertainty, Some(text)))), "{:?}", told.channels);
 }

@@ -11,6 +11,8 @@ use crate::quantity::display::significant;
 use crate::record::EventKind;
 use crate::record::equipment::{Channel, GivenIn};
 
+const UNCERTAINTY: &str = "Standard uncertainty of its calibration";
+
 /// The rig of the run.
 pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section("Equipment and calibration"));
@@ -104,7 +106,9 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
             declared(equipment.device.resolution, equipment.device.noise, &link.readings).into(),
         ));
     }
-    rows.extend(uncertainty(&run.plan.rig.calibration));
+    if link.axes.len() < 2 {
+        rows.extend(uncertainty(&run.plan.rig.calibration_of(0)).map(|text| (UNCERTAINTY, text.into())));
+    }
     rows.push(("Taking a reading", taking(&link.readings).into()));
     rows.push(("Settling", settling(run.plan.rig.settle).into()));
     let watchdog = number::stated(link.watchdog, Dimension::TIME);
@@ -121,25 +125,35 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
 
 /// What each axis of several declares, and how it proved itself.
 fn axes(run: &Run<'_>, link: &RealLink) -> Block {
+    let axes = 0..link.axes.len();
+    let doubts: Vec<Option<String>> = axes.clone().map(|axis| uncertainty(&run.plan.rig.calibration_of(axis))).collect();
+    let doubted = doubts.iter().any(Option::is_some);
     let row = |axis: usize| {
         let (readings, number) = (link.readings_of(axis), axis + 1);
         let sign = if run.plan.rig.sign_of(axis) < 0.0 { "negative" } else { "positive" };
-        vec![
+        let mut cells = vec![
             Text::from(number.to_string()),
             sign.into(),
             declared(readings.resolution, readings.noise, &readings).into(),
             demanded(&link.gate_of(axis)).into(),
             Text::given(passed(run, number)),
-        ]
+        ];
+        if doubted {
+            cells.insert(3, Text::given(doubts[axis].as_deref()));
+        }
+        cells
     };
-    let columns = vec![
+    let mut columns = vec![
         Column::short("Axis"),
         Column::short("Sign"),
         Column::words("Declared of its readings", 3),
         Column::words("Gate, demanded", 3),
         Column::words("Gate, found", 4),
     ];
-    Block::Table(Table { columns, rows: (0..link.axes.len()).map(row).collect() })
+    if doubted {
+        columns.insert(3, Column::words(UNCERTAINTY, 2));
+    }
+    Block::Table(Table { columns, rows: axes.map(row).collect() })
 }
 
 fn simulated(run: &Run<'_>) -> Block {
@@ -156,12 +170,12 @@ fn simulated(run: &Run<'_>) -> Block {
     if let Some(text) = particulars::stated(run, "equipment") {
         rows.push(("Other equipment", text.into()));
     }
-    rows.extend(uncertainty(&run.plan.rig.calibration));
+    rows.extend(uncertainty(&run.plan.rig.calibration).map(|text| (UNCERTAINTY, text.into())));
     pairs(rows)
 }
 
 /// What is stated of the calibration's uncertainty, where anything is.
-fn uncertainty(calibration: &Calibration) -> Option<(&'static str, Text)> {
+fn uncertainty(calibration: &Calibration) -> Option<String> {
     let percent = |share: f64| format!("{}\u{a0}%", significant(100.0 * share, 2));
     let terms = [
         ("force", calibration.force_uncertainty, percent(calibration.force_uncertainty)),
@@ -170,7 +184,7 @@ fn uncertainty(calibration: &Calibration) -> Option<(&'static str, Text)> {
     ];
     let stated = terms.into_iter().filter(|(_, size, _)| *size > 0.0).map(|(name, _, size)| format!("{name} {size}"));
     let stated: Vec<String> = stated.collect();
-    (!stated.is_empty()).then(|| ("Standard uncertainty of its calibration", stated.join("; ").into()))
+    (!stated.is_empty()).then(|| stated.join("; "))
 }
 
 /// What a virtual rig adds to its specimen.

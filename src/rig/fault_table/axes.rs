@@ -10,7 +10,7 @@ use crate::record::journal::testing::{Killed, PowerLoss};
 use crate::record::journal::{Durability, EntryKind, Journal, recover};
 use crate::record::{EventKind, Outcome};
 use crate::rig::failpoint::Guarding;
-use crate::rig::{Rig as _, RigFault, Tally};
+use crate::rig::{Reading, Rig as _, RigFault, Tally};
 use crate::run::Unwatched;
 use crate::run::tape::{self, Bands, Played, ResumeBody, RigBody};
 use crate::simulator::Log;
@@ -166,8 +166,8 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
             let mut rig = open(&plan, &stand).unwrap();
             let found = rig.read().unwrap();
             let about = RigBody::of(&rig);
-            let bands = Bands { displacement: 5e-6, force: 5.0 };
-            let decision = match tape::decide(&before, &about, &found, bands, false) {
+            let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
+            let decision = match tape::decide(&before, &about, &found, &bands, false) {
                 Err(tape::Refusal::NothingRecorded) => {
                     assert!(moves(&stand).is_empty());
                     continue;
@@ -195,6 +195,45 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
             assert_eq!(tape::replay(&plan, played(&disk).1).mismatch, None, "call {call}");
         }
     }
+}
+
+/// Cut off after so many calls of the disk: its record, and what the rig of the same stand says then.
+fn cut_off(plan: &Plan, call: usize) -> (Played, RigBody, Reading) {
+    let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        let mut rig = open(plan, &stand).unwrap();
+        let storage = Killed::at(&disk, call, true);
+        let mut journal = Journal::create(Box::new(storage), Durability::EveryPromise);
+        tape::begin(&mut journal, &super::stage::header(), &["text".to_owned()]).unwrap();
+        tape::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
+    }));
+    assert!(ended.is_err(), "it was to be killed");
+    let mut rig = open(plan, &stand).unwrap();
+    let found = rig.read().unwrap();
+    (played(&disk).1, RigBody::of(&rig), found)
+}
+
+#[test]
+fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
+    let mut plan = shaken("60 ms");
+    let axes = &mut link(&mut plan).axes;
+    (axes[0].resolution, axes[0].noise) = (Some(1e-4), Some(10.0));
+    let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
+    assert_eq!(bands, Bands { displacement: vec![4e-4, 5e-6], force: vec![60.0, 5.0] });
+    let (played, about, found) = cut_off(&shaken("60 ms"), 60);
+    let decided = |change: fn(&mut Reading)| {
+        let mut found = found.clone();
+        change(&mut found);
+        tape::decide(&played, &about, &found, &bands, false)
+    };
+    decided(|_| ()).unwrap();
+    // What the coarse axis cannot tell is too much for the fine one.
+    decided(|found| found.displacement[0] += 5e-5).unwrap();
+    decided(|found| found.force[0] += 20.0).unwrap();
+    let elsewhere = decided(|found| found.displacement[1] += 5e-5).unwrap_err();
+    assert!(matches!(elsewhere, tape::Refusal::Elsewhere { axis: Some(2), band: 5e-6, .. }), "{elsewhere}");
+    let relaxed = decided(|found| found.force[1] += 20.0).unwrap_err();
+    assert!(matches!(relaxed, tape::Refusal::Relaxed { axis: Some(2), band: 5.0, .. }), "{relaxed}");
 }
 
 fn played(disk: &PowerLoss) -> (crate::record::journal::Recovered, Played) {

@@ -3,19 +3,36 @@
 
 use super::entry::{Doubt, IntentBody, OperatorBody, RigBody, SampleBody};
 use super::played::{Mismatch, Played, Unplayable, body};
-use crate::plan::RigPlan;
+use crate::plan::{RealLink, RigPlan};
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
 use crate::rig::{DeclaredNoise, Identity, Reading, named_axis, of_axis, who};
 use crate::run::{Inspection, UNLOADING};
 
-/// How near the rig must stand to where the record left it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How near the rig must stand to where the record left it, one entry an axis.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
     /// m
-    pub displacement: f64,
+    pub displacement: Vec<f64>,
     /// N, for the relaxation since.
-    pub force: f64,
+    pub force: Vec<f64>,
+}
+
+impl Bands {
+    /// What a rig can tell apart: each axis its own, since what is nothing to a coarse one may be half the force of another.
+    #[must_use]
+    pub fn of(rig: &RigPlan, link: &RealLink) -> Self {
+        let axes = 0..rig.axes().unwrap_or(1);
+        let readings = axes.map(|axis| (link.readings_of(axis), link.gate_of(axis)));
+        let bands = readings.map(|(read, gate)| (rig.settle.band.max(4.0 * read.resolution), gate.zero.max(6.0 * read.noise)));
+        let (displacement, force) = bands.unzip();
+        Self { displacement, force }
+    }
+}
+
+/// That of the axis at this place; an axis that has none is allowed nothing.
+fn band(bands: &[f64], axis: usize) -> f64 {
+    bands.get(axis).copied().unwrap_or(0.0)
 }
 
 /// The record goes on from here.
@@ -133,7 +150,7 @@ pub fn decide(
     played: &Played,
     rig: &RigBody,
     found: &Reading,
-    bands: Bands,
+    bands: &Bands,
     accept_relaxation: bool,
 ) -> Result<Decision, Refusal> {
     if played.ended {
@@ -141,7 +158,7 @@ pub fn decide(
     }
     let lines = without_the_end(played)?;
     let Some(last) = lines.last() else { return Err(Refusal::NothingRecorded) };
-    let place = Place { positions: &found.displacement, band: bands.displacement };
+    let place = Place { positions: &found.displacement, bands: &bands.displacement };
     let recorded = last_reading(&lines)?;
     let last_intent = lines.iter().rposition(|line| line.kind == EntryKind::Intent);
     let decision = |from, doubt| Decision { from, doubt, recorded: recorded.clone() };
@@ -227,19 +244,20 @@ fn place_before(lines: &[Line], axes: usize) -> Result<Vec<f64>, Unplayable> {
 }
 
 /// A relaxation beyond its band is for a person to accept.
-fn relaxed(recorded: Option<&(Vec<f64>, Vec<f64>)>, found: &Reading, bands: Bands, accept: bool) -> Result<(), Refusal> {
+fn relaxed(recorded: Option<&(Vec<f64>, Vec<f64>)>, found: &Reading, bands: &Bands, accept: bool) -> Result<(), Refusal> {
     let Some((_, recorded)) = recorded.filter(|_| !accept) else { return Ok(()) };
-    let inside = |(recorded, found): (&f64, &f64)| (found - recorded).abs() <= bands.force;
-    let Some(place) = recorded.iter().zip(&found.force).position(|pair| !inside(pair)) else { return Ok(()) };
-    let axis = named_axis(place, found.force.len());
-    Err(Refusal::Relaxed { recorded: recorded[place], found: found.force[place], band: bands.force, axis })
+    let inside = |(axis, (recorded, found)): (usize, (&f64, &f64))| (found - recorded).abs() <= band(&bands.force, axis);
+    let Some(place) = recorded.iter().zip(&found.force).enumerate().position(|axis| !inside(axis)) else { return Ok(()) };
+    let (axis, band) = (named_axis(place, found.force.len()), band(&bands.force, place));
+    Err(Refusal::Relaxed { recorded: recorded[place], found: found.force[place], band, axis })
 }
 
 #[derive(Clone, Copy)]
 struct Place<'a> {
     /// One an axis, m.
     positions: &'a [f64],
-    band: f64,
+    /// One an axis, m.
+    bands: &'a [f64],
 }
 
 impl Place<'_> {
@@ -249,20 +267,23 @@ impl Place<'_> {
 
     /// The first axis that is not at its `place`; one that has none is nowhere.
     fn astray(self, place: &[f64]) -> Option<usize> {
-        let at = |(axis, position): (usize, &f64)| place.get(axis).is_some_and(|place| (position - place).abs() <= self.band);
+        let near = |axis, place: &f64, position: &f64| (position - place).abs() <= band(self.bands, axis);
+        let at = |(axis, position): (usize, &f64)| place.get(axis).is_some_and(|place| near(axis, place, position));
         self.positions.iter().enumerate().position(|axis| !at(axis))
     }
 
     fn expect(self, recorded: &[f64]) -> Result<(), Refusal> {
         let Some(place) = self.astray(recorded) else { return Ok(()) };
         let (found, recorded) = (self.positions[place], recorded.get(place).copied().unwrap_or(f64::NAN));
-        Err(Refusal::Elsewhere { recorded, found, band: self.band, axis: named_axis(place, self.positions.len()) })
+        let band = band(self.bands, place);
+        Err(Refusal::Elsewhere { recorded, found, band, axis: named_axis(place, self.positions.len()) })
     }
 
     fn on_the_way(self, from: &[f64], to: &[f64]) -> Result<Doubt, Refusal> {
         let ways = self.positions.iter().zip(from.iter().zip(to));
         for (place, (found, (from, to))) in ways.enumerate() {
-            let (low, high) = (from.min(*to) - self.band, from.max(*to) + self.band);
+            let band = band(self.bands, place);
+            let (low, high) = (from.min(*to) - band, from.max(*to) + band);
             if !(low <= *found && *found <= high) {
                 let axis = named_axis(place, self.positions.len());
                 return Err(Refusal::Lost { from: *from, to: *to, found: *found, axis });

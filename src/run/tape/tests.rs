@@ -258,9 +258,10 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
     }
     rig.hold();
     let found = rig.read().unwrap();
-    let bands = Bands { displacement: 1e-9, force: 1e-6 };
+    let axes = found.displacement.len();
+    let bands = Bands { displacement: vec![1e-9; axes], force: vec![1e-6; axes] };
     let about = RigBody::of(&rig);
-    let decision = match decide(&before, &about, &found, bands, false) {
+    let decision = match decide(&before, &about, &found, &bands, false) {
         Err(Refusal::NothingRecorded) => return assert!(rig.0.borrow().carried_out.is_empty()),
         other => other.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
     };
