@@ -47,6 +47,11 @@ pub enum Source {
         procedure: ProcedureId,
         draw: u16,
     },
+    /// The same, with the inputs of which there is one a floor, a mode or an axis drawn together with them.
+    Drawn {
+        procedure: ProcedureId,
+        draw: u16,
+    },
     /// Times are told to a whole step.
     TimeStep {
         procedure: ProcedureId,

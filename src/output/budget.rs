@@ -89,7 +89,7 @@ fn of_entries<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> Vec
 
 /// A line for each source; the draws of the readings are one.
 fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution>) -> Vec<Line> {
-    let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. });
+    let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. } | Source::Drawn { .. });
     let (draws, moved): (Vec<&Contribution>, Vec<&Contribution>) = contributions.partition(drawn);
     let mut lines: Vec<Line> = moved.into_iter().map(|part| line(run, part)).collect();
     if let Some(first) = draws.first() {
@@ -150,6 +150,10 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             (of_axis("zero of the load cell", plan, axis), From::Rig, Some(0.0), Some(u), Dimension::FORCE)
         }
         Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
+        Source::Drawn { .. } => {
+            let name = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
+            (name.to_owned(), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);

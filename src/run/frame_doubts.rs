@@ -6,7 +6,7 @@ use super::inputs::Inputs;
 use super::propagation::reading_errors;
 use super::stepping::FrameSteps;
 use super::stop::Stop;
-use super::study::{CLOSE, Effort, Study, draws, give, give_entry, is_alike};
+use super::study::{CLOSE, Effort, Study, give, give_entry, is_alike};
 use crate::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Floors, FrameRun};
@@ -106,7 +106,7 @@ impl FrameDoubts<'_> {
             let at = |by: &f64| job(&[(source, *by)], self.distortion(&[(source, *by)], Vec::new()));
             study.moved.push((source, effort.moves().iter().map(at).collect::<Result<_, String>>()?));
         }
-        for (draw, source) in draws(self.procedure, 0, effort.draws) {
+        for (draw, source) in effort.draws(self.procedure, 0) {
             // Inputs are drawn as a reading is that the run never has.
             let sign = |place: u64| Noise { force: 1.0, displacement: 0.0, draw }.errors(u64::MAX >> 16 ^ place, 0)[0];
             let shifts: Vec<(Source, f64)> = drawn.iter().zip(0..).map(|(source, place)| (*source, sign(place))).collect();

@@ -16,6 +16,8 @@ mod escalate;
 #[cfg(test)]
 mod escalate_tests;
 mod frame_doubts;
+#[cfg(test)]
+mod frame_doubts_tests;
 mod gate;
 mod gliding;
 mod hold;
@@ -64,6 +66,7 @@ mod watch;
 
 pub use damping_sweep::MOST_SAMPLES;
 pub use request::{Parting, Request};
+pub use study::MOST_DRAWS;
 
 use serde::{Deserialize, Serialize};
 

@@ -5,7 +5,7 @@
 
 use super::impact::Setting;
 use super::inputs::Inputs;
-use super::study::{CLOSE, Effort, Study, Tick, Unknown, draws, give};
+use super::study::{CLOSE, Effort, Study, Tick, Unknown, give};
 use crate::formula::{Formula, ProcedureId, Results};
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath};
 use crate::mechanics::rerun::{OUTCOMES, Outcome, rerun};
@@ -80,7 +80,7 @@ impl<'run> Doubts<'run> {
             let jobs = effort.moves().iter().map(|by| self.moved(setting, source, *by)).collect::<Result<_, String>>()?;
             study.moved.push((source, jobs));
         }
-        for (draw, source) in draws(self.procedure, self.blow, effort.draws) {
+        for (draw, source) in effort.draws(self.procedure, self.blow) {
             let distortion = Distortion { noise: Some(Noise { force, displacement, draw }), ..Distortion::NONE };
             study.draws.push((source, Job { setting: *setting, distortion }));
         }

@@ -16,7 +16,7 @@ use crate::record::NamedResult;
 use crate::uncertainty::{Contribution, Source, combined};
 
 /// Draws of the readings' errors at most: the standard uncertainty they give is known to 1/√(2·64), 9 %.
-pub(super) const MOST_DRAWS: u16 = 64;
+pub const MOST_DRAWS: u16 = 64;
 /// And at least.
 const FEWEST_DRAWS: u16 = 8;
 /// And at least where inputs are drawn with them.
@@ -148,10 +148,16 @@ impl<J: Sync> Study<J> {
     }
 }
 
-/// The sources of the draws of a procedure: those of its `blow`, from 0, are its own.
-pub(super) fn draws(procedure: ProcedureId, blow: u16, count: u16) -> impl Iterator<Item = (u16, Source)> {
-    let first = blow.saturating_mul(MOST_DRAWS);
-    (first..first.saturating_add(count)).map(move |draw| (draw, Source::Readings { procedure, draw }))
+impl Effort {
+    /// The draws of a procedure and their sources: those of its `blow`, from 0, are its own.
+    pub fn draws(self, procedure: ProcedureId, blow: u16) -> impl Iterator<Item = (u16, Source)> {
+        let first = blow.saturating_mul(MOST_DRAWS);
+        let source = move |draw| match self.together {
+            false => Source::Readings { procedure, draw },
+            true => Source::Drawn { procedure, draw },
+        };
+        (first..first.saturating_add(self.draws)).map(move |draw| (draw, source(draw)))
+    }
 }
 
 /// What each job comes to, in the order of the jobs, worked on by as many threads as the machine has cores.

@@ -7,7 +7,7 @@ use crate::plan::{
     VirtualLink,
 };
 use crate::record::Record;
-use crate::rig::VirtualRig;
+use crate::rig::virtual_rig;
 
 /// Nothing but an ideal virtual rig.
 pub(crate) fn empty_plan() -> Plan {
@@ -146,7 +146,7 @@ pub(crate) fn result_of(procedure: usize, name: &'static str) -> Formula {
 }
 
 pub(crate) fn run_unwatched(plan: &Plan) -> Record {
-    super::run(plan, &mut VirtualRig::of_plan(plan), &mut super::Unwatched)
+    super::run(plan, &mut *virtual_rig(plan), &mut super::Unwatched)
 }
 
 /// Value and uncertainty of a result of the procedure `p0`, `p1`, …

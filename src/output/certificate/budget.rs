@@ -9,6 +9,7 @@ use crate::formula::{ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::{minus, significant, typeset, unit};
 use crate::record::ProcedureRecord;
+use crate::run::MOST_DRAWS;
 use crate::verdict::COVERAGE;
 
 /// Told where no requirement reads a result of the procedure.
@@ -128,6 +129,12 @@ fn note(budgets: &[Budget<'_>]) -> String {
     );
     if budgets.iter().any(|budget| budget.lines.iter().any(|line| line.draws.is_some())) {
         text += " Errors of the readings were drawn, and what they do is sampled.";
+    }
+    let draws = budgets.iter().flat_map(|budget| &budget.lines).filter_map(|line| line.draws).min();
+    if let Some(draws) = draws.filter(|draws| *draws < usize::from(MOST_DRAWS)) {
+        #[expect(clippy::cast_precision_loss, reason = "a few")]
+        let known = 1.0 / (2.0 * draws as f64).sqrt();
+        text += &format!(" The run is long, and they were drawn {draws} times only: their share of u is known to {}.", percent(known));
     }
     if told.iter().any(|line| !line.smooth) {
         text += " † The result does not follow this input smoothly: the differences to either side, or at half the size, disagree; \
