@@ -4,7 +4,8 @@
 use crate::formula::{Formula, FormulaError, Operator, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
-use crate::record::{Outcome, Record};
+use crate::record::{Beyond, Outcome, Record};
+use crate::rig::failpoint::{self, Guarding};
 
 /// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,6 +91,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     let requirements: Vec<_> =
         plan.requirements.iter().map(|requirement| assess_requirement(requirement, rule, record)).collect();
     let run = match record.outcome {
+        Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
         Outcome::Completed => Verdict::Pass,
         Outcome::Aborted { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
@@ -99,7 +101,10 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
 }
 
 fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
-    let assess = |condition: &Condition| cut_short(condition, assess_condition(condition, rule, record), record);
+    let assess = |condition: &Condition| {
+        let outcome = assess_condition(condition, rule, record);
+        drifted(condition, cut_short(condition, outcome, record), record)
+    };
     let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
     RequirementOutcome { label: requirement.label.clone(), verdict, conditions }
@@ -118,6 +123,35 @@ fn cut_short(condition: &Condition, outcome: ConditionOutcome, record: &Record) 
         },
         None => outcome,
     }
+}
+
+/// What readings entered whose zero drifted farther than the rig allows decides nothing: they were not of what they seemed to be.
+fn drifted(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    let mut read = references.iter().filter_map(|reference| {
+        let procedure = record.procedures.get(reference.procedure.0)?;
+        Some((procedure.kind, reference.name))
+    });
+    let entered = read.find_map(|(kind, result)| beyond(record, |beyond| enters(beyond.of_force, kind, result)));
+    match entered {
+        Some(Beyond { reason, .. }) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(reason), ..outcome },
+        None => outcome,
+    }
+}
+
+/// The first drift beyond what the rig allows that is `of_interest`.
+fn beyond(record: &Record, of_interest: impl Fn(&Beyond) -> bool) -> Option<Beyond> {
+    let drift = record.drift.as_ref().filter(|_| failpoint::on(Guarding::ZeroDrift))?;
+    drift.all_beyond().find(of_interest)
+}
+
+/// Whether readings of the force, or else of the displacement, enter a result. Everything that a procedure integrates or
+/// fits hangs on both; where the force only follows, it enters none of the ways and speeds.
+fn enters(of_force: bool, kind: &str, result: &str) -> bool {
+    let given = matches!(result, "time_step" | "steps");
+    let of_ways = matches!((kind, result), ("stiffness ramp", "max_displacement") | ("damping sweep", "max_velocity"));
+    !(given || (of_force && of_ways))
 }
 
 /// k of the expanded uncertainty U = k·u: about 95 % of a normal distribution.

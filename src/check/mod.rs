@@ -13,6 +13,7 @@ mod damping_sweep;
 mod data;
 mod device;
 mod dialect;
+mod drift;
 mod escalate;
 mod expression;
 mod faults;
@@ -189,6 +190,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
         if let Some(rig) = &rig {
             real_rig::warn(checker, rig);
+            drift::warn(checker, rig);
         }
         if let Some(limits) = &limits {
             specimen::warn_of_short_tables(checker, &specimens, limits);

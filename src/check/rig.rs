@@ -3,6 +3,7 @@
 use super::calendar;
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
+use super::drift;
 use super::faults::rigs;
 use super::faults::whole as fault;
 use super::real_rig;
@@ -73,6 +74,7 @@ fn ideal() -> CheckedRig {
         settle: AT_ONCE,
         sign: 1.0,
         calibration: Calibration::default(),
+        drift: None,
     };
     CheckedRig { plan, limits: None, block: None }
 }
@@ -124,8 +126,9 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
         Some(_) => checker.reference(block, "limits", Kind::Limits).map(Some),
         None => Some(None),
     };
+    let drift = drift::drift(checker, block, kind);
     let name = checker.scope.blocks[block].name?.node.clone();
-    let plan = RigPlan { name, link: link?, settle: settle?, sign: sign?, calibration: calibration? };
+    let plan = RigPlan { name, link: link?, settle: settle?, sign: sign?, calibration: calibration?, drift: drift? };
     Some(CheckedRig { plan, limits: limits?, block: Some(block) })
 }
 

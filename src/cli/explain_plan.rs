@@ -429,6 +429,7 @@ mod tests {
                 settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 10.0 },
                 sign: 1.0,
                 calibration: Calibration::default(),
+                drift: None,
             },
             limits: Limits { displacement: Interval { low: -0.1, high: farthest }, ..Limits::NONE },
             procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],

@@ -99,7 +99,7 @@ mod tests {
             specimens: Vec::new(),
             strikers: Vec::new(),
             grounds: Vec::new(),
-            rig: RigPlan { name: "ideal".to_owned(), link, settle, sign: 1.0, calibration: Calibration::default() },
+            rig: RigPlan { name: "ideal".to_owned(), link, settle, sign: 1.0, calibration: Calibration::default(), drift: None },
             limits: Limits::NONE,
             procedures: Vec::new(),
             requirements: Vec::new(),

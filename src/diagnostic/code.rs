@@ -128,6 +128,7 @@ codes! {
     E649 BreaksTwice Error;
     E650 RelaxationWithoutHold Error;
     E651 NotTogether Error;
+    E652 NobodyToFreeIt Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -137,6 +138,7 @@ codes! {
     W706 Unused Warning;
     W707 CalibrationWithoutDay Warning;
     W708 DeviceNotPinned Warning;
+    W709 DriftWithinNoise Warning;
     W710 WideTolerance Warning;
     W712 BeyondStability Warning;
     W713 RecordFinerThanStep Warning;

@@ -4,7 +4,7 @@
 use super::{ClockJump, Run, number};
 use crate::quantity::Dimension;
 use crate::quantity::display::trimmed;
-use crate::record::{EventKind, Outcome};
+use crate::record::{Drift, EventKind, Outcome};
 use crate::run::rehearsal;
 
 /// Every deviation and interruption of the run.
@@ -40,6 +40,8 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
         let text = event.text.strip_prefix(LINE).unwrap_or(&event.text).trim();
         found.push(format!("{what}{}: {}.", place(event.procedure.as_deref(), event.step), text.trim_end_matches('.')));
     }
+    let drifted = run.record.drift.iter().flat_map(Drift::all_beyond);
+    found.extend(drifted.map(|beyond| format!("Drift: {}; what its readings enter is not decided.", beyond.reason)));
     found.extend(run.provenance.real.iter().flat_map(|real| &real.jumps).map(jump));
     for (index, procedure) in run.plan.procedures.iter().enumerate() {
         match run.record.procedures.get(index) {

@@ -1,6 +1,7 @@
 //! `summary.json`, the results for machines: schema `psd.summary/1`, SI, order stable. In: a run. Out: [`Summary`] and
 //! its JSON. The committed `grammar/summary.schema.json` is generated from these types.
 
+mod drift;
 mod of_run;
 
 use std::collections::BTreeMap;
@@ -12,6 +13,7 @@ use serde::ser::SerializeMap as _;
 
 use crate::inert;
 
+pub use drift::{AxisDriftSummary, DriftSummary, ZeroSummary};
 pub(super) use of_run::{event_kind, governing};
 
 /// Name and version of the format; a change that breaks a reader raises the number.
@@ -32,6 +34,9 @@ pub struct Summary {
     pub rig: RigSummary,
     /// Null on a virtual rig.
     pub record: Option<RecordSummary>,
+    /// Only of a rig that says how far its zeros may drift.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drift: Option<DriftSummary>,
     /// The worst of all requirements, or how the run ended if that is worse.
     #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,

@@ -3,6 +3,7 @@
 
 mod blows;
 mod cyclic;
+mod drift;
 
 use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
 
@@ -36,6 +37,12 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
             let cycles = cyclic::cycles(history).map_err(failed)?;
             written(run, &format!("{}_cycles", procedure.name), cycles, &mut files).map_err(failed)?;
         }
+    }
+    if let Some(found) = &run.record.drift {
+        let failed = |error: PolarsError| OutputError::Table { procedure: "drift".to_owned(), reason: error.to_string() };
+        let (height, columns) = drift::rows(found);
+        let frame = DataFrame::new(height, columns).map_err(failed)?;
+        written(run, "drift", frame, &mut files).map_err(failed)?;
     }
     Ok(files)
 }

@@ -11,6 +11,8 @@ pub struct RigPlan {
     /// Factor on displacement and force signs: +1 or −1.
     pub sign: f64,
     pub calibration: Calibration,
+    /// How far its zeros may drift in a run; None: nobody asks.
+    pub drift: Option<DriftCheck>,
 }
 
 impl RigPlan {
@@ -77,6 +79,29 @@ pub struct Settle {
     pub dwell: f64,
     /// Longest wait, s; past it the rig holds and the run is aborted.
     pub timeout: f64,
+}
+
+/// How far the zeros of a rig may drift in a run, and how they are read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriftCheck {
+    /// Change of the force at no load, by size, N.
+    pub force: f64,
+    /// Change of the displacement reading against its target, by size, m; None: it is told and not judged.
+    pub displacement: Option<f64>,
+    /// Time over which a zero is read; a hold as long tells a slope, s.
+    pub over: f64,
+    pub after: ZeroAfter,
+}
+
+/// Where the force is known again when a run is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ZeroAfter {
+    /// Back where the run began, of a specimen that is as it was there.
+    Start,
+    /// A person has taken the specimen off the load cell.
+    Free,
+    /// Nowhere: only what no load and no relaxation can do is judged.
+    Nowhere,
 }
 
 /// Where the numbers of a rig are traced to.

@@ -2,6 +2,7 @@
 //! certificates are functions of it.
 
 mod cycle;
+mod drift;
 pub mod equipment;
 mod escalate;
 mod floors;
@@ -22,6 +23,7 @@ use crate::quantity::Dimension;
 use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
+pub use drift::{AxisDrift, Beyond, Drift, Zero};
 pub use escalate::{Blow, EscalateHistory};
 pub use floors::{FloorStep, Floors, StoreyImpactHistory};
 
@@ -32,6 +34,8 @@ pub struct Record {
     pub procedures: Vec<ProcedureRecord>,
     pub events: Vec<Event>,
     pub outcome: Outcome,
+    /// What the zeros of the rig did, where it says how far they may drift.
+    pub drift: Option<Drift>,
 }
 
 /// How the run ended.

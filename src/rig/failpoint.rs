@@ -26,6 +26,8 @@ pub enum Guarding {
     GateZero,
     GateSign,
     GateStiffness,
+    /// How far a zero may drift before nothing is decided by the forces.
+    ZeroDrift,
     IntentDurable,
     SampleDurable,
     FailedSync,

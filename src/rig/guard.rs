@@ -3,6 +3,7 @@
 //! no procedure.
 
 use super::failpoint::{Guarding, on};
+use super::holds::Holds;
 use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally, named_axis};
 use crate::plan::{Interval, Limits};
 
@@ -22,6 +23,8 @@ pub struct Guard<'rig> {
     proposed: Option<Vec<f64>>,
     /// Rig time when the rig last answered, s.
     pub(super) heard: f64,
+    /// Where holds are to be told.
+    pub(super) holds: Option<Holds>,
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -47,7 +50,7 @@ impl<'rig> Guard<'rig> {
     pub fn of_axes(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
         let heard = rig.time();
         let (commanded, going) = (Vec::new(), Vec::new());
-        let mut guard = Self { rig, limits, own, commanded, going, settled: false, proposed: None, heard };
+        let mut guard = Self { rig, limits, own, commanded, going, settled: false, proposed: None, heard, holds: None };
         guard.commanded = guard.read()?.displacement;
         Ok(guard)
     }
@@ -120,7 +123,7 @@ impl<'rig> Guard<'rig> {
             self.hold();
             return Err(RigFault::Device("nothing was proposed to execute".to_owned()));
         };
-        self.settled = false;
+        self.leave();
         self.going.clear();
         let executed = self.rig.execute();
         self.or_hold(executed)?;
@@ -157,6 +160,9 @@ impl<'rig> Guard<'rig> {
             if let Some(place) = errors.iter().position(|error| !limit.contains(*error)) {
                 return Err(self.breach(LimitedQuantity::TrackingError, Some(place), limit, errors[place]));
             }
+            if let Some(holds) = &mut self.holds {
+                holds.see(&self.commanded, &reading);
+            }
         }
         Ok(reading)
     }
@@ -170,7 +176,7 @@ impl<'rig> Guard<'rig> {
         if let Err(fault) = allowed {
             return refused(fault);
         }
-        self.settled = false;
+        self.leave();
         self.going.clear();
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
@@ -447,9 +453,9 @@ mod tests {
             let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
-            let (commanded, own, going) = (vec![0.001], Vec::new(), Vec::new());
+            let (commanded, own, going, holds) = (vec![0.001], Vec::new(), Vec::new(), None);
             let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None, heard: 0.0 };
+                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None, heard: 0.0, holds };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

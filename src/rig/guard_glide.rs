@@ -14,7 +14,7 @@ impl Guard<'_> {
         if let Err(fault) = self.judge(paths) {
             return refused(fault);
         }
-        self.settled = false;
+        self.leave();
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         let mut heard = self.heard;

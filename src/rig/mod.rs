@@ -11,6 +11,7 @@ mod fault_table;
 mod guard;
 mod guard_glide;
 mod guard_way;
+mod holds;
 mod load_cell;
 mod one_or_several;
 pub mod port;
@@ -31,6 +32,7 @@ use crate::quantity::{Dimension, display};
 
 pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
+pub use holds::Held;
 pub use virtual_frame::VirtualFrame;
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
 pub use wish::Wish;

@@ -95,7 +95,7 @@ pub fn drive(
 ) -> DrivenRecord {
     let identity = rig.identity();
     let ended = |events, outcome| DrivenRecord {
-        record: Record { rig: identity.clone(), procedures: Vec::new(), events, outcome },
+        record: Record { rig: identity.clone(), procedures: Vec::new(), events, outcome, drift: None },
         steps: Vec::new(),
     };
     let mut session = match Session::begin(plan, rig, observer) {

@@ -63,6 +63,7 @@ mod tests;
 mod triggers;
 mod unload;
 mod watch;
+mod zero;
 
 pub use damping_sweep::MOST_SAMPLES;
 pub use request::{Parting, Request};
@@ -72,7 +73,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::formula::ProcedureId;
 use crate::mechanics::monitor::Tracking;
-use crate::plan::{Plan, Procedure, ProcedureKind, SafeState};
+use crate::plan::{DriftCheck, Plan, Procedure, ProcedureKind, SafeState, ZeroAfter};
 use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
 use inputs::Inputs;
@@ -219,7 +220,8 @@ struct Performed {
 #[must_use]
 pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Record {
     let identity = rig.identity();
-    let mut record = Record { rig: identity, procedures: Vec::new(), events: Vec::new(), outcome: Outcome::Completed };
+    let mut record =
+        Record { rig: identity, procedures: Vec::new(), events: Vec::new(), outcome: Outcome::Completed, drift: None };
     let mut session = match Session::begin(plan, rig, observer) {
         Ok(session) => session,
         Err(ended) => {
@@ -228,10 +230,18 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
     };
     if let Some(link) = plan.rig.link.as_real()
-        && let Err(stop) = gate::pass(plan, link, "as the plan says", &mut session)
+        && let Err(stop) = gate::pass(plan, link, afterwards(plan), &mut session)
     {
         session.end(&stop);
         return Record { events: session.finish(), outcome: stop.outcome(), ..record };
+    }
+    let home = session.guard.commanded().to_vec();
+    match plan.rig.drift.map(|check| zero::before(check, &mut session)).transpose() {
+        Ok(drift) => record.drift = drift,
+        Err(stop) => {
+            session.end(&stop);
+            return Record { events: session.finish(), outcome: stop.outcome(), ..record };
+        }
     }
     for procedure in &plan.procedures {
         session.enter(procedure, plan);
@@ -258,8 +268,25 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
         session.leave();
     }
+    if let Some(drift) = &mut record.drift {
+        drift.held = session.guard.take_held();
+        if record.outcome == Outcome::Completed
+            && let Err(stop) = zero::after(drift, &home, &mut session)
+        {
+            session.end(&stop);
+            record.outcome = stop.outcome();
+        }
+    }
     record.events = session.finish();
     record
+}
+
+/// What a real rig does once it has proved itself.
+fn afterwards(plan: &Plan) -> &'static str {
+    match plan.rig.drift {
+        Some(DriftCheck { after: ZeroAfter::Start, .. }) => "as the plan says, and at its end back to where it began",
+        _ => "as the plan says",
+    }
 }
 
 fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {

@@ -9,7 +9,7 @@ use crate::formula::{Formula, ResultReference, ResultValue, Results};
 use crate::mechanics::critical_time_step;
 use crate::plan::{DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp, steps_in};
 
-use super::{shake, storey_impact};
+use super::{shake, storey_impact, zero};
 
 /// What a run may write.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,10 +83,18 @@ impl Counts {
 pub fn of(plan: &Plan) -> Need {
     let reckoner = Reckoner { plan, assumed: Assumed(plan), way: way(plan) };
     let mut all = Counts { targets: 2.0 * reckoner.way, readings: 8.0, ..Counts::default() };
+    if plan.rig.drift.is_some() {
+        // Before the test and after it, and the way back.
+        all = all.plus(Counts { targets: reckoner.way, readings: 2.0 * f64::from(zero::READINGS), ..Counts::default() });
+    }
     let mut unknown = Vec::new();
     for procedure in &plan.procedures {
         match reckoner.counts(&procedure.kind) {
-            Some(counts) => all = all.plus(counts),
+            Some(counts) => {
+                // A look at a hold, before what a person says and after it, where drift is watched.
+                let looks = if plan.rig.drift.is_some() { 2.0 * (counts.steps + 1.0) } else { 0.0 };
+                all = all.plus(counts).plus(Counts { readings: looks, ..Counts::default() });
+            }
             None => unknown.push(procedure.name.clone()),
         }
     }

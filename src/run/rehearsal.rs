@@ -54,6 +54,8 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     part.particulars.push((REHEARSAL, text));
     part.rehearses = Some(Box::new(plan.clone()));
     part.requirements.clear();
+    // The zeros are those of a test: a rehearsal goes nowhere for them.
+    part.rig.drift = None;
     part.report.figures.retain(|figure| figure.procedures().all(|procedure| procedure.0 < ramps));
     Ok(part)
 }
@@ -79,6 +81,7 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
     };
     link.noise = link.noise.max(scatter(measured));
     model.rig.link = Link::Virtual(link);
+    model.rig.drift = None;
     for (procedure, record) in plan.procedures.iter().zip(&measured.procedures) {
         let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else { continue };
         let stiffness = match record.result("stiffness").map(|result| &result.value) {

@@ -133,12 +133,13 @@ impl<'run> Session<'run> {
 
     /// Lets a person look at the specimen; what was said, and by whom, is an event.
     pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+        self.look_at_a_hold()?;
         loop {
             match self.observer.inspect(note) {
                 Inspection::GoOn { note: said, by } => {
                     let said = said.map_or_else(String::new, |said| format!(": {said}"));
                     self.event(EventKind::Inspection, format!("{note}{said}{}", signed(by.as_deref())));
-                    return Ok(());
+                    return self.look_at_a_hold();
                 }
                 Inspection::Stop { reason, by } => {
                     self.guard.hold();
@@ -151,6 +152,14 @@ impl<'run> Session<'run> {
                 }
             }
         }
+    }
+
+    /// While a person looks nothing moves: what the readings do meanwhile tells of drift, where that is asked for.
+    fn look_at_a_hold(&mut self) -> Result<(), Stop> {
+        if self.guard.watches_holds() {
+            self.guard.read()?;
+        }
+        Ok(())
     }
 
     /// Whether nothing real is moved, so that what the plan says of the specimen is what the specimen does.

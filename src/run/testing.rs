@@ -24,6 +24,7 @@ pub(crate) fn empty_plan() -> Plan {
             settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 },
             sign: 1.0,
             calibration: Calibration::default(),
+            drift: None,
         },
         limits: Limits::NONE,
         procedures: Vec::new(),

@@ -47,6 +47,30 @@ const GATE: &[Variant] = &[Variant::with(
     "a tiny move whose stiffness must be as expected",
 )];
 
+/// Where the force of a rig is known again when its run is over.
+const AFTER: &[Variant] = &[
+    Variant::word("start", "back where the run began, which the rig goes to when all is done; of a specimen that is as it was"),
+    Variant::word("free", "where it is, when a person has taken the specimen off the load cell and says so"),
+    Variant::word("nowhere", "the zero is not read again"),
+];
+
+const DRIFT: &[Variant] = &[Variant::with(
+    "within",
+    &[
+        Field::quantity("force", Dimension::FORCE, "change of the zero of the force, by size, at most")
+            .required("5 N")
+            .above_zero(),
+        Field::quantity("displacement", Dimension::LENGTH, "change of displacement less target, by size, at most")
+            .above_zero()
+            .or_said("told, not judged"),
+        Field::quantity("over", Dimension::TIME, "time over which a zero is read; a hold as long tells a slope")
+            .or(5.0, "s")
+            .above_zero_up_to(LONGEST_WAIT),
+        Field::choice("after", AFTER, "how the zero is read after the test").or_said("start"),
+    ],
+    "a run whose zeros drift farther decides nothing that its readings enter",
+)];
+
 const SIGN: &[Variant] = &[
     Variant::word("positive", "the rig's positive direction is the striker's"),
     Variant::word("negative", "the rig's positive direction is against the striker's"),
@@ -115,6 +139,7 @@ pub(super) const RIG: BlockKind = BlockKind {
         Field::choice("gate", GATE, "what must be so before the first step")
             .required_on(RigKind::Real, "gate = probe(0.02 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)", "")
             .of_real_rigs(),
+        Field::choice("drift", DRIFT, "how far its zeros may drift in a run, and how they are read").or_said("not asked"),
         Field::reference("limits", Kind::Limits, "a named `limits` block that holds whenever this rig moves"),
         Field::choices("axes", AXIS, "its actuators, each with its load cell, one a storey from the ground up")
             .or_said("one axis")

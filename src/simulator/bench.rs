@@ -239,7 +239,7 @@ impl Bench {
     }
 
     pub fn displacement_of(&mut self, ram: usize) -> f64 {
-        self.rams[ram].displacement()
+        self.rams[ram].displacement(self.time)
     }
 
     /// N, as its cell feels it, with noise.
@@ -373,6 +373,7 @@ mod tests {
         near(after(BenchFault::ScaleDisplacement(25.4)), (127.0, 500.0));
         near(after(BenchFault::ClipForce(350.0)), (5.0, 350.0));
         near(after(BenchFault::Drift(3.0)), (5.0, 503.0));
+        near(after(BenchFault::DriftDisplacement(2e-4)), (5.2, 500.0));
         near(after(BenchFault::Spike(70.0)), (5.0, 570.0));
         near(after(BenchFault::Fracture { displacement: 0.003, left: 0.1 }), (5.0, 50.0));
     }

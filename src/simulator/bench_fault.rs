@@ -23,6 +23,8 @@ pub enum BenchFault {
     FreezeDisplacement,
     /// N/s on the force reading from now on.
     Drift(f64),
+    /// m/s on the displacement reading from now on.
+    DriftDisplacement(f64),
     /// N on the next force reading.
     Spike(f64),
     /// This text in place of the next force reading.
@@ -48,6 +50,8 @@ pub struct BenchFaults {
     frozen_displacement: Option<f64>,
     /// N/s, and since when, s.
     drifts: Vec<(f64, f64)>,
+    /// m/s, and since when, s.
+    displacement_drifts: Vec<(f64, f64)>,
     spike: f64,
     number: Option<String>,
     /// m, and the part left beyond it.
@@ -72,6 +76,7 @@ impl BenchFaults {
             frozen_force: None,
             frozen_displacement: None,
             drifts: Vec::new(),
+            displacement_drifts: Vec::new(),
             spike: 0.0,
             number: None,
             fracture: None,
@@ -92,6 +97,7 @@ impl BenchFaults {
             BenchFault::FreezeForce => self.freezes_force = true,
             BenchFault::FreezeDisplacement => self.freezes_displacement = true,
             BenchFault::Drift(rate) => self.drifts.push((rate, time)),
+            BenchFault::DriftDisplacement(rate) => self.displacement_drifts.push((rate, time)),
             BenchFault::Spike(force) => self.spike += force,
             BenchFault::Number(text) => self.number = Some(text),
             BenchFault::Fracture { displacement, left } => self.fracture = Some((displacement, left)),
@@ -126,15 +132,14 @@ impl BenchFaults {
         for fault in drawn {
             self.strike(fault, time);
         }
-        let drift: f64 = self.drifts.iter().map(|(rate, since)| rate * (time - since)).sum();
-        let read = (sound + drift + std::mem::take(&mut self.spike)) * self.force_factor;
+        let read = (sound + drifted(&self.drifts, time) + std::mem::take(&mut self.spike)) * self.force_factor;
         let read = self.clip.map_or(read, |limit| read.clamp(-limit.abs(), limit.abs()));
         if self.freezes_force { *self.frozen_force.get_or_insert(read) } else { read }
     }
 
-    /// What the transducer gives for a true displacement, m.
-    pub(super) fn read_displacement(&mut self, sound: f64) -> f64 {
-        let read = sound * self.displacement_factor;
+    /// What the transducer gives at `time` (s) for a true displacement, m.
+    pub(super) fn read_displacement(&mut self, sound: f64, time: f64) -> f64 {
+        let read = (sound + drifted(&self.displacement_drifts, time)) * self.displacement_factor;
         if self.freezes_displacement { *self.frozen_displacement.get_or_insert(read) } else { read }
     }
 
@@ -142,4 +147,9 @@ impl BenchFaults {
     pub(super) const fn take_number(&mut self) -> Option<String> {
         self.number.take()
     }
+}
+
+/// What rates since their times come to at `time`, s.
+fn drifted(drifts: &[(f64, f64)], time: f64) -> f64 {
+    drifts.iter().map(|(rate, since)| rate * (time - since)).sum()
 }

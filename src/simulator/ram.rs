@@ -85,10 +85,10 @@ impl Ram {
         low - ROUNDING <= target && target <= high + ROUNDING
     }
 
-    /// m, as its transducer reads it.
-    pub(super) fn displacement(&mut self) -> f64 {
+    /// m, as its transducer reads it at `time` (s).
+    pub(super) fn displacement(&mut self, time: f64) -> f64 {
         let quantum = self.settings.resolution;
-        let read = self.faults.read_displacement(self.at);
+        let read = self.faults.read_displacement(self.at, time);
         if quantum > 0.0 { (read / quantum).round() * quantum } else { read }
     }
 

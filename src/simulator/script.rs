@@ -17,7 +17,7 @@
 //! scale displacement by 25.4       clip force at 900 N             drift force 2 N/s
 //! spike 500 N                      number 9.91E37                  number ""
 //! reach 40 %                       stick                           lag 0.2 s
-//! fracture at 3 mm to 10 %
+//! drift displacement 0.001 mm/s    fracture at 3 mm to 10 %
 //! ```
 //!
 //! where REPLIES is `reply`, `replies 3` or `replies for ever`. What is counted in moves or readings befalls the reply
@@ -280,8 +280,12 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
             Ok(BenchFault::ClipForce(words.amount("N")?))
         }
         "drift" => {
-            words.expect("force")?;
-            Ok(BenchFault::Drift(words.amount("N/s")?))
+            let of = words.next()?;
+            match of {
+                "force" => Ok(BenchFault::Drift(words.amount("N/s")?)),
+                "displacement" => Ok(BenchFault::DriftDisplacement(words.amount("mm/s")? * 1e-3)),
+                other => Err(format!("`{other}` does not drift: force and displacement do")),
+            }
         }
         "spike" => Ok(BenchFault::Spike(words.amount("N")?)),
         "number" => Ok(BenchFault::Number(words.next()?.trim_matches('"').to_owned())),

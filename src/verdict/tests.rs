@@ -31,6 +31,7 @@ fn record(outcome: Outcome) -> Record {
         }],
         events: Vec::new(),
         outcome,
+        drift: None,
     }
 }
 

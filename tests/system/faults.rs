@@ -112,6 +112,7 @@ fn every_kind_of_fault_has_its_row() {
         "scale displacement",
         "clip force",
         "drift force",
+        "drift displacement",
         "spike",
         "number",
         "reach",

@@ -108,8 +108,7 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
     let proven = whole.proven();
     assert!(proven.contains("out of the record again, byte for byte"), "{proven}");
     let certificate = fs::read_to_string(whole.path("run").join("certificate.html")).unwrap();
-    for told in ["displacement 1", "force 2", "UKAS 4711", "UKAS 4712", "UKAS 4810", "force 0.40\u{a0}%; zero of the force 1.5"]
-    {
+    for told in ["displacement 1", "force 2", "UKAS 4711", "UKAS 4712", "UKAS 4810", "force 0.40\u{a0}%; zero of the force 1.5"] {
         assert!(certificate.contains(told), "{told} is not on the certificate");
     }
     let mut virtual_run = std::process::Command::new(PSD);

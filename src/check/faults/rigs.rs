@@ -229,6 +229,29 @@ pub fn device_not_pinned(field: &str, port: &PortPlan, span: Span) -> Diagnostic
     .help("write the serial number that must answer, as in `serial_number: \"PSD-0001\"`")
 }
 
+pub fn nobody_to_free_it(at: Span) -> Diagnostic {
+    Diagnostic::new(Code::NobodyToFreeIt, "nobody can take the specimen of a virtual rig off its load cell".to_owned())
+        .at(at, "a zero that needs a person")
+        .help("write `after: start`: the rig goes back to where it began, and reads its zero there")
+}
+
+/// `of`: what brings a reading about by itself, how much, and what it may come to (SI).
+pub fn drift_within_noise(
+    what: &str,
+    allowed: f64,
+    (name, size, reach): (&str, f64, f64),
+    dimension: Dimension,
+    at: Span,
+) -> Diagnostic {
+    let (allowed, size, reach) = (shown(allowed, dimension), shown(size, dimension), shown(reach, dimension));
+    Diagnostic::new(
+        Code::DriftWithinNoise,
+        format!("a drift of the {what} of {allowed} cannot be told from what a reading does by itself"),
+    )
+    .at(at, format!("the {name} of one reading is {size}"))
+    .help(format!("allow at least {reach}, or measure with less {name}"))
+}
+
 pub fn resolution_unknown(rig: &str, at: Span) -> Diagnostic {
     Diagnostic::new(
         Code::ResolutionUnknown,

@@ -4,7 +4,7 @@
 use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
-use super::{pairs, particulars};
+use super::{drift, pairs, particulars};
 use crate::plan::{Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
@@ -24,6 +24,7 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
         }
         None => body.push(simulated(run)),
     }
+    drift::all(run, body);
 }
 
 /// What is measured, over which range and how well, what that is traced to, and whether it still held on the day of the

@@ -8,7 +8,7 @@ use crate::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
-use crate::record::{Floors, Modes, ProcedureRecord, ShakeHistory};
+use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory};
 
 /// Storeys from the ground up, or the files of the matrices.
 pub(super) fn structure(frame: &Frame, body: &mut Vec<Block>) {

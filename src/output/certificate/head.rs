@@ -27,6 +27,9 @@ fn sentence(run: &Run<'_>) -> String {
         Verdict::Pass if all.is_empty() => "The plan states no requirement.".to_owned(),
         Verdict::Pass if all.len() == 1 => "The requirement is met.".to_owned(),
         Verdict::Pass => format!("All {} requirements are met.", all.len()),
+        Verdict::Inconclusive if with(Verdict::Inconclusive) == 0 => {
+            "The zeros of the rig drifted farther than it allows: nothing that its readings enter is decided.".to_owned()
+        }
         Verdict::Inconclusive => {
             format!("{} of {} requirements cannot be decided from this run.", with(Verdict::Inconclusive), all.len())
         }

@@ -8,6 +8,7 @@ mod conditions;
 mod contact_log;
 mod curve;
 mod cycles;
+mod drift;
 mod equipment;
 mod foretold;
 mod frames;

@@ -249,7 +249,7 @@ pub(super) fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
         ("structure, kinetic", e.structure),
         ("restoring force, ∫R dX", e.restoring),
         ("damping, ∫CẊ dX", e.damping),
-        ("contact loss", e.contact_loss),
+        ("contact, ∫F d(Xs − X)", e.contact_loss),
         ("integration error", e.error),
     ];
     let row = |(name, energy): (&str, f64)| -> Vec<Text> {
@@ -266,7 +266,7 @@ pub(super) fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
     body.push(Block::Table(Table { columns, rows: std::iter::once(input_row).chain(parts.map(row)).collect() }));
     if e.indentation > 0.0 {
         body.push(Block::note(format!(
-            "Indentation energy F·Δδp, an indicator and no part of the balance: {}. It equals the contact loss only as the time \
+            "Indentation energy F·Δδp, an indicator and no part of the balance: {}. It equals the work lost in the contact only as the time \
              step goes to zero.",
             number::text(e.indentation, Dimension::ENERGY)
         )));

@@ -61,7 +61,7 @@ pub(super) fn force_displacement(history: &ImpactHistory) -> Chart {
 /// Name, reading and style of one energy.
 type Part = (&'static str, fn(&ImpactStep) -> f64, Style);
 
-/// The parts of the balance and their total; damping and contact loss only where there is any.
+/// The parts of the balance and their total; damping and the work of the contact only where there is any.
 pub(super) fn energy(history: &ImpactHistory) -> Chart {
     let mut chart = against_time(history, Quantity::of("Energy", Dimension::ENERGY));
     let parts: [Part; 5] = [
@@ -69,7 +69,7 @@ pub(super) fn energy(history: &ImpactHistory) -> Chart {
         ("structure", |step| step.energies.structure, Style::line(palette::SKY, 1.6, SOLID)),
         ("restoring", |step| step.energies.restoring, Style::line(palette::BLUE, 2.0, LONG)),
         ("damping", |step| step.energies.damping, Style::line(palette::PURPLE, 2.0, DASH_DOT)),
-        ("contact loss", |step| step.energies.contact_loss, Style::line(palette::GREEN, 2.2, DOTTED)),
+        ("contact work", |step| step.energies.contact_loss, Style::line(palette::GREEN, 2.2, DOTTED)),
     ];
     let drawn = parts.into_iter().filter(|(_, read, _)| history.steps.iter().any(|step| read(step) != 0.0));
     chart.series = drawn.map(|(label, read, style)| series(history, label, read, style)).collect();

@@ -3,9 +3,9 @@
 use super::super::budget::{Budget, Line, budgets};
 use super::super::{Amends, Change, Run, deviations, standing};
 use super::{
-    AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, EventSummary, Ordered,
-    OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary,
-    SCHEMA, Summary, Uncertainty, Value,
+    AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary,
+    EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary,
+    RequirementSummary, RigSummary, SCHEMA, Summary, Uncertainty, Value,
 };
 use crate::formula::{Estimate, ResultValue};
 use crate::quantity::Dimension;
@@ -47,6 +47,7 @@ impl Summary {
                 records: real.sealed.as_ref().map(|(records, _)| *records),
                 head: real.sealed.as_ref().map(|(_, head)| head.clone()),
             }),
+            drift: record.drift.as_ref().map(DriftSummary::of),
             verdict: assessment.verdict.name(),
             decision_rule: assessment.rule.name(),
             standing: standing::of(run).name(),
@@ -214,6 +215,6 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
 }
 
 /// JSON has no NaN and no infinity: such a value does not exist.
-fn finite(value: f64) -> Option<f64> {
+pub(super) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

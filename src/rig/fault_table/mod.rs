@@ -16,7 +16,7 @@
 //! | 20 | what is no number | `device::what_is_no_number_is_never_integrated` |
 //! | 21 | saturation | `device::a_clipped_force_holds_the_rig` |
 //! | 22 | frozen sensor | `device::a_frozen_sensor_holds_the_rig` |
-//! | 23 | drift | `gate::the_drift_at_rest_is_told` |
+//! | 23 | drift, of the force and of the displacement | `drift::*`, `gate::the_drift_at_rest_is_told` |
 //! | 24 | spike | `device::a_spike_does_not_move_the_median` |
 //! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
 //! | 26 | targets beyond limits, no numbers | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
@@ -29,6 +29,7 @@
 mod axes;
 mod control_points;
 mod device;
+mod drift;
 mod gate;
 mod line;
 mod long;

@@ -29,7 +29,14 @@ fn plan() -> RigPlan {
         axes: Vec::new(),
     };
     let settle = Settle { band: 1e-5, force_rate: 5.0, dwell: 0.5, timeout: 5.0 };
-    RigPlan { name: "frame".to_owned(), link: Link::Real(link), settle, sign: 1.0, calibration: Calibration::default() }
+    RigPlan {
+        name: "frame".to_owned(),
+        link: Link::Real(link),
+        settle,
+        sign: 1.0,
+        calibration: Calibration::default(),
+        drift: None,
+    }
 }
 
 struct Stand {

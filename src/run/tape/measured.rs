@@ -48,5 +48,9 @@ pub(super) fn measured(record: &Record) -> String {
             History::Inspect => {}
         }
     }
+    if let Some(drift) = &record.drift {
+        let zeros = drift.axes.iter().map(|axis| (axis.before.force, axis.after.map(|after| after.force)));
+        writeln!(told, "{:?}", zeros.collect::<Vec<_>>()).unwrap();
+    }
     told
 }

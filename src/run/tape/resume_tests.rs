@@ -6,8 +6,9 @@ use super::*;
 use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, Comparison, Condition, Cycle, Escalate, Frame, Ground, Impact, InspectTrigger, Integrator, Level, Mode,
-    Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until,
+    Behaviour, Between, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, Ground, Impact, InspectTrigger, Integrator,
+    Level, Mode, Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until,
+    ZeroAfter,
 };
 use crate::quantity::Dimension;
 use crate::run::testing::{elastic_plan, every, impact, ramp, result_of};
@@ -108,6 +109,15 @@ fn unloading() -> Plan {
     yielding(vec![to(0.03), ProcedureKind::Unload(unload)])
 }
 
+/// Zeros are read, also during a look, and the rig goes back for the last.
+fn drifting() -> Plan {
+    let ramped = StiffnessRamp { pause: Constant(0.5), displacements: vec![Constant(1e-3), Constant(2e-3)], ..ramp(1e-4) };
+    let looked = ProcedureKind::Inspect { note: "look".to_owned() };
+    let mut plan = elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramped), looked]);
+    plan.rig.drift = Some(DriftCheck { force: 1.0, displacement: Some(1e-6), over: 0.4, after: ZeroAfter::Start });
+    plan
+}
+
 /// Every plan here, by what it shows.
 fn plans() -> Vec<(&'static str, Plan)> {
     vec![
@@ -115,6 +125,7 @@ fn plans() -> Vec<(&'static str, Plan)> {
         ("cycle", yielding(vec![ProcedureKind::Cycle(cycle(None))])),
         ("cycle without a stop", elastic_plan(300.0, vec![ProcedureKind::Cycle(cycle(Some(2.0)))])),
         ("escalate", escalating()),
+        ("drift", drifting()),
         ("shake", shaken(Mode::StepAndPause)),
         ("shake without a stop", shaken(CONTINUOUS)),
         ("unload", unloading()),
@@ -146,6 +157,11 @@ fn rising_blows() {
 fn a_shake_of_two_floors() {
     killed("shake");
     killed("shake without a stop");
+}
+
+#[test]
+fn zeros_before_and_after() {
+    killed("drift");
 }
 
 #[test]

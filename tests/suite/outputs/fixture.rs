@@ -124,6 +124,7 @@ pub fn finished() -> Finished {
                 event(EventKind::Inspection, 12.5, "no visible crack <b>at</b> the support"),
             ],
             outcome: Outcome::Completed,
+            drift: None,
         },
         assessment: assessment(largest, error),
         provenance: Provenance {
@@ -367,6 +368,7 @@ fn plan() -> Plan {
             settle: Settle { band: 1e-5, force_rate: 5.0, dwell: 0.3, timeout: 10.0 },
             sign: 1.0,
             calibration: Calibration::default(),
+            drift: None,
         },
         limits: Limits {
             displacement: Interval { low: -0.01, high: 0.2 },

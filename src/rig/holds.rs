@@ -1,0 +1,169 @@
+//! Holds: settled readings of one place, with time between them. In: readings as the guard lets them through. Out: how fast force
+//! and displacement changed while nothing moved. It reads nothing itself, and judges nothing.
+//!
+//! In a hold a force changes by drift and by what relaxes. What relaxes has a known sign in one case. Let a specimen be a spring
+//! beside Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ): each branch holds its stiffness
+//! times d less a weighted mean of where the specimen has been since it rested at 0. Where it is farther out than ever, that mean is no larger
+//! than d, every bᵢ ≥ 0, and at rest all of them die away towards 0: the force can only fall. A force that grows there is
+//! drift. After an unloading it may grow by itself, so that those holds are told and not judged; so are those of frames, whose
+//! storeys are not farthest out when their floors are.
+
+use super::{Guard, Reading};
+
+/// What the holds of a run tell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Held {
+    /// Holds that were long enough to tell a slope.
+    pub count: u64,
+    /// s
+    pub longest: f64,
+    /// Of each axis, the fastest by size: N/s and m/s.
+    pub slopes: Vec<(f64, f64)>,
+    /// Largest growth of the force in one of them, away from the start, farther out than ever before, N. None: no such hold.
+    pub grown: Option<f64>,
+}
+
+/// The holds so far.
+#[derive(Debug)]
+pub(super) struct Holds {
+    /// Shorter ones tell nothing, s.
+    least: f64,
+    /// Where nothing loads the specimen, and the farthest places on either side of it, m.
+    home: f64,
+    low: f64,
+    high: f64,
+    /// The first reading of this hold and its last; where it is.
+    now: Option<(Reading, Reading)>,
+    /// +1 or −1 where the specimen is farther out than ever, else 0.
+    outward: f64,
+    told: Held,
+}
+
+impl Holds {
+    fn from(home: &[f64], least: f64) -> Self {
+        let start = home.first().copied().unwrap_or(0.0);
+        let told = Held { slopes: vec![(0.0, 0.0); home.len()], ..Held::default() };
+        Self { least, home: start, low: start, high: start, now: None, outward: 0.0, told }
+    }
+
+    /// A settled reading at this target (m).
+    pub(super) fn see(&mut self, commanded: &[f64], reading: &Reading) {
+        if let Some((_, last)) = &mut self.now {
+            last.clone_from(reading);
+            return;
+        }
+        self.outward = match commanded {
+            [place] if *place > self.home && *place >= self.high => 1.0,
+            [place] if *place < self.home && *place <= self.low => -1.0,
+            _ => 0.0,
+        };
+        self.now = Some((reading.clone(), reading.clone()));
+    }
+
+    /// The rig leaves this target (m).
+    pub(super) fn leave(&mut self, commanded: &[f64]) {
+        self.told = self.so_far();
+        self.now = None;
+        if let Some(place) = commanded.first() {
+            (self.low, self.high) = (self.low.min(*place), self.high.max(*place));
+        }
+    }
+
+    /// With the hold that is not over yet.
+    fn so_far(&self) -> Held {
+        let mut told = self.told.clone();
+        let Some((first, last)) = &self.now else { return told };
+        let seconds = last.time - first.time;
+        if seconds.is_nan() || seconds <= 0.0 || seconds < self.least {
+            return told;
+        }
+        told.count += 1;
+        told.longest = told.longest.max(seconds);
+        let of = |one: &[f64], other: &[f64], axis: usize| other[axis] - one[axis];
+        for (axis, (force, displacement)) in told.slopes.iter_mut().enumerate() {
+            faster(force, of(&first.force, &last.force, axis) / seconds);
+            faster(displacement, of(&first.displacement, &last.displacement, axis) / seconds);
+        }
+        if self.outward != 0.0 {
+            let grown = self.outward * of(&first.force, &last.force, 0);
+            told.grown = Some(told.grown.map_or(grown, |most| most.max(grown)));
+        }
+        told
+    }
+}
+
+fn faster(fastest: &mut f64, slope: f64) {
+    if slope.abs() > fastest.abs() {
+        *fastest = slope;
+    }
+}
+
+impl Guard<'_> {
+    /// Tells holds of at least this length (s) from here on, where nothing loads the specimen.
+    pub fn watch_holds(&mut self, least: f64) {
+        self.holds = Some(Holds::from(&self.commanded, least));
+    }
+
+    /// Whether holds are told.
+    #[must_use]
+    pub const fn watches_holds(&self) -> bool {
+        self.holds.is_some()
+    }
+
+    /// What they told; none is watched any more.
+    pub fn take_held(&mut self) -> Held {
+        self.holds.take().map_or_else(Held::default, |holds| holds.so_far())
+    }
+
+    /// It sets off from where it is.
+    pub(super) fn leave(&mut self) {
+        self.settled = false;
+        if let Some(holds) = &mut self.holds {
+            holds.leave(&self.commanded);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reading(time: f64, force: f64) -> Reading {
+        Reading { time, displacement: vec![1e-6 * time], force: vec![force], raw: Vec::new() }
+    }
+
+    /// Holds at these places (m), each of two seconds in which the force changes by so much, N.
+    fn held(holds: &[(f64, f64)]) -> Held {
+        let mut told = Holds::from(&[0.0], 1.0);
+        for (number, (place, change)) in (0_u32..).zip(holds) {
+            let time = 10.0 * f64::from(number);
+            for (later, force) in [(0.0, 100.0), (1.0, 500.0), (2.0, 100.0 + change)] {
+                told.see(&[*place], &reading(time + later, force));
+            }
+            told.leave(&[*place]);
+        }
+        told.so_far()
+    }
+
+    #[test]
+    fn slopes_are_told_of_every_hold_and_growth_only_where_it_is_farthest_out() {
+        let told = held(&[(0.001, -4.0), (0.003, -1.0), (0.002, 7.0), (-0.001, 0.5), (0.003, 0.25)]);
+        assert_eq!((told.count, told.longest), (5, 2.0));
+        assert!((told.slopes[0].0 - 3.5).abs() < 1e-12 && (told.slopes[0].1 - 1e-6).abs() < 1e-18);
+        // On the other side a force that grows away from 0 falls.
+        assert_eq!(told.grown, Some(0.25), "the one after the unloading is told only");
+        assert_eq!(held(&[(-0.001, -0.5)]).grown, Some(0.5));
+        assert_eq!(held(&[(0.0, 3.0)]).grown, None, "where it began nothing relaxes and nothing loads");
+    }
+
+    #[test]
+    fn a_hold_that_is_short_tells_nothing_and_one_that_goes_on_does() {
+        let mut told = Holds::from(&[0.0], 1.5);
+        told.see(&[0.001], &reading(0.0, 1.0));
+        told.see(&[0.001], &reading(1.0, 2.0));
+        assert_eq!(told.so_far(), Held { slopes: vec![(0.0, 0.0)], ..Held::default() });
+        told.see(&[0.001], &reading(2.0, 3.0));
+        assert_eq!((told.so_far().count, told.so_far().grown), (1, Some(2.0)));
+        assert_eq!(told.so_far().count, 1, "asking changes nothing");
+    }
+}
