@@ -14,6 +14,12 @@ pub enum Source {
         procedure: ProcedureId,
         result: &'static str,
     },
+    /// The same of one entry of a list of results.
+    FitEntry {
+        procedure: ProcedureId,
+        result: &'static str,
+        entry: usize,
+    },
     /// By its place among the plan's strikers.
     StrikerMass(usize),
     StrikerVelocity(usize),

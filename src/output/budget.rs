@@ -64,7 +64,7 @@ impl Budget<'_> {
 
 /// Budgets of a procedure's results, those that more enters than its own scatter.
 pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureRecord) -> Vec<Budget<'a>> {
-    let own = |part: &Contribution| matches!(part.source, Source::Fit { procedure, .. } if procedure == ProcedureId(index));
+    let own = |part: &Contribution| matches!(part.source, Source::Fit { procedure, .. } | Source::FitEntry { procedure, .. } if procedure == ProcedureId(index));
     let made = procedure.results.iter().filter(|result| !result.contributions.iter().all(own));
     made.flat_map(|result| match &result.value {
         ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } => {
@@ -106,9 +106,14 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
     let striker = |index: usize| plan.strikers.get(index);
     let (input, from, value, uncertainty, dimension) = match part.source {
         Source::Fit { procedure, result } => {
-            let (value, uncertainty, dimension) = fitted(run, procedure, result, part.source);
+            let (value, uncertainty, dimension) = fitted(run, procedure, (result, None), part.source);
             let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
             (format!("{name}.{result}"), From::Result, value, uncertainty, dimension)
+        }
+        Source::FitEntry { procedure, result, entry } => {
+            let (value, uncertainty, dimension) = fitted(run, procedure, (result, Some(entry)), part.source);
+            let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
+            (format!("{name}.{result}[{entry}]"), From::Result, value, uncertainty, dimension)
         }
         Source::StrikerMass(index) => {
             let (name, value, u) = striker(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.mass, s.mass_uncertainty));
@@ -199,15 +204,22 @@ fn damping_ratio(
     (label, From::Plan, value, Some(uncertainty), Dimension::NUMBER)
 }
 
-/// Value and dimension of a fitted result, and how much of its uncertainty is of this source.
-fn fitted(run: &Run<'_>, procedure: ProcedureId, name: &'static str, source: Source) -> (Option<f64>, Option<f64>, Dimension) {
+/// Value and dimension of a fitted result or of an entry of one, and how much of its uncertainty is of this source.
+fn fitted(
+    run: &Run<'_>,
+    procedure: ProcedureId,
+    (name, entry): (&'static str, Option<usize>),
+    source: Source,
+) -> (Option<f64>, Option<f64>, Dimension) {
     let reference = ResultReference { procedure, name, part: Part::Value };
-    let value = match run.record.result(reference) {
-        Some(ResultValue::Number { value, .. }) => value,
+    let value = match (run.record.result(reference), entry) {
+        (Some(ResultValue::Number { value, .. }), _) => value,
+        (Some(ResultValue::List(values)), Some(entry)) => values.get(entry).copied(),
         _ => None,
     };
     let parts = run.record.contributions(reference);
-    let uncertainty = parts.iter().find(|part| part.source == source).map(|part| part.amount);
+    let mut mine = parts.iter().filter(|part| part.entry == entry.unwrap_or(0));
+    let uncertainty = mine.find(|part| part.source == source).map(|part| part.amount);
     let found = run.record.procedures.get(procedure.0).and_then(|procedure| procedure.result(name));
     (value, uncertainty, found.map_or(Dimension::NUMBER, |found| found.dimension))
 }

@@ -18,6 +18,7 @@ mod unload;
 use crate::formula::{Formula, ResultReference};
 use crate::mechanics::monitor;
 use crate::quantity::Dimension;
+use crate::uncertainty::Source;
 
 pub use axis::{AxisCalibration, AxisPlan};
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
@@ -364,6 +365,18 @@ pub struct Condition {
 }
 
 impl Condition {
+    /// Adds the source of every number that it states with an uncertainty, each once.
+    pub fn collect_stated(&self, into: &mut Vec<Source>) {
+        self.value.collect_stated(into);
+        match &self.test {
+            Test::Compare { limit, .. } => limit.collect_stated(into),
+            Test::Within { target, tolerance, .. } => {
+                target.collect_stated(into);
+                tolerance.collect_stated(into);
+            }
+        }
+    }
+
     /// Adds every result that it reads, each once.
     pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
         self.value.collect_references(into);

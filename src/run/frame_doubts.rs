@@ -40,10 +40,10 @@ impl FrameDoubts<'_> {
     pub fn sources(&self, formulas: &[&Formula], stated: &[(Source, f64)]) -> Vec<Source> {
         let ratios = self.ratios();
         let mut references = Vec::new();
-        for formula in formulas.iter().copied().chain(ratios) {
-            formula.collect_references(&mut references);
-        }
+        let read = || formulas.iter().copied().chain(ratios);
+        read().for_each(|formula| formula.collect_references(&mut references));
         let mut sources = sources_of(&references, self.results);
+        read().for_each(|formula| formula.collect_stated(&mut sources));
         let specimen = self.specimen;
         let storeys = self.frame.storeys.iter().enumerate().flat_map(|(storey, it)| {
             [

@@ -102,10 +102,12 @@ impl<'run> Doubts<'run> {
     fn sources(&self) -> Vec<Source> {
         let Impact { striker, specimen, mass, stiffness, damping, contact, .. } = self.plan;
         let mut references = Vec::new();
-        for formula in [mass, stiffness, damping].into_iter().chain(contact_formulas(contact)) {
+        let read = || [mass, stiffness, damping].into_iter().chain(contact_formulas(contact));
+        for formula in read() {
             formula.collect_references(&mut references);
         }
         let mut sources = sources_of(&references, self.results);
+        read().for_each(|formula| formula.collect_stated(&mut sources));
         let Striker { mass_uncertainty, velocity_uncertainty, .. } = self.whole.strikers[*striker];
         let calibration = &self.whole.rig.calibration_of(0);
         let stated = [
