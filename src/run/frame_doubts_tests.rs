@@ -234,7 +234,9 @@ fn two_elastic_storeys_come_out_by_their_modes() {
         let scale = from(&parts, Source::GroundScale(0));
         // Told between the ends of steps, where the value is told at one.
         assert!((scale / (0.02 * value) - 1.0).abs() < 1e-4, "{name}[{place}] of the ground: {scale}");
-        assert!(parts.iter().all(|part| part.smooth), "{parts:?}");
+        // What does next to nothing may well do it to either side.
+        let rough = parts.iter().filter(|part| !part.smooth && part.amount.abs() > 1e-4 * value);
+        assert_eq!(rough.count(), 0, "{parts:?}");
     }
     assert!(compared >= 20, "only {compared} contributions that are any");
 }
