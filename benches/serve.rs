@@ -26,16 +26,7 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
     let address = listener.local_addr().expect("it is bound");
     let server = std::thread::spawn(move || {
         let behaviour = Some(Behaviour::Elastic { stiffness: STIFFNESS });
-        let specimen = PlanSpecimen {
-            name: "spring".to_owned(),
-            mass: 20.0,
-            mass_from: None,
-            mass_uncertainty: 0.0,
-            frame: None,
-            behaviour,
-            damping: 0.0,
-            coulomb: 0.0,
-        };
+        let specimen = PlanSpecimen::new("spring", 20.0, behaviour);
         let settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
         let mut rig = VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0);
         let limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };

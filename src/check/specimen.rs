@@ -27,17 +27,9 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let (name, head) = (declared.name, declared.block.head);
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
-        let (mass, mass_uncertainty) = (frame.total_mass(), frame.total_mass_uncertainty());
-        return Some(Specimen {
-            name: name?.node.clone(),
-            mass,
-            mass_from: None,
-            mass_uncertainty,
-            frame: Some((*frame).clone()),
-            behaviour: None,
-            damping: 0.0,
-            coulomb: 0.0,
-        });
+        let mass_uncertainty = frame.total_mass_uncertainty();
+        let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
+        return Some(Specimen { frame, mass_uncertainty, ..Specimen::new(&name?.node, mass, None) });
     }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {

@@ -386,16 +386,7 @@ mod tests {
             Stepping, Striker, Until,
         };
         use crate::run::testing::every;
-        let specimen = Specimen {
-            name: "beam".to_owned(),
-            mass: 1.0,
-            mass_from: None,
-            mass_uncertainty: 0.0,
-            frame: None,
-            behaviour: Some(Behaviour::Elastic { stiffness: 327.65 }),
-            damping: 0.0,
-            coulomb: 0.0,
-        };
+        let specimen = Specimen::new("beam", 1.0, Some(Behaviour::Elastic { stiffness: 327.65 }));
         let impact = Impact {
             specimen: 0,
             striker: 0,
@@ -413,15 +404,7 @@ mod tests {
             particulars: Vec::new(),
             parameters: Vec::new(),
             specimens: vec![specimen],
-            strikers: vec![Striker {
-                name: "hammer".to_owned(),
-                mass: 10.0,
-                mass_uncertainty: 0.0,
-                velocity: 1.0,
-                velocity_uncertainty: 0.0,
-                gap: 0.0,
-                gravity: 0.0,
-            }],
+            strikers: vec![Striker::new("hammer", 10.0, 1.0)],
             grounds: Vec::new(),
             rig: RigPlan {
                 name: "noisy".to_owned(),

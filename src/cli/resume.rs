@@ -168,16 +168,8 @@ fn settle(
     let found = rig.read()?;
     let bands = Bands::of(&plan.rig, link);
     let decision = tape::decide(played, &RigBody::of(rig), &found, &bands, arguments.accept_relaxation)?;
-    Ok(ResumeBody {
-        from: decision.from,
-        by: arguments.operator.clone(),
-        reason: arguments.reason.clone(),
-        doubt: decision.doubt,
-        found: (found.displacement, found.force),
-        recorded: decision.recorded,
-        t: played.time,
-        wall: real_rig::wall_clock()(),
-    })
+    let resumption = decision.resumption(&arguments.operator, &arguments.reason, &found, played.time);
+    Ok(ResumeBody { wall: real_rig::wall_clock()(), ..resumption })
 }
 
 /// The record as it counts now, with the resumption in it.

@@ -159,6 +159,7 @@ fn fitted(points: &[(f64, f64)], knee: f64, [intercept, stiffness, hardened]: [f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanics::testing::normal;
 
     /// K 400 kN/m, knee at 10.3 mm and 4.12 kN, `K_p` 32 kN/m.
     fn ramp(noise: &mut dyn FnMut() -> f64) -> (Vec<f64>, Vec<f64>) {
@@ -214,14 +215,8 @@ mod tests {
     /// The spread of a thousand fits is the standard error that each of them states.
     #[test]
     fn its_standard_errors_are_the_spread_of_many_fits() {
-        // Knuth's congruential generator (MMIX), its upper half.
-        let mut state = 3_u64;
-        let mut uniform = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            f64::from(u32::try_from(state >> 32).unwrap()) / f64::from(u32::MAX)
-        };
-        // Sum of twelve uniform numbers less six: unit variance.
-        let mut noise = || 15.0 * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0);
+        let mut state = 3;
+        let mut noise = || 15.0 * normal(&mut state);
         let fits: Vec<BilinearFit> = (0..1000)
             .map(|_| {
                 let (x, y) = ramp(&mut noise);

@@ -223,12 +223,7 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Knuth's congruential generator (MMIX), its upper half, from −1 to 1.
-    fn uniform(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2.0 * f64::from(u32::try_from(*state >> 32).unwrap()) / f64::from(u32::MAX) - 1.0
-    }
+    use crate::mechanics::testing::uniform;
 
     /// Two breaks in thirty noisy points: no pair of places on a grid of 0.05 leaves less than what was found.
     #[test]
@@ -241,7 +236,7 @@ mod tests {
                     (
                         x,
                         row(x, &[0.9, 2.1]).zip([0.0, 1.0, 0.4, 0.1]).map(|(a, b)| a * b).sum::<f64>()
-                            + noise * uniform(&mut state),
+                            + noise * (2.0 * uniform(&mut state) - 1.0),
                     )
                 })
                 .collect();

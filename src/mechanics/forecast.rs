@@ -46,12 +46,7 @@ pub fn of_impact(input: &ImpactInput, behaviour: &Behaviour, (until, steps): (Un
         let tracking = monitor.take_as(target, place, force, taken);
         let time = solver.complete(place, force).time;
         foretold.note(tracking.share_of(input.striker_energy()).unwrap_or(0.0), bound, time);
-        let over = match until {
-            Until::StrikerStop => solver.finished(),
-            Until::Rebound => solver.rebounded(),
-            Until::Duration => false,
-        };
-        if over || !place.is_finite() {
+        if solver.over(until) || !place.is_finite() {
             break;
         }
     }

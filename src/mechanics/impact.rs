@@ -298,11 +298,7 @@ impl ImpactSolver {
     /// Whether the run has come to its end before its duration.
     #[must_use]
     pub fn over(&self, until: Until) -> bool {
-        match until {
-            Until::StrikerStop => self.finished(),
-            Until::Rebound => self.rebounded(),
-            Until::Duration => false,
-        }
+        until.reached(|| self.finished(), || self.rebounded())
     }
 
     /// Whether the last step ended with Ẋs ≤ 0 and Ẋ ≤ 0.

@@ -35,5 +35,7 @@ pub mod split;
 pub mod structure;
 pub mod summary;
 pub mod tangent;
+#[cfg(test)]
+mod testing;
 
 pub use integrator::critical_time_step;

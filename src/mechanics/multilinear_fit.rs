@@ -248,6 +248,7 @@ fn scaled_inverse(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanics::testing::normal;
 
     const BY_CRITERION: BreakCount = BreakCount::ByCriterion { most: 4 };
 
@@ -317,15 +318,6 @@ mod tests {
         assert_eq!(fit_multilinear(&x[..2], &x[..2], BY_CRITERION), None);
         assert_eq!(fit_multilinear(&[0.0; 8], &x, BY_CRITERION), None);
         assert_eq!(fit_multilinear(&x, &[f64::NAN; 8], BY_CRITERION), None);
-    }
-
-    /// Knuth's congruential generator (MMIX), its upper half; the sum of twelve less six has unit variance.
-    fn normal(state: &mut u64) -> f64 {
-        let mut uniform = || {
-            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            f64::from(u32::try_from(*state >> 32).unwrap()) / f64::from(u32::MAX)
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     }
 
     type Read = fn(&MultilinearFit) -> (f64, f64);

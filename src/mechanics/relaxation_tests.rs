@@ -2,6 +2,7 @@
 
 use super::maxwell::{MaxwellBranch, Travel};
 use super::relaxation::{Hold, RelaxationFit, RelaxationModel, Unrelaxed, fit_relaxation};
+use super::testing::normal;
 
 const BOTH: [RelaxationModel; 2] = [RelaxationModel::Exponential, RelaxationModel::StandardLinearSolid];
 /// 300 kN/m, beside it 200 kN/m that relax with 1.5 s; 12 N at no displacement.
@@ -58,15 +59,6 @@ fn without_noise_it_finds_the_solid() {
     }
     let fit = fit_relaxation(&holds(K1, pause, &mut || 0.0), 0.0, RelaxationModel::StandardLinearSolid).unwrap();
     assert!((fit.branch_stiffness.unwrap().0 / K1 - 1.0).abs() < 1e-7);
-}
-
-/// Knuth's congruential generator (MMIX), its upper half; the sum of twelve less six has unit variance.
-fn normal(state: &mut u64) -> f64 {
-    let mut uniform = || {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        f64::from(u32::try_from(*state >> 32).unwrap()) / f64::from(u32::MAX)
-    };
-    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
 }
 
 type Read = fn(&RelaxationFit) -> (f64, f64);

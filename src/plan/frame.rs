@@ -42,6 +42,15 @@ pub struct Storey {
     pub coulomb: f64,
 }
 
+impl Storey {
+    /// Of this mass (kg), stiffness (N/m) and behaviour, and nothing else stated.
+    #[must_use]
+    pub const fn new(mass: f64, stiffness: f64, behaviour: Behaviour) -> Self {
+        let (mass_uncertainty, stiffness_uncertainty) = (0.0, 0.0);
+        Self { mass, mass_uncertainty, stiffness, stiffness_uncertainty, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
+    }
+}
+
 impl Frame {
     /// A frame of storeys: M diagonal, K tridiagonal with `k_i + k_{i+1}` on its diagonal.
     #[must_use]

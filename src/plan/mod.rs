@@ -114,6 +114,21 @@ pub struct Specimen {
 }
 
 impl Specimen {
+    /// Of this mass (kg) and behaviour, and nothing else stated.
+    #[must_use]
+    pub fn new(name: &str, mass: f64, behaviour: Option<Behaviour>) -> Self {
+        Self {
+            name: name.to_owned(),
+            mass,
+            mass_from: None,
+            mass_uncertainty: 0.0,
+            frame: None,
+            behaviour,
+            damping: 0.0,
+            coulomb: 0.0,
+        }
+    }
+
     /// Actuators it takes, each with its load cell.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {
@@ -137,6 +152,15 @@ pub struct Striker {
     pub gap: f64,
     /// Acceleration along its way, m/s²: gn of a weight that falls.
     pub gravity: f64,
+}
+
+impl Striker {
+    /// Of this mass (kg) and velocity (m/s), both taken as exact, at the structure from the start.
+    #[must_use]
+    pub fn new(name: &str, mass: f64, velocity: f64) -> Self {
+        let (mass_uncertainty, velocity_uncertainty) = (0.0, 0.0);
+        Self { name: name.to_owned(), mass, mass_uncertainty, velocity, velocity_uncertainty, gap: 0.0, gravity: 0.0 }
+    }
 }
 
 /// Closed intervals (SI); an absent bound is infinite, so that `lo <= x && x <= hi` is the whole test.
@@ -327,6 +351,17 @@ pub enum Until {
     Rebound,
     /// The whole `duration`.
     Duration,
+}
+
+impl Until {
+    /// Whether a run is over whose striker has stopped, or is apart for good, as these say.
+    pub fn reached(self, stopped: impl FnOnce() -> bool, apart: impl FnOnce() -> bool) -> bool {
+        match self {
+            Self::StrikerStop => stopped(),
+            Self::Rebound => apart(),
+            Self::Duration => false,
+        }
+    }
 }
 
 /// When a person is asked to look.

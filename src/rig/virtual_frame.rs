@@ -323,15 +323,12 @@ mod tests {
 
     const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
 
-    fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, mass_uncertainty: 0.0, stiffness, stiffness_uncertainty: 0.0, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
-    }
-
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
     fn frame() -> Frame {
+        let yielding = Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 };
         Frame::of_storeys(vec![
-            storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
-            storey(2000.0, Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 }),
+            Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
+            Storey::new(1.0, 2000.0, yielding),
         ])
     }
 
@@ -391,8 +388,8 @@ mod tests {
     fn what_relaxes_or_gains_with_speed_is_felt_storey_by_storey() {
         let of = || Box::new(Behaviour::Elastic { stiffness: 2000.0 });
         let of_upper = |behaviour| {
-            let lower = storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 });
-            Frame::of_storeys(vec![lower, storey(2000.0, behaviour)])
+            let lower = Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 });
+            Frame::of_storeys(vec![lower, Storey::new(1.0, 2000.0, behaviour)])
         };
         let relaxing = of_upper(Behaviour::Maxwell { of: of(), stiffness: 1000.0, time_constant: 2.0 });
         let mut rig = VirtualFrame::new("frame", VirtualLink::default(), AT_ONCE, &relaxing, 1.0);

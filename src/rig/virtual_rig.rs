@@ -243,16 +243,7 @@ mod tests {
 
     pub(super) fn specimen(damping: f64, coulomb: f64) -> Specimen {
         let behaviour = Some(Behaviour::Elastic { stiffness: 1000.0 });
-        Specimen {
-            name: "spring".to_owned(),
-            mass: 1.0,
-            mass_from: None,
-            mass_uncertainty: 0.0,
-            frame: None,
-            behaviour,
-            damping,
-            coulomb,
-        }
+        Specimen { damping, coulomb, ..Specimen::new("spring", 1.0, behaviour) }
     }
 
     fn rig(link: VirtualLink) -> VirtualRig {

@@ -16,16 +16,7 @@ fn constant(value: f64) -> Formula {
 }
 
 fn storey(mass: f64, stiffness: f64) -> Storey {
-    Storey {
-        mass,
-        mass_uncertainty: 0.0,
-        stiffness,
-        stiffness_uncertainty: 0.0,
-        height: None,
-        behaviour: Behaviour::Elastic { stiffness },
-        damping: 0.0,
-        coulomb: 0.0,
-    }
+    Storey::new(mass, stiffness, Behaviour::Elastic { stiffness })
 }
 
 /// A frame on ground that begins to move at once, with these accelerations 10 ms apart.

@@ -42,25 +42,8 @@ pub(crate) fn empty_plan() -> Plan {
 pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Plan {
     let named = |(index, kind)| Procedure { name: format!("p{index}"), kind };
     Plan {
-        specimens: vec![Specimen {
-            name: "beam".to_owned(),
-            mass: 1.0,
-            mass_from: None,
-            mass_uncertainty: 0.0,
-            frame: None,
-            behaviour: Some(Behaviour::Elastic { stiffness }),
-            damping: 0.0,
-            coulomb: 0.0,
-        }],
-        strikers: vec![Striker {
-            name: "pendulum".to_owned(),
-            mass: 10.0,
-            mass_uncertainty: 0.0,
-            velocity: 1.0,
-            velocity_uncertainty: 0.0,
-            gap: 0.0,
-            gravity: 0.0,
-        }],
+        specimens: vec![Specimen::new("beam", 1.0, Some(Behaviour::Elastic { stiffness }))],
+        strikers: vec![Striker::new("pendulum", 10.0, 1.0)],
         procedures: procedures.into_iter().enumerate().map(named).collect(),
         ..empty_plan()
     }
@@ -68,16 +51,8 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
 
 /// A frame of two storeys of 1 kg, the upper of which is struck by 10 kg at 1 m/s: steps of 10 ms.
 pub(crate) fn struck_frame() -> Plan {
-    let storey = |stiffness, yield_force| Storey {
-        mass: 1.0,
-        mass_uncertainty: 0.0,
-        stiffness,
-        stiffness_uncertainty: 0.0,
-        height: None,
-        behaviour: Behaviour::Bilinear { stiffness, yield_force, hardening: 0.05 },
-        damping: 0.0,
-        coulomb: 0.0,
-    };
+    let storey =
+        |stiffness, yield_force| Storey::new(1.0, stiffness, Behaviour::Bilinear { stiffness, yield_force, hardening: 0.05 });
     let frame = Frame::of_storeys(vec![storey(500.0, 20.0), storey(300.0, 15.0)]);
     let blow = StoreyImpact {
         specimen: 0,

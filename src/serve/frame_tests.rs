@@ -9,16 +9,7 @@ use crate::rig::VirtualFrame;
 const MASSES: [f64; 2] = [2000.0, 1500.0];
 
 fn frame() -> Frame {
-    let storey = |(mass, stiffness)| Storey {
-        mass,
-        mass_uncertainty: 0.0,
-        stiffness,
-        stiffness_uncertainty: 0.0,
-        height: None,
-        behaviour: Behaviour::Elastic { stiffness },
-        damping: 0.0,
-        coulomb: 0.0,
-    };
+    let storey = |(mass, stiffness)| Storey::new(mass, stiffness, Behaviour::Elastic { stiffness });
     Frame::of_storeys(MASSES.into_iter().zip([3e6, 2e6]).map(storey).collect())
 }
 

@@ -18,16 +18,7 @@ pub(super) const LIMITS: Limits = Limits { displacement: Interval { low: -0.02, 
 
 fn spring() -> VirtualRig {
     let behaviour = Some(Behaviour::Elastic { stiffness: STIFFNESS });
-    let specimen = PlanSpecimen {
-        name: "spring".to_owned(),
-        mass: 20.0,
-        mass_from: None,
-        mass_uncertainty: 0.0,
-        frame: None,
-        behaviour,
-        damping: 0.0,
-        coulomb: 0.0,
-    };
+    let specimen = PlanSpecimen::new("spring", 20.0, behaviour);
     let settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
     VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0)
 }

@@ -402,15 +402,12 @@ mod tests {
 
     const RAM: RamSettings = RamSettings { sign: 1.0, noise: 0.0, resolution: 0.0, limits: Interval { low: -0.01, high: 0.01 } };
 
-    fn storey(stiffness: f64, behaviour: Behaviour) -> Storey {
-        Storey { mass: 1.0, mass_uncertainty: 0.0, stiffness, stiffness_uncertainty: 0.0, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
-    }
-
     /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
     fn frame() -> Frame {
+        let yielding = Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 };
         Frame::of_storeys(vec![
-            storey(3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
-            storey(2000.0, Behaviour::Bilinear { stiffness: 2000.0, yield_force: 4.0, hardening: 0.0 }),
+            Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
+            Storey::new(1.0, 2000.0, yielding),
         ])
     }
 

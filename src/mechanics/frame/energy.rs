@@ -1,5 +1,7 @@
 //! The energy balance of a frame, step by step. In: the ends of a step. Out: energies in the relative form.
 
+use std::ops::{Add as _, Sub as _};
+
 use super::FrameMatrices;
 
 /// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
@@ -43,22 +45,29 @@ impl FrameEnergies {
         scratch: (&mut [f64], &mut [f64]),
     ) -> Self {
         let (first, second) = scratch;
-        let restoring = 0.5 * sums(from.restoring_force, to.restoring_force, from.displacement, to.displacement, -1.0);
-        let input = 0.25 * sums(from.load, to.load, from.velocity, to.velocity, 1.0);
-        let mut damping = 0.0;
-        if damped && damping_work.is_none() {
-            for ((mean, before), after) in first.iter_mut().zip(from.velocity).zip(to.velocity) {
-                *mean = 0.5 * (before + after);
-            }
-            matrices.damping.mul_into(first, second);
-            damping = dot(first, second);
+        let braked = damped && damping_work.is_none();
+        if braked {
+            mean(from.velocity, to.velocity, first);
         }
-        matrices.mass.mul_into(to.velocity, second);
+        let restoring = trapezoid([from.restoring_force, to.restoring_force], [from.displacement, to.displacement], f64::sub);
+        let input = trapezoid([from.load, to.load], [from.velocity, to.velocity], f64::add);
+        let damping = if braked {
+            matrices.damping.mul_into(first, second);
+            dot(first, second)
+        } else {
+            0.0
+        };
+        let kinetic = if matrices.mass.half_bandwidth() == 0 {
+            weighed(to.velocity, matrices.mass.band(0))
+        } else {
+            matrices.mass.mul_into(to.velocity, second);
+            dot(second, to.velocity)
+        };
         let mut next = Self {
-            kinetic: 0.5 * dot(second, to.velocity),
-            restoring: self.restoring + restoring,
+            kinetic: 0.5 * kinetic,
+            restoring: self.restoring + 0.5 * restoring,
             damping: self.damping + damping_work.unwrap_or(time_step * damping),
-            input: self.input + time_step * input,
+            input: self.input + time_step * (0.25 * input),
             error: 0.0,
         };
         next.error = next.input - (next.kinetic + next.restoring + next.damping);
@@ -66,15 +75,24 @@ impl FrameEnergies {
     }
 }
 
-/// Sums side by side: one sum waits for each addition before the next.
+/// ½(x + y)
+#[inline(never)]
+fn mean(x: &[f64], y: &[f64], mean: &mut [f64]) {
+    let order = mean.len();
+    for ((mean, x), y) in mean.iter_mut().zip(&x[..order]).zip(&y[..order]) {
+        *mean = 0.5 * (x + y);
+    }
+}
+
+/// Numbers side by side: one sum waits for each addition before the next.
 const LANES: usize = 8;
 
 /// xᵀ y.
-pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
-    let (x, y) = (x.chunks_exact(LANES), y.chunks_exact(LANES));
-    let rest: f64 = x.remainder().iter().zip(y.remainder()).map(|(x, y)| x * y).sum();
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let (x, y) = (x.as_chunks::<LANES>(), y[..x.len()].as_chunks::<LANES>());
+    let rest: f64 = x.1.iter().zip(y.1).map(|(x, y)| x * y).sum();
     let mut sums = [0.0; LANES];
-    for (x, y) in x.zip(y) {
+    for (x, y) in x.0.iter().zip(y.0) {
         for ((sum, x), y) in sums.iter_mut().zip(x).zip(y) {
             *sum += x * y;
         }
@@ -82,16 +100,30 @@ pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// (x₀ + x₁)ᵀ (y₁ + sign · y₀).
-fn sums(x0: &[f64], x1: &[f64], y0: &[f64], y1: &[f64], sign: f64) -> f64 {
-    let term = |x: (&f64, &f64), y: (&f64, &f64)| (x.0 + x.1) * (y.1 + sign * y.0);
-    let (x0, x1, y0, y1) = (x0.chunks_exact(LANES), x1.chunks_exact(LANES), y0.chunks_exact(LANES), y1.chunks_exact(LANES));
-    let rest = x0.remainder().iter().zip(x1.remainder()).zip(y0.remainder().iter().zip(y1.remainder()));
-    let rest: f64 = rest.map(|(x, y)| term(x, y)).sum();
+/// xᵀ D x, D diagonal.
+fn weighed(x: &[f64], weights: &[f64]) -> f64 {
+    let (x, weights) = (x.as_chunks::<LANES>(), weights[..x.len()].as_chunks::<LANES>());
+    let rest: f64 = x.1.iter().zip(weights.1).map(|(x, weight)| weight * x * x).sum();
     let mut sums = [0.0; LANES];
-    for ((x0, x1), (y0, y1)) in x0.zip(x1).zip(y0.zip(y1)) {
+    for (x, weights) in x.0.iter().zip(weights.0) {
+        for ((sum, x), weight) in sums.iter_mut().zip(x).zip(weights) {
+            *sum += weight * x * x;
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+/// (x₀ + x₁)ᵀ (y₁ ± y₀), as `join` says.
+fn trapezoid(x: [&[f64]; 2], y: [&[f64]; 2], join: impl Fn(f64, f64) -> f64) -> f64 {
+    let order = x[0].len();
+    let (x0, x1) = (x[0].as_chunks::<LANES>(), x[1][..order].as_chunks::<LANES>());
+    let (y0, y1) = (y[0][..order].as_chunks::<LANES>(), y[1][..order].as_chunks::<LANES>());
+    let rest = x0.1.iter().zip(x1.1).zip(y0.1.iter().zip(y1.1));
+    let rest: f64 = rest.map(|((x0, x1), (y0, y1))| (x0 + x1) * join(*y1, *y0)).sum();
+    let mut sums = [0.0; LANES];
+    for ((x0, x1), (y0, y1)) in x0.0.iter().zip(x1.0).zip(y0.0.iter().zip(y1.0)) {
         for (sum, (x, y)) in sums.iter_mut().zip(x0.iter().zip(x1).zip(y0.iter().zip(y1))) {
-            *sum += term(x, y);
+            *sum += (x.0 + x.1) * join(*y.1, *y.0);
         }
     }
     sums.iter().sum::<f64>() + rest

@@ -132,22 +132,19 @@ impl TwoEnds {
             (from_above, from_below) = (*down, *up);
         }
         *middle -= from_above * above + from_below * below;
-        for (x, inverse) in upper.iter_mut().zip(&self.inverses) {
-            *x *= inverse;
-        }
-        *middle *= self.inverses[self.middle];
-        for (x, inverse) in lower.iter_mut().zip(&self.inverses[self.middle + 1..]) {
-            *x *= inverse;
-        }
+        let (inverse_above, rest) = self.inverses.split_at(self.middle);
+        let (inverse_middle, inverse_below) = (rest[0], &rest[1..]);
+        *middle *= inverse_middle;
         (above, below) = (*middle, *middle);
-        let pairs = upper[first..].iter_mut().zip(&down[first..]).rev().zip(lower.iter_mut().zip(up));
-        for ((upper, down), (lower, up)) in pairs {
-            above = *upper - down * above;
-            below = *lower - up * below;
+        let uppers = upper[first..].iter_mut().zip(&down[first..]).zip(&inverse_above[first..]).rev();
+        let lowers = lower.iter_mut().zip(up).zip(inverse_below);
+        for (((upper, down), upper_inverse), ((lower, up), lower_inverse)) in uppers.zip(lowers) {
+            above = *upper * upper_inverse - down * above;
+            below = *lower * lower_inverse - up * below;
             (*upper, *lower) = (above, below);
         }
-        for (x, multiplier) in upper[..first].iter_mut().zip(down) {
-            *x -= multiplier * above;
+        for ((x, multiplier), inverse) in upper[..first].iter_mut().zip(down).zip(inverse_above) {
+            *x = *x * inverse - multiplier * above;
         }
     }
 }

@@ -247,11 +247,7 @@ impl FrameImpactSolver {
     /// Whether the run has come to its end before its duration.
     #[must_use]
     pub fn over(&self, until: Until) -> bool {
-        match until {
-            Until::StrikerStop => self.finished(),
-            Until::Rebound => self.rebounded(),
-            Until::Duration => false,
-        }
+        until.reached(|| self.finished(), || self.rebounded())
     }
 
     /// Ends the step with what was measured at the targets.

@@ -17,6 +17,7 @@ mod restitution;
 mod schemes;
 mod solver;
 mod storeys;
+mod sweeps;
 mod tangents;
 
 pub use band::{RowsError, SymmetricBand};
@@ -45,6 +46,12 @@ impl FrameMatrices {
 
     /// −M ι `ü_g`, N: what a ground acceleration (m/s²) is to displacements against the ground.
     pub fn ground_load(&self, acceleration: f64, load: &mut [f64]) {
+        if self.mass.half_bandwidth() == 0 {
+            for (load, mass) in load.iter_mut().zip(self.mass.band(0)) {
+                *load = mass * -acceleration;
+            }
+            return;
+        }
         self.mass.row_sums(load);
         for load in load {
             *load *= -acceleration;

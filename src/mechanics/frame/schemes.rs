@@ -24,6 +24,7 @@
 use super::FrameMatrices;
 use super::band::SymmetricBand;
 use super::factor::{BandFactor, NotPositiveDefinite};
+use super::sweeps::{set_out, set_out_tridiagonal, travel};
 use crate::mechanics::method::Coefficients;
 use crate::plan::Integrator;
 
@@ -187,19 +188,17 @@ impl Schemes {
 impl Schemes {
     /// The whole step in tangent form, all but the force that will be read at its end.
     pub fn foretell(&mut self, from: Moment, load_end: &[f64], to: &mut Course, decide: Decide) {
-        let time_step = self.time_step;
-        let half = 0.5 * time_step;
-        let loads = to.acceleration.iter_mut().zip(load_end.iter().zip(from.force));
-        let ways = self.scratch.iter_mut().zip(&mut self.product).zip(from.velocity.iter().zip(from.acceleration));
-        for ((to, (load, force)), ((glide, drift), (velocity, acceleration))) in loads.zip(ways) {
-            *to = load - force;
-            *glide = velocity + half * acceleration;
-            *drift = time_step * (velocity + 0.5 * half * acceleration);
+        let half = 0.5 * self.time_step;
+        let (damping, operator) = (&self.matrices.damping, &self.operator);
+        if damping.half_bandwidth() == 1 && operator.half_bandwidth() == 1 {
+            set_out_tridiagonal(self.time_step, &from, load_end, (damping, operator), &mut to.acceleration);
+        } else {
+            set_out(self.time_step, &from, load_end, &mut to.acceleration, &mut self.scratch, &mut self.product);
+            if self.damped {
+                damping.mul_add(-1.0, &self.scratch, &mut to.acceleration);
+            }
+            operator.mul_add(-1.0, &self.product, &mut to.acceleration);
         }
-        if self.damped {
-            self.matrices.damping.mul_add(-1.0, &self.scratch, &mut to.acceleration);
-        }
-        self.operator.mul_add(-1.0, &self.product, &mut to.acceleration);
         self.factor.solve_in_place(&mut to.acceleration);
         if let Some(struck) = &mut self.struck {
             let s = struck.place;
@@ -207,20 +206,7 @@ impl Schemes {
             struck.force = decide(velocity, half * struck.response[s]);
             add(&mut to.acceleration, struck.force, &struck.response);
         }
-        let before = from.velocity.iter().zip(from.acceleration);
-        for ((to, after), (velocity, acceleration)) in to.velocity.iter_mut().zip(&to.acceleration).zip(before) {
-            *to = velocity + half * (acceleration + after);
-        }
-        self.travel(from, to);
-    }
-
-    /// Eq. (2d).
-    fn travel(&self, from: Moment, to: &mut Course) {
-        let half = 0.5 * self.time_step;
-        let before = from.displacement.iter().zip(from.velocity);
-        for ((to, after), (displacement, velocity)) in to.displacement.iter_mut().zip(&to.velocity).zip(before) {
-            *to = displacement + half * (velocity + after);
-        }
+        travel(self.time_step, &from, &to.acceleration, &mut to.velocity, &mut to.displacement);
     }
 
     /// d̃₁ of explicit Newmark and α-OS, and ṽ₁ into `to.velocity`.

@@ -193,9 +193,8 @@ impl FrameSolver {
             } else {
                 self.schemes.impose(from, &mut self.next);
             }
-            self.state.target.copy_from_slice(&self.next.displacement);
         }
-        &self.state.target
+        &self.next.displacement
     }
 
     /// The same in tangent form, with a law that finds its own way through the step and tells what dampers took on it, J.
@@ -204,9 +203,8 @@ impl FrameSolver {
             self.predicted = true;
             self.load_end.copy_from_slice(load_end);
             self.damping_work = Some(pass(&self.schemes, self.state.moment(), &self.load_end, &mut self.next));
-            self.state.target.copy_from_slice(&self.next.displacement);
         }
-        &self.state.target
+        &self.next.displacement
     }
 
     /// Whether the contact of a step is decided on once its force is read.
@@ -235,6 +233,7 @@ impl FrameSolver {
             self.predict_with(&load, decide);
         }
         self.predicted = false;
+        self.state.target.copy_from_slice(&self.next.displacement);
         let felt = if let Some(stiffness) = &self.modification {
             self.felt.copy_from_slice(restoring_force);
             let away = measured_displacement.iter().zip(&self.state.target);

@@ -61,10 +61,11 @@ pub fn shears(restoring_force: &[f64], shear: &mut [f64]) {
 
 /// Restoring force of each floor, N, from the shears of its own storey and of the one above.
 pub fn floor_forces(shear: &[f64], restoring_force: &mut [f64]) {
-    restoring_force.copy_from_slice(shear);
-    for (force, above) in restoring_force.iter_mut().zip(shear.iter().skip(1)) {
-        *force -= above;
+    let Some((top, _)) = shear.split_last() else { return };
+    for (force, shears) in restoring_force.iter_mut().zip(shear.windows(2)) {
+        *force = shears[0] - shears[1];
     }
+    restoring_force[shear.len() - 1] = *top;
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::record::{EventKind, Outcome};
 use crate::rig::failpoint::Guarding;
 use crate::rig::{Reading, Rig as _, RigFault, Tally};
 use crate::run::Unwatched;
-use crate::run::tape::{self, Bands, Played, ResumeBody, RigBody};
+use crate::run::tape::{self, Bands, Played, RigBody};
 use crate::simulator::Log;
 
 const SINE: &str = include_str!("../../../plans/two_storeys_sine.psd");
@@ -174,16 +174,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
                 }
                 other => other.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
             };
-            let resumption = ResumeBody {
-                from: decision.from,
-                by: "A. Witness".to_owned(),
-                reason: "power".to_owned(),
-                doubt: decision.doubt,
-                found: (found.displacement, found.force),
-                recorded: decision.recorded,
-                t: before.time,
-                wall: None,
-            };
+            let resumption = decision.resumption("A. Witness", "power", &found, before.time);
             let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
             journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
             journal.append(EntryKind::Resume, &resumption).unwrap();

@@ -47,14 +47,9 @@ mod tests {
     /// 3 kN/m with 50 N·s/m and 0.25 N; 2 kN/m with 20 N·s/m.
     fn rig(link: VirtualLink) -> VirtualFrame {
         let storey = |stiffness, damping, coulomb| Storey {
-            mass: 1.0,
-            mass_uncertainty: 0.0,
-            stiffness,
-            stiffness_uncertainty: 0.0,
-            height: None,
-            behaviour: Behaviour::Elastic { stiffness },
             damping,
             coulomb,
+            ..Storey::new(1.0, stiffness, Behaviour::Elastic { stiffness })
         };
         let frame = Frame::of_storeys(vec![storey(3000.0, 50.0, 0.25), storey(2000.0, 20.0, 0.0)]);
         VirtualFrame::new("frame", link, AT_ONCE, &frame, 1.0)

@@ -1,7 +1,7 @@
 //! Where a cut-off run stands, before it may go on. In: its record, and what the rig says now without having moved. Out:
 //! from which record on it is done again, or why it must not be. A target is sent again only if it never arrived.
 
-use super::entry::{Doubt, IntentBody, OperatorBody, RigBody, SampleBody};
+use super::entry::{Doubt, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
 use super::played::{Mismatch, Played, Unplayable, body};
 use crate::plan::{RealLink, RigPlan};
 use crate::record::journal::{EntryKind, Line};
@@ -43,6 +43,23 @@ pub struct Decision {
     pub doubt: Doubt,
     /// The last reading that counts: m, N.
     pub recorded: Option<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Decision {
+    /// The entry that a run goes on with, whose rig was found like this: who resumes it and why, the rig time it goes on at (s).
+    #[must_use]
+    pub fn resumption(self, by: &str, reason: &str, found: &Reading, time: f64) -> ResumeBody {
+        ResumeBody {
+            from: self.from,
+            by: by.to_owned(),
+            reason: reason.to_owned(),
+            doubt: self.doubt,
+            found: (found.displacement.clone(), found.force.clone()),
+            recorded: self.recorded,
+            t: time,
+            wall: None,
+        }
+    }
 }
 
 /// Why a run must not go on by itself.

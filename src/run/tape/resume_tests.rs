@@ -55,8 +55,7 @@ fn shaken(mode: Mode) -> Plan {
         Mode::StepAndPause => Behaviour::Bilinear { stiffness, yield_force: stiffness * 0.002, hardening: 0.1 },
         Mode::Continuous { .. } => Behaviour::Elastic { stiffness },
     };
-    let storey =
-        |mass, stiffness| Storey { mass, mass_uncertainty: 0.0, stiffness, stiffness_uncertainty: 0.0, height: None, behaviour: behaviour(stiffness), damping: 0.0, coulomb: 0.0 };
+    let storey = |mass, stiffness| Storey::new(mass, stiffness, behaviour(stiffness));
     let mut plan = elastic_plan(300.0, Vec::new());
     plan.specimens[0].behaviour = None;
     plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey(2000.0, 3e6), storey(1500.0, 2e6)]));

@@ -265,19 +265,10 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
         Err(Refusal::NothingRecorded) => return assert!(rig.0.borrow().carried_out.is_empty()),
         other => other.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
     };
-    let resume_body = ResumeBody {
-        from: decision.from,
-        by: "A. Witness".to_owned(),
-        reason: "power".to_owned(),
-        doubt: decision.doubt.clone(),
-        found: (found.displacement, found.force),
-        recorded: decision.recorded,
-        t: before.time,
-        wall: None,
-    };
+    let resumption = decision.resumption("A. Witness", "power", &found, before.time);
     let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
     journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
-    journal.append(EntryKind::Resume, &resume_body).unwrap();
+    journal.append(EntryKind::Resume, &resumption).unwrap();
     let (_, again) = played(&disk.written());
     let resumed = resume(plan, again, &mut rig, &mut Witness, journal, no_wall());
     assert_eq!(resumed.mismatch, None, "call {call}");
@@ -287,7 +278,7 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
     let both = Some(before.tally.plus(rig.tally())).filter(|tally| *tally != Tally::default());
     assert_eq!(mended, both.map(|tally| tally.to_string()), "call {call}: what was mended before counts too");
     let carried_out = rig.0.borrow().carried_out.clone();
-    if matches!(decision.doubt, Doubt::Stroke { .. }) {
+    if matches!(resumption.doubt, Doubt::Stroke { .. }) {
         assert_eq!(carried_out.len(), once.len() + 1, "call {call}: only back to where the stroke began");
     } else {
         assert_eq!(carried_out, once, "call {call}: no target twice, none left out");

@@ -187,7 +187,7 @@ fn of_two() -> (Native, Bench) {
 }
 
 fn storey(stiffness: f64) -> Storey {
-    Storey { mass: 1.0, mass_uncertainty: 0.0, stiffness, stiffness_uncertainty: 0.0, height: None, behaviour: Behaviour::Elastic { stiffness }, damping: 0.0, coulomb: 0.0 }
+    Storey::new(1.0, stiffness, Behaviour::Elastic { stiffness })
 }
 
 #[test]

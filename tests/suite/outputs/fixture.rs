@@ -343,24 +343,11 @@ fn plan() -> Plan {
         particulars: vec![("standard", "In-house procedure 12".into()), ("specimen_id", "GFRP-0147".into())],
         parameters: vec![Parameter { name: "impact_speed".into(), value: 1.0, dimension: Dimension::VELOCITY, set: true }],
         specimens: vec![Specimen {
-            name: "beam".into(),
-            mass: MASS,
-            mass_from: None,
-            mass_uncertainty: 0.0,
-            frame: None,
-            behaviour: Some(Behaviour::Elastic { stiffness: STIFFNESS }),
             damping: 4.0,
             coulomb: 0.3,
+            ..Specimen::new("beam", MASS, Some(Behaviour::Elastic { stiffness: STIFFNESS }))
         }],
-        strikers: vec![Striker {
-            name: "pendulum".into(),
-            mass: STRIKER_MASS,
-            mass_uncertainty: 0.0,
-            velocity: 1.0,
-            velocity_uncertainty: 0.0,
-            gap: 0.0,
-            gravity: 0.0,
-        }],
+        strikers: vec![Striker::new("pendulum", STRIKER_MASS, 1.0)],
         grounds: Vec::new(),
         rig: RigPlan {
             name: "rehearsal".into(),

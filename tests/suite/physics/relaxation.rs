@@ -14,16 +14,7 @@ const TAU: f64 = 1.5;
 fn rig(link: VirtualLink, settle: Settle) -> VirtualRig {
     let of = Box::new(Behaviour::Elastic { stiffness: K });
     let behaviour = Some(Behaviour::Maxwell { of, stiffness: K1, time_constant: TAU });
-    let specimen = Specimen {
-        name: "pad".to_owned(),
-        mass: 1.0,
-        mass_from: None,
-        mass_uncertainty: 0.0,
-        frame: None,
-        behaviour,
-        damping: 0.0,
-        coulomb: 0.0,
-    };
+    let specimen = Specimen::new("pad", 1.0, behaviour);
     VirtualRig::new(link, settle, Some(&specimen), -1.0)
 }
 
