@@ -31,7 +31,7 @@ pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, Sti
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
+    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules, RealLink, RigPlan,
     SafeState, Settle, VirtualLink, ZeroAfter,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};

@@ -174,6 +174,13 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let of = |name: &str| blows.iter().map(|blow| number(blow, name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
     let list =
         |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
+    // Each as uncertain as that of its blow.
+    let known = |name, dimension, of_blow: &str| {
+        let parts = blows.iter().enumerate().flat_map(|(entry, blow)| {
+            contributions(blow, of_blow).into_iter().map(move |part| Contribution { entry, ..part })
+        });
+        NamedResult { contributions: parts.collect(), ..list(name, dimension, of(of_blow)) }
+    };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
     let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;
     let passed = blows.iter().rev().find(|blow| blow.held == Some(true)).map(|blow| blow.energy);
@@ -192,10 +199,10 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
         sum(blows, "absorbed_energy", absorbed),
         list("velocities", Dimension::VELOCITY, blows.iter().map(|blow| blow.velocity).collect()),
         list("blow_energies", Dimension::ENERGY, blows.iter().map(|blow| blow.energy).collect()),
-        list("max_displacements", Dimension::LENGTH, of("max_displacement")),
+        known("max_displacements", Dimension::LENGTH, "max_displacement"),
         list("residual_displacements", Dimension::LENGTH, rests),
-        list("absorbed_energies", Dimension::ENERGY, of("absorbed_energy")),
-        list("impulses", Dimension::IMPULSE, of("impulse")),
+        known("absorbed_energies", Dimension::ENERGY, "absorbed_energy"),
+        known("impulses", Dimension::IMPULSE, "impulse"),
         list("energy_errors", Dimension::NUMBER, of("energy_error")),
     ]
 }

@@ -10,7 +10,7 @@ use crate::formula::{Formula, ProcedureId, Results};
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath};
 use crate::mechanics::rerun::{OUTCOMES, Outcome, rerun};
 use crate::mechanics::summary::ImpactSummary;
-use crate::plan::{Contact, Impact, Link, Plan, ReadingRules, Striker};
+use crate::plan::{Contact, Impact, Link, Plan, ReadingRules, Striker, VirtualLink};
 use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Moved, Source, sources_of};
@@ -174,6 +174,7 @@ pub(super) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
 /// over it: q/√12.
 pub(super) fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) -> (f64, f64) {
     let (noise, resolution, quantum) = match &plan.rig.link {
+        Link::Virtual(VirtualLink { foretold: Some(errors), .. }) => (errors.noise, errors.resolution, errors.force_resolution),
         Link::Virtual(link) => (declared.force, declared.resolution, link.force_resolution),
         Link::Real(link) => {
             let ReadingRules { noise, resolution, .. } = link.readings_of(axis);

@@ -340,6 +340,9 @@ fn blows_of_one_striker_share_what_is_uncertain_of_it() {
             .map(|blow| blow.results.iter().find(|result| result.name == "absorbed_energy").unwrap())
             .map(|result| combined(&result.contributions).unwrap())
             .collect();
+        // The list of all blows is as uncertain as they are.
+        let listed = record.procedures[0].result("absorbed_energies").unwrap().entry_uncertainties();
+        assert_eq!(listed, of_blows.iter().map(|u| Some(*u)).collect::<Vec<_>>());
         (of_blows, number(&record, 0, "absorbed_energy"), number(&record, 0, "max_displacement"))
     };
     let (of_blows, (total, u), (largest, largest_u)) = run(0.01, 0.0);

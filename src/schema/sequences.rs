@@ -99,14 +99,14 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ),
         ResultKind::list("velocities", Dimension::VELOCITY, "velocity of the striker in each blow"),
         ResultKind::list("blow_energies", Dimension::ENERGY, "energy of the striker in each blow"),
-        ResultKind::list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
+        ResultKind::measured_list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
         ResultKind::list("residual_displacements", Dimension::LENGTH, "where the specimen was brought to after each blow"),
-        ResultKind::list(
+        ResultKind::measured_list(
             "absorbed_energies",
             Dimension::ENERGY,
             "what each blow put into the specimen up to its largest displacement",
         ),
-        ResultKind::list("impulses", Dimension::IMPULSE, "impulse of each blow"),
+        ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each blow"),
         ResultKind::list("energy_errors", Dimension::NUMBER, "what the energy balance of each blow misses, over its input"),
     ],
     example: "escalate rising {\n  striker  = pendulum\n  speeds   = [0.5, 1, 1.5] m/s\n  while    = max_displacement < 20 mm\n  duration = 50 ms\n}",

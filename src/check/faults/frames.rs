@@ -139,7 +139,7 @@ pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {
 
 /// A ratio that would be below 0.
 pub fn damping_too_uncertain(uncertainty: f64, least: f64, span: Span) -> Diagnostic {
-    let percent = |number: f64| format!("{} %", significant(100.0 * number, 4));
+    let percent = |number: f64| format!("{} %", significant(100.0 * number, 2));
     let of = format!("the damping ratio of {} would be below 0", percent(least));
     Diagnostic::new(Code::DampingTooUncertain, format!("less its uncertainty, {of}"))
         .at(span, format!("{} is one standard uncertainty", percent(uncertainty)))
