@@ -3,8 +3,9 @@
 
 use super::checker::Checker;
 use super::faults::methods as fault;
-use crate::plan::{Frame, Impact, Mode, ShakeDamping, Specimen};
+use crate::plan::{Dialect, Frame, Impact, Mode, ShakeDamping, Specimen};
 use crate::schema::Kind;
+use crate::syntax::ast::{Argument, ExprKind};
 
 /// The mode a block names, else step and pause.
 pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
@@ -15,14 +16,31 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
         return Some(Mode::StepAndPause);
     }
     let time_scale = checker.constant_argument(&chosen, "time_scale", place)?;
-    if checker.real_rig.is_some() {
-        return checker.fail(fault::continuous_on_a_real_rig(at));
+    if let Some(dialect) = checker.real_rig.and_then(|rig| stops_at_targets(checker, rig)) {
+        return checker.fail(fault::continuous_on_a_real_rig(dialect, at));
     }
     let stops = ["pause", "inspect"].into_iter().find_map(|field| checker.given(block, field).map(|(_, entry)| (field, entry)));
     if let Some((field, entry)) = stops {
         return checker.fail(fault::stops_on_the_way(field, entry.span, at));
     }
     Some(Mode::Continuous { time_scale })
+}
+
+/// The dialect of a real rig that follows no path. What is no dialect is another fault.
+fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str> {
+    let (_, written) = checker.given(rig, "link").or_else(|| checker.given(rig, "actuator"))?;
+    let ExprKind::Call { arguments, .. } = &written.value.kind else { return None };
+    let is_dialect = |(place, argument): &(usize, &Argument)| match &argument.name {
+        Some(name) => name.node == "dialect",
+        None => *place == 1,
+    };
+    let (_, dialect) = arguments.iter().enumerate().find(is_dialect)?;
+    let word = match &dialect.value.kind {
+        ExprKind::Name(name) => name.as_str(),
+        ExprKind::Call { name, .. } => name.node.as_str(),
+        _ => return None,
+    };
+    (word != Dialect::Native.name()).then_some(word)
 }
 
 /// The material's damping is in the force of a continuous run already.

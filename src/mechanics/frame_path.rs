@@ -3,12 +3,12 @@
 //! order. Out: what would be read at targets near those, step by step.
 //!
 //! Each storey of a shear building has a way of its own (`recorded_path`), so that what is exact of one specimen is exact of
-//! every storey. A frame whose stiffness is not that of storeys is taken for what it was at the same step and, off its
+//! every storey, and what is supposed of one is of every storey of which it may be. A frame whose stiffness is not that of storeys is taken for what it was at the same step and, off its
 //! recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets the recorded readings
 //! come back as they were, to the bit.
 
 use super::frame::{SymmetricBand, drifts, shears, storeys_of};
-use super::recorded_path::{Noise, Reading, RecordedPath, Walk};
+use super::recorded_path::{Again, Distortion, Noise, Reading, RecordedPath, Rule, UNSEEN};
 
 /// One step of the record, an entry a floor.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,11 +96,35 @@ impl FramePath {
         Some(Self { readings, bends })
     }
 
+    /// What its storeys may be supposed to do for all the record tells, the likeliest first.
+    #[must_use]
+    pub fn rules(&self) -> Vec<Rule> {
+        let mut rules = vec![Rule::Shifted];
+        if let Bends::Storeys(paths) = &self.bends {
+            for rule in paths.iter().flat_map(RecordedPath::rules) {
+                if !rules.contains(&rule) {
+                    rules.push(rule);
+                }
+            }
+        }
+        rules
+    }
+
+    /// The same record, if every storey of which it is possible is supposed to keep to a rule.
+    #[must_use]
+    pub fn supposing(&self, rule: Rule) -> Self {
+        let bends = match &self.bends {
+            Bends::Storeys(paths) => Bends::Storeys(paths.iter().map(|path| path.clone().supposing(rule)).collect()),
+            together @ Bends::Together(_) => together.clone(),
+        };
+        Self { readings: self.readings.clone(), bends }
+    }
+
     /// Takes the way again from its beginning.
     #[must_use]
     pub fn again<'a>(&'a self, distortion: &'a FrameDistortion) -> FrameAgain<'a> {
         let walks = match &self.bends {
-            Bends::Storeys(paths) => paths.iter().map(RecordedPath::walk).collect(),
+            Bends::Storeys(paths) => paths.iter().map(|path| (path, path.again(Distortion::NONE))).collect(),
             Bends::Together(_) => Vec::new(),
         };
         let first = &self.readings[0];
@@ -108,7 +132,7 @@ impl FramePath {
         let mut again = FrameAgain {
             path: self,
             distortion,
-            walks,
+            storeys: walks,
             step: 0,
             target: target.collect(),
             place: first.target.clone(),
@@ -125,7 +149,7 @@ impl FramePath {
 pub struct FrameAgain<'a> {
     path: &'a FramePath,
     distortion: &'a FrameDistortion,
-    walks: Vec<Walk<'a>>,
+    storeys: Vec<(&'a RecordedPath, Again<'a>)>,
     step: usize,
     /// Where it begins, m.
     target: Vec<f64>,
@@ -154,6 +178,12 @@ impl FrameAgain<'_> {
         &self.force
     }
 
+    /// Whether the record tells the whole way, of storeys whose largest drifts these are (m).
+    #[must_use]
+    pub fn is_seen(&self, max_drift: &[f64]) -> bool {
+        self.storeys.iter().zip(max_drift).all(|((_, again), drift)| again.unseen() <= UNSEEN * drift)
+    }
+
     /// Goes to the targets of the next step, m, and reads.
     pub fn move_to(&mut self, targets: &[f64]) {
         self.step += 1;
@@ -180,12 +210,12 @@ impl FrameAgain<'_> {
     /// What every storey does off its recorded drift, added to the recorded readings.
     fn bend_storeys(&mut self) {
         let (mut below, mut off) = (0.0, 0.0);
-        for storey in 0..self.walks.len() {
+        for storey in 0..self.storeys.len() {
             let drift = self.place[storey] - below;
             below = self.place[storey];
-            let walk = &mut self.walks[storey];
-            let (displacement, shear) = walk.move_to(drift);
-            let recorded = *walk.recorded();
+            let (path, again) = &mut self.storeys[storey];
+            let (displacement, shear) = again.move_to(drift);
+            let recorded = *path.recorded(self.step);
             off += displacement - recorded.displacement;
             self.displacement[storey] += off;
             let more = shear - recorded.force;

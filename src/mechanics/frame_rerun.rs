@@ -53,6 +53,8 @@ pub struct Floors {
 pub struct FloorsOutcome {
     pub ends: Floors,
     pub between: Floors,
+    /// Whether the record tells the way to it.
+    pub seen: bool,
 }
 
 /// What a blow on one floor comes to.
@@ -126,7 +128,7 @@ impl FrameRun {
             again.move_to(solver.predict(&load));
             told.take(solver.complete(again.displacement(), again.force()), 1.0);
         }
-        Ok(told.finish())
+        Ok(told.finish(&again))
     }
 
     /// Takes a blow on one floor again.
@@ -174,7 +176,7 @@ impl FrameRun {
         }
         Ok(BlowOutcome {
             blow: told.finish(),
-            floors: peaks.finish(),
+            floors: peaks.finish(&again),
             storey_energy: energy.storeys,
             first_blow,
             striker_velocity: before.striker_velocity,
@@ -238,14 +240,15 @@ impl Peaks {
         self.base_shear.take(shear);
     }
 
-    fn finish(self) -> FloorsOutcome {
+    fn finish(self, again: &FrameAgain) -> FloorsOutcome {
         let between = Floors {
             max_displacement: self.displacement.largest().to_vec(),
             max_drift: self.drift.largest().to_vec(),
             residual_drift: self.residual,
             max_base_shear: self.base_shear.largest(),
         };
-        FloorsOutcome { ends: self.ends, between }
+        let seen = again.is_seen(&between.max_drift);
+        FloorsOutcome { ends: self.ends, between, seen }
     }
 }
 

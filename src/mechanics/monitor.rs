@@ -43,6 +43,17 @@ pub struct Tracking {
 }
 
 impl Tracking {
+    /// All axes of a specimen told as one: energies and areas add, of the others the largest counts.
+    #[must_use]
+    pub fn together(axes: &[Self]) -> Self {
+        axes.iter().fold(Self::default(), |all, axis| Self {
+            energy_error: all.energy_error + axis.energy_error,
+            indicator: all.indicator + axis.indicator,
+            nrms_error: all.nrms_error.max(axis.nrms_error),
+            peak_error: all.peak_error.max(axis.peak_error),
+        })
+    }
+
     /// E_err as a share of the energy put into the test (J), signed; none while nothing was.
     #[must_use]
     pub fn share_of(&self, input_energy: f64) -> Option<f64> {

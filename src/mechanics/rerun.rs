@@ -14,6 +14,8 @@ pub struct Outcome {
     pub summary: ImpactSummary,
     /// As they are between them.
     pub values: [f64; OUTCOMES.len()],
+    /// The farthest it went where the record tells nothing, m.
+    pub unseen: f64,
 }
 
 /// Names of the values, as the results are called.
@@ -38,13 +40,25 @@ pub const OUTCOMES: [&str; 14] = [
 #[must_use]
 pub fn rerun(input: &ImpactInput, until: Until, steps: u64, path: &RecordedPath, distortion: Distortion) -> Outcome {
     let mut again = path.again(distortion);
-    let (place, displacement, force) = again.start();
+    let start = again.start();
+    let found = integrate(input, until, steps, start, |target| again.move_to(target));
+    Outcome { unseen: again.unseen(), ..found }
+}
+
+/// The impact from a place (m) and the displacement (m) and force (N) read there, on whatever is `read` at its targets.
+pub(crate) fn integrate(
+    input: &ImpactInput,
+    until: Until,
+    steps: u64,
+    (place, displacement, force): (f64, f64, f64),
+    mut read: impl FnMut(f64) -> (f64, f64),
+) -> Outcome {
     let mut solver = ImpactSolver::new(input, place, force);
     let mut before = ImpactState { measured_displacement: displacement, ..*solver.state() };
     let mut told = Telling::new(input, until, &before);
     for _ in 0..steps {
         let target = solver.predict();
-        let (displacement, force) = again.move_to(target);
+        let (displacement, force) = read(target);
         let now = *solver.complete(displacement, force);
         let over = solver.over(until);
         told.take(&before, &now, over);
@@ -107,7 +121,7 @@ impl Telling {
             end.damping,
             summary.striker_energy,
         ];
-        Outcome { summary, values }
+        Outcome { summary, values, unseen: 0.0 }
     }
 }
 

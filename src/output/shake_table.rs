@@ -1,5 +1,5 @@
 //! The table of a shake: a row a step and storey, with the base motion beside it. In: steps. Out: columns in SI. Energies are
-//! the whole frame's, the same in every row of a step.
+//! the whole frame's, the same in every row of a step; what tracking made of them is each floor's own.
 
 use polars::prelude::Column;
 
@@ -29,6 +29,8 @@ pub(super) fn columns(steps: &[ShakeStep]) -> (usize, Vec<Column>) {
         numbers("damping_energy_j", |row| row.step.energies.damping),
         numbers("input_energy_j", |row| row.step.energies.input),
         numbers("energy_error_j", |row| row.step.energies.error),
+        numbers("tracking_energy_error_j", |row| row.step.tracking[row.floor].energy_error),
+        numbers("tracking_indicator_m2", |row| row.step.tracking[row.floor].indicator),
     ];
     (rows.len(), columns)
 }

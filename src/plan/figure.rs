@@ -144,9 +144,16 @@ impl FigureKind {
                 Self::Energy,
                 Self::Tracking,
             ],
-            ProcedureKind::Shake(_) => {
-                &[Self::Modes, Self::Ground, Self::Displacement, Self::Drift, Self::Hysteresis, Self::BaseShear, Self::Energy]
-            }
+            ProcedureKind::Shake(_) => &[
+                Self::Modes,
+                Self::Ground,
+                Self::Displacement,
+                Self::Drift,
+                Self::Hysteresis,
+                Self::BaseShear,
+                Self::Energy,
+                Self::Tracking,
+            ],
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
             ProcedureKind::Escalate(_) => &[Self::Blows, Self::ForceDisplacement, Self::Displacement],
             ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],

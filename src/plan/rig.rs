@@ -268,6 +268,12 @@ impl Dialect {
         }
     }
 
+    /// Whether it follows smooth paths without a stop.
+    #[must_use]
+    pub const fn glides(&self) -> bool {
+        matches!(self, Self::Native)
+    }
+
     /// Whether it can move the specimen.
     #[must_use]
     pub const fn moves(&self) -> bool {

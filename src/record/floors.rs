@@ -16,6 +16,15 @@ pub trait Floors {
     /// Measured restoring force of each floor, N.
     fn restoring_force(&self) -> &[f64];
 
+    /// Target of each floor, m.
+    fn command(&self) -> &[f64];
+
+    /// Measured displacement of each floor, m.
+    fn measured(&self) -> &[f64];
+
+    /// What following each floor has come to.
+    fn tracking(&self) -> &[Tracking];
+
     /// Drift of each storey, m, of the computed displacements.
     #[must_use]
     fn drift(&self) -> Vec<f64> {
@@ -67,6 +76,18 @@ impl Floors for FloorStep {
 
     fn restoring_force(&self) -> &[f64] {
         &self.restoring_force
+    }
+
+    fn command(&self) -> &[f64] {
+        &self.command
+    }
+
+    fn measured(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    fn tracking(&self) -> &[Tracking] {
+        &self.tracking
     }
 }
 

@@ -244,8 +244,8 @@ pub struct ShakeStep {
     /// Measured, of each floor, N.
     pub restoring_force: Vec<f64>,
     pub energies: FrameEnergies,
-    /// Of all axes together.
-    pub tracking: Tracking,
+    /// Of each axis.
+    pub tracking: Vec<Tracking>,
 }
 
 impl Floors for ShakeStep {
@@ -259,6 +259,18 @@ impl Floors for ShakeStep {
 
     fn restoring_force(&self) -> &[f64] {
         &self.restoring_force
+    }
+
+    fn command(&self) -> &[f64] {
+        &self.command
+    }
+
+    fn measured(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    fn tracking(&self) -> &[Tracking] {
+        &self.tracking
     }
 }
 

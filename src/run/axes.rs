@@ -1,5 +1,5 @@
 //! Several axes in one step: how each was followed, and how they are told to whoever watches. In: targets, readings, the
-//! state of a frame. Out: numbers of each axis, and of all together. It drives nothing.
+//! state of a frame. Out: numbers of each axis. It drives nothing.
 
 use super::{AxisReport, StepReport};
 use crate::mechanics::frame::FrameState;
@@ -21,16 +21,6 @@ impl Monitors {
         let axes = self.0.iter_mut().zip(commanded).zip(read);
         axes.map(|((monitor, to), ((measured, force), taken))| monitor.take_as(*to, *measured, *force, *taken)).collect()
     }
-}
-
-/// All axes told as one: energies add, of the others the largest counts.
-pub(super) fn together(axes: &[Tracking]) -> Tracking {
-    axes.iter().fold(Tracking::default(), |all, axis| Tracking {
-        energy_error: all.energy_error + axis.energy_error,
-        indicator: all.indicator + axis.indicator,
-        nrms_error: all.nrms_error.max(axis.nrms_error),
-        peak_error: all.peak_error.max(axis.peak_error),
-    })
 }
 
 /// The errors of a step.

@@ -75,12 +75,20 @@ impl FrameDoubts<'_> {
         }
     }
 
-    /// How much a study of so many steps takes.
-    pub fn effort(&self, steps: usize, sources: &[Source]) -> Effort {
-        let sampled = self.errors(0).iter().any(|noise| noise.force > 0.0 || noise.displacement > 0.0);
+    /// Whether anything at all is uncertain.
+    pub fn is_exact(&self, sources: &[Source]) -> bool {
+        sources.is_empty() && !self.is_sampled()
+    }
+
+    fn is_sampled(&self) -> bool {
+        self.errors(0).iter().any(|noise| noise.force > 0.0 || noise.displacement > 0.0)
+    }
+
+    /// How much a study of so many steps takes, by so many rules.
+    pub fn effort(&self, steps: usize, rules: usize, sources: &[Source]) -> Effort {
         let alike = sources.iter().filter(|source| is_alike(**source)).count();
-        let steps = steps as u64 * self.frame.degrees_of_freedom() as u64;
-        Effort::of(steps, sources.len(), alike, sampled)
+        let steps = (steps * rules * self.frame.degrees_of_freedom()) as u64;
+        Effort::of(steps, sources.len(), alike, self.is_sampled())
     }
 
     /// One draw of the errors of all readings, axis by axis.

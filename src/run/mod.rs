@@ -15,9 +15,13 @@ pub mod driven;
 mod escalate;
 #[cfg(test)]
 mod escalate_tests;
+mod followed;
+#[cfg(test)]
+mod followed_tests;
 mod frame_doubts;
 #[cfg(test)]
 mod frame_doubts_tests;
+mod frame_steps;
 mod gate;
 mod gliding;
 mod hold;
@@ -30,6 +34,8 @@ mod move_to;
 pub mod need;
 #[cfg(test)]
 mod need_tests;
+#[cfg(test)]
+mod path_matrix_tests;
 mod propagation;
 #[cfg(test)]
 mod propagation_tests;
@@ -54,6 +60,7 @@ mod storey_doubts;
 mod storey_impact;
 mod storey_summary;
 mod strike;
+mod striking;
 mod study;
 pub mod tape;
 #[cfg(test)]

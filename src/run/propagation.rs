@@ -5,9 +5,9 @@
 
 use super::impact::Setting;
 use super::inputs::Inputs;
-use super::study::{CLOSE, Effort, Study, Tick, Unknown, give};
+use super::study::{CLOSE, Effort, Study, Taken, Tick, Unknown, give, over_rules};
 use crate::formula::{Formula, ProcedureId, Results};
-use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath};
+use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath, UNSEEN};
 use crate::mechanics::rerun::{OUTCOMES, Outcome, rerun};
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Contact, Impact, Link, Plan, ReadingRules, Striker, VirtualLink};
@@ -73,8 +73,8 @@ impl<'run> Doubts<'run> {
         if !same(&again.summary, recorded) {
             return Err(LEADS_ELSEWHERE.to_owned().into());
         }
-        let nominal = values(setting, &again);
-        let effort = Effort::of(steps.len() as u64, sources.len(), 0, sampled);
+        let rules = path.rules();
+        let effort = Effort::of(steps.len() as u64 * rules.len() as u64, sources.len(), 0, sampled);
         let mut study = Study { moved: Vec::new(), draws: Vec::new() };
         for source in sources {
             let jobs = effort.moves().iter().map(|by| self.moved(setting, source, *by)).collect::<Result<_, String>>()?;
@@ -84,10 +84,15 @@ impl<'run> Doubts<'run> {
             let distortion = Distortion { noise: Some(Noise { force, displacement, draw }), ..Distortion::NONE };
             study.draws.push((source, Job { setting: *setting, distortion }));
         }
-        let take = |Job { setting, distortion }: &Job| {
-            values(setting, &rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion))
-        };
-        let mut contributions = study.contributions(&nominal, &take, tick).map_err(Unknown::Stop)?;
+        let mut contributions = over_rules(&rules, tick, &mut |rule, tick| {
+            let path = path.clone().supposing(rule);
+            let take = |Job { setting, distortion }: &Job| {
+                taken(setting, &rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion))
+            };
+            let as_it_was = take(&Job { setting: *setting, distortion: Distortion::NONE });
+            study.contributions(&as_it_was.values, &take, tick)
+        })
+        .map_err(Unknown::Stop)?;
         round_times(self.procedure, input.time_step, &mut contributions);
         let names = OUTCOMES.iter().copied().chain(["critical_time_step"]);
         for (name, parts) in names.zip(contributions) {
@@ -156,8 +161,9 @@ impl<'run> Doubts<'run> {
 }
 
 /// What a blow comes to, and its critical time step, which follows from inputs alone.
-fn values(setting: &Setting, found: &Outcome) -> Vec<f64> {
-    found.values.iter().copied().chain([setting.critical_time_step]).collect()
+fn taken(setting: &Setting, found: &Outcome) -> Taken {
+    let seen = found.unseen <= UNSEEN * found.summary.max_displacement.abs();
+    Taken { values: found.values.iter().copied().chain([setting.critical_time_step]).collect(), seen }
 }
 
 /// What a contact law reads.

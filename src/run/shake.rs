@@ -3,6 +3,7 @@
 //! from them. The steps themselves are `shaking`'s.
 
 use super::Performed;
+use super::followed::Followed;
 use super::frame_doubts::FrameDoubts;
 use super::inputs::Inputs;
 use super::session::Session;
@@ -11,7 +12,6 @@ use super::shake_results::{ShakeSummary, results};
 use super::shaking::Shaking;
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
-use super::watch::Watch;
 use crate::formula::{Formula, NoResults};
 use crate::mechanics::frame::Damping;
 use crate::mechanics::frame_properties::FrameProperties;
@@ -33,7 +33,7 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
         Err(stop) => {
             return Performed {
                 history: History::Shake(ShakeHistory::default()),
-                results: results(None, None),
+                results: results(None, None, &Followed::default()),
                 stop: Some(stop),
             };
         }
@@ -49,11 +49,11 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
         setting: &setting,
         history,
         summary: ShakeSummary::new(setting.frame.properties.matrices.order()),
-        watch: Watch::default(),
+        followed: Followed::default(),
     };
     let mut stop = shaking.run(plan, ground, session).err();
-    let mut results =
-        results(shaking.history.modes.as_ref(), Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty()));
+    let summary = Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty());
+    let mut results = results(shaking.history.modes.as_ref(), summary, &shaking.followed);
     if let (Some(frame), None) = (frame, &stop) {
         let doubts = FrameDoubts {
             whole,

@@ -6,8 +6,8 @@ use super::propagation::LEADS_ELSEWHERE;
 use super::shake::Setting;
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
-use super::study::{Tick, Unknown};
-use crate::mechanics::frame_path::{FrameDistortion, FrameReading};
+use super::study::{Taken, Tick, Unknown, over_rules};
+use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Floors, FrameRun};
 use crate::mechanics::ground::acceleration_at;
 use crate::plan::{Ground, Shake};
@@ -36,8 +36,7 @@ pub(super) fn propagate(
     tick: Tick,
 ) -> Result<(), Unknown> {
     let sources = doubts.sources(&[&plan.scale], &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)]);
-    let effort = doubts.effort(history.steps.len(), &sources);
-    if sources.is_empty() && effort.draws == 0 {
+    if doubts.is_exact(&sources) {
         return Ok(());
     }
     let reading = |step: &crate::record::ShakeStep| FrameReading {
@@ -50,9 +49,9 @@ pub(super) fn propagate(
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let at = |step: u64| acceleration_at(&ground.times, &ground.accelerations, step as f64 * time_step);
     let accelerations: Vec<f64> = (0..=steps).map(at).collect();
-    let take = |job: &Job| {
+    let take = |job: &Job, path: &FramePath| {
         let scaled: Vec<f64> = accelerations.iter().map(|acceleration| job.scale * acceleration).collect();
-        job.run.shaken(&scaled, &path, &job.distortion)
+        job.run.shaken(&scaled, path, &job.distortion)
     };
     let numbers = |job: &Job, floors: &Floors| {
         let lists = [&floors.max_displacement, &floors.max_drift, &floors.residual_drift, &job.periods];
@@ -65,7 +64,7 @@ pub(super) fn propagate(
         distortion: FrameDistortion::none(floors),
         periods: setting.frame.properties.modes.periods.clone(),
     };
-    let found = take(&as_it_was).map_err(|error| error.to_string())?;
+    let found = take(&as_it_was, &path).map_err(|error| error.to_string())?;
     if !leads_there(&found.ends, "max_displacement", results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
@@ -74,11 +73,18 @@ pub(super) fn propagate(
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))?;
         Ok(Job { run, scale, distortion, periods })
     };
-    let study = doubts.study(&sources, effort, job)?;
+    let rules = path.rules();
+    let study = doubts.study(&sources, doubts.effort(history.steps.len(), rules.len(), &sources), job)?;
     let nominal = numbers(&as_it_was, &found.between);
-    let nothing = vec![f64::NAN; nominal.len()];
-    let again = |job: &Job| take(job).map_or_else(|_| nothing.clone(), |found| numbers(job, &found.between));
-    let parts = study.contributions(&nominal, &again, tick).map_err(Unknown::Stop)?;
+    let parts = over_rules(&rules, tick, &mut |rule, tick| {
+        let path = path.supposing(rule);
+        let again = |job: &Job| match take(job, &path) {
+            Ok(found) => Taken { values: numbers(job, &found.between), seen: found.seen },
+            Err(_) => Taken { values: vec![f64::NAN; nominal.len()], seen: false },
+        };
+        study.contributions(&again(&as_it_was).values, &again, tick)
+    });
+    let parts = parts.map_err(Unknown::Stop)?;
     let lists = ["max_displacement", "max_drift", "residual_drift", "periods"].map(|name| (name, floors));
     let layout: Vec<(&'static str, usize)> = lists.into_iter().chain([("max_base_shear", 1)]).collect();
     give_all(&layout, parts, results);

@@ -1,6 +1,7 @@
 //! What a shake leaves: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
 //! schema's order. It drives nothing.
 
+use super::followed::Followed;
 use super::results::result;
 use crate::formula::ResultValue;
 use crate::mechanics::frame::{FrameState, Modes, drifts};
@@ -57,14 +58,14 @@ impl ShakeSummary {
 }
 
 /// In the order of the reference; what was not reached is missing.
-pub(super) fn results(modes: Option<&Modes>, summary: Option<&ShakeSummary>) -> Vec<NamedResult> {
+pub(super) fn results(modes: Option<&Modes>, summary: Option<&ShakeSummary>, followed: &Followed) -> Vec<NamedResult> {
     let list = |name, dimension, values: Option<&Vec<f64>>| match values {
         Some(values) => NamedResult { name, dimension, value: ResultValue::List(values.clone()), contributions: Vec::new() },
         None => result(name, dimension, None),
     };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let steps = summary.map(|summary| summary.steps as f64);
-    vec![
+    let mut results = vec![
         list("max_displacement", Dimension::LENGTH, summary.map(|summary| &summary.max_displacement)),
         list("max_drift", Dimension::LENGTH, summary.map(|summary| &summary.max_drift)),
         list("residual_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
@@ -72,5 +73,8 @@ pub(super) fn results(modes: Option<&Modes>, summary: Option<&ShakeSummary>) -> 
         result("max_base_shear", Dimension::FORCE, summary.map(|summary| summary.max_base_shear)),
         result("energy_error", Dimension::NUMBER, summary.map(|summary| summary.energy_error)),
         result("steps", Dimension::NUMBER, steps),
-    ]
+    ];
+    results.extend(followed.of_all());
+    results.extend(followed.of_each());
+    results
 }

@@ -7,9 +7,9 @@ use super::propagation::{LEADS_ELSEWHERE, contact_formulas, round_times, same};
 use super::stepping;
 use super::stop::Stop;
 use super::storey_impact::Setting;
-use super::study::{Tick, Unknown};
+use super::study::{Taken, Tick, Unknown, over_rules};
 use crate::mechanics::contact::ContactLaw;
-use crate::mechanics::frame_path::{FrameDistortion, FrameReading};
+use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_properties::Approach;
 use crate::mechanics::frame_rerun::{Blow, BlowOutcome, FrameRun};
 use crate::mechanics::impact::ImpactInput;
@@ -43,8 +43,7 @@ pub(super) fn propagate(
     let stated =
         [(Source::StrikerMass(plan.striker), mass_uncertainty), (Source::StrikerVelocity(plan.striker), velocity_uncertainty)];
     let sources = doubts.sources(&contact_formulas(&plan.contact), &stated);
-    let effort = doubts.effort(history.floors.len(), &sources);
-    if sources.is_empty() && effort.draws == 0 {
+    if doubts.is_exact(&sources) {
         return Ok(());
     }
     let reading = |step: &FloorStep| FrameReading {
@@ -53,7 +52,7 @@ pub(super) fn propagate(
         force: step.restoring_force.clone(),
     };
     let path = doubts.path(&setting.frame, history.floors.iter().map(reading).collect())?;
-    let take = |job: &Job| job.run.struck(&job.blow, &path, &job.distortion);
+    let take = |job: &Job, path: &FramePath| job.run.struck(&job.blow, path, &job.distortion);
     let floors = doubts.frame.degrees_of_freedom();
     let as_it_was = Job {
         run: doubts.run(&setting.frame),
@@ -62,7 +61,7 @@ pub(super) fn propagate(
         periods: setting.frame.properties.modes.periods.clone(),
         critical_time_step: setting.frame.critical_time_step,
     };
-    let found = take(&as_it_was).map_err(|error| error.to_string())?;
+    let found = take(&as_it_was, &path).map_err(|error| error.to_string())?;
     if !same(&found.blow.summary, recorded) || !leads_there(&found.floors.ends, "floor_displacement", results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
@@ -70,11 +69,18 @@ pub(super) fn propagate(
         moved(doubts, plan, setting, shifts, distortion)
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))
     };
-    let study = doubts.study(&sources, effort, job)?;
+    let rules = path.rules();
+    let study = doubts.study(&sources, doubts.effort(history.floors.len(), rules.len(), &sources), job)?;
     let nominal = numbers(&as_it_was, &found);
-    let nothing = vec![f64::NAN; nominal.len()];
-    let again = |job: &Job| take(job).map_or_else(|_| nothing.clone(), |found| numbers(job, &found));
-    let mut parts = study.contributions(&nominal, &again, tick).map_err(Unknown::Stop)?;
+    let parts = over_rules(&rules, tick, &mut |rule, tick| {
+        let path = path.supposing(rule);
+        let again = |job: &Job| match take(job, &path) {
+            Ok(found) => Taken { values: numbers(job, &found), seen: found.floors.seen },
+            Err(_) => Taken { values: vec![f64::NAN; nominal.len()], seen: false },
+        };
+        study.contributions(&again(&as_it_was).values, &again, tick)
+    });
+    let mut parts = parts.map_err(Unknown::Stop)?;
     let time_step = setting.frame.time_step;
     round_times(doubts.procedure, time_step, &mut parts);
     // From the beginning of a step to the end of one: two times, each up to Δt off.

@@ -1,34 +1,27 @@
 //! An impact on one storey of a frame: the striker is computed, the frame is on the rig, an actuator and a load cell for each
-//! floor. Each step: predict, command, settle, pause, read, feed back; or, continuous, the floors follow smooth paths together
-//! (`gliding`) and are read as they pass their targets. In: a frame, a striker, a contact law, a time step.
-//! Out: every step and what follows from them. The equations are `mechanics`'; this file only lets them meet the rig.
+//! floor. In: a frame, a striker, a contact law, a time step, each held against what can be integrated. Out: every step and what
+//! follows from them. The steps themselves are `striking`'s.
 
 use super::Performed;
-use super::axes::{Monitors, Told, report, together};
-use super::gliding::{Gliding, Passing};
+use super::followed::Followed;
 use super::impact::{law, remark};
 use super::frame_doubts::FrameDoubts;
 use super::inputs::Inputs;
 use super::session::Session;
 use super::stepping::{self, FrameSteps};
-use super::stiffer::StifferStoreys;
 use super::stop::Stop;
 use super::storey_doubts;
-use super::storey_summary::{StoreySummary, of_floor, results};
-use super::triggers::Triggers;
-use super::watch::Watch;
+use super::storey_summary::{StoreySummary, results};
+use super::striking::Striking;
 use crate::formula::NoResults;
 use crate::mechanics::contact::ContactLaw;
-use crate::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver, StrikerState};
-use crate::mechanics::frame::{Damping, FrameInput, FrameState};
+use crate::mechanics::frame::Damping;
 use crate::mechanics::frame_properties::{Approach, FrameProperties};
 use crate::mechanics::impact::ImpactInput;
-use crate::mechanics::monitor::Tracking;
 use crate::mechanics::structure::Structure;
-use crate::plan::{Contact, Frame, Mode, Plan, StoreyImpact, Striker, step_count};
+use crate::plan::{Contact, Frame, Plan, StoreyImpact, Striker, step_count};
 use crate::quantity::Dimension;
-use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, StoreyImpactHistory};
-use crate::rig::Reading;
+use crate::record::{History, ImpactHistory, StoreyImpactHistory};
 
 pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let striker = &whole.strikers[plan.striker];
@@ -54,7 +47,7 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
         Ok(setting) => setting,
         Err(stop) => {
             return Performed {
-                results: results(None, None, &history),
+                results: results(None, &Followed::default(), &history),
                 history: History::StoreyImpact(history),
                 stop: Some(stop),
             };
@@ -63,14 +56,14 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     history.modes = Some(setting.frame.properties.modes.clone());
     history.damping_ratios = setting.frame.properties.damping_ratios();
     let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
-    let mut striking = Striking { setting: &setting, history, summary, watch: Watch::default() };
+    let mut striking = Striking { setting: &setting, history, summary, followed: Followed::default() };
     let mut stop = striking.run(plan, session).err();
-    let Striking { history, summary, watch, .. } = striking;
+    let Striking { history, summary, followed, .. } = striking;
     let summary = (!history.floors.is_empty()).then_some(summary);
     if let (Some(summary), None) = (&summary, &stop) {
         remark(&summary.blow(), plan.until, session);
     }
-    let mut results = results(summary.as_ref(), watch.worst, &history);
+    let mut results = results(summary.as_ref(), &followed, &history);
     if let (Some(frame), Some(summary), None) = (frame, &summary, &stop) {
         let doubts = FrameDoubts {
             whole,
@@ -88,14 +81,6 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
         stop = session.told_of(found);
     }
     Performed { results, history: History::StoreyImpact(history), stop }
-}
-
-/// Where each floor is to pass in this step, and how fast.
-fn foretold(solver: &mut FrameImpactSolver, unloaded: &[f64]) -> Vec<Passing> {
-    let places = solver.predict(unloaded).to_vec();
-    let mut velocities = vec![0.0; places.len()];
-    let struck = solver.predicted_velocity(&mut velocities);
-    places.into_iter().zip(velocities).map(|(place, velocity)| Passing { place, velocity, struck }).collect()
 }
 
 /// Steps of an impact on a storey, where the plan alone tells.
@@ -151,136 +136,5 @@ impl Setting {
         };
         let body = body.struck_by(striker, &plan.stepping);
         Ok(Self { frame: steps, law, striker: striker.clone(), body })
-    }
-}
-
-struct Striking<'a> {
-    setting: &'a Setting,
-    history: StoreyImpactHistory,
-    summary: StoreySummary,
-    watch: Watch,
-}
-
-impl Striking<'_> {
-    fn run(&mut self, plan: &StoreyImpact, session: &mut Session<'_>) -> Result<(), Stop> {
-        let FrameSteps { properties, time_step, steps, pause, .. } = &self.setting.frame;
-        let stepping = &plan.stepping;
-        let mut triggers = Triggers::new(&stepping.inspect);
-        // X starts where the actuators were sent to, and R₀ is read there once, before the first step.
-        let start = session.guard.commanded().to_vec();
-        let reading = session.guard.read()?;
-        let unloaded = vec![0.0; properties.matrices.order()];
-        let mut solver = self.solver(plan, &start, &reading, &unloaded)?;
-        let mut monitors = Monitors::new(&start, &reading);
-        let mut stiffer =
-            StifferStoreys::new(&properties.matrices, stepping.integrator, *time_step, session.guard.declared_noise(), &reading);
-        let mut gliding = match stepping.mode {
-            Mode::Continuous { time_scale } => Some(Gliding::from_rest(&start, time_scale, *time_step)),
-            Mode::StepAndPause => None,
-        };
-        let mut at_rest = solver.frame().clone();
-        at_rest.measured_displacement.clone_from(&reading.displacement);
-        self.take(&at_rest, solver.striker(), vec![Tracking::default(); start.len()], session);
-        for _ in 1..=*steps {
-            let reading = if let Some(gliding) = &mut gliding {
-                gliding.step(|| foretold(&mut solver, &unloaded), session)?
-            } else {
-                session.guard.move_to(solver.predict(&unloaded), None)?;
-                session.guard.pause(*pause)?;
-                session.guard.read()?
-            };
-            if gliding.is_none() {
-                stiffer.take(&reading, session);
-            }
-            solver.complete(&reading.displacement, &reading.force);
-            let (state, striker) = (solver.frame(), solver.striker());
-            let tracking = monitors.take(&state.target, &reading, solver.taken(&reading.force));
-            let told = self.take(state, striker, tracking, session);
-            self.watch.judge(told.tracking_energy_error, session);
-            session.guard.check_energy_error(told.energy_error)?;
-            session.guard.check_tracking(told.tracking_energy_error, told.tracking.nrms_error)?;
-            session.step_done(&report(state, &told))?;
-            let (step, time, base_shear) = (state.step, state.time, state.restoring_force.iter().sum());
-            if solver.over(plan.until) {
-                break;
-            }
-            if let Some(reason) = triggers.after(step, time, base_shear) {
-                session.inspect(&reason)?;
-            }
-        }
-        gliding.map_or(Ok(()), |gliding| gliding.brake(session))
-    }
-
-    fn solver(&self, plan: &StoreyImpact, start: &[f64], reading: &Reading, unloaded: &[f64]) -> Result<FrameImpactSolver, Stop> {
-        let Setting { frame: FrameSteps { properties, tangents, time_step, .. }, law, striker, body } = self.setting;
-        let input = FrameImpactInput {
-            frame: FrameInput {
-                matrices: &properties.matrices,
-                operator_stiffness: &properties.matrices.stiffness,
-                integrator: plan.stepping.integrator,
-                i_modification: plan.stepping.i_modification,
-                tangents: *tangents,
-                time_step: *time_step,
-                initial_displacement: start,
-                initial_restoring_force: &reading.force,
-                initial_load: unloaded,
-                force_noise: body.force_noise,
-                resolution: body.resolution,
-            },
-            struck: plan.struck,
-            striker_mass: striker.mass,
-            striker_velocity: striker.velocity,
-            gap: striker.gap,
-            gravity: striker.gravity,
-            law: *law,
-        };
-        FrameImpactSolver::new(&input).map_err(|error| Stop::BadInput {
-            field: "time_step",
-            value: *time_step,
-            wanted: format!("one that can be stepped: {error}").into(),
-        })
-    }
-
-    /// Keeps a step; gives its errors over the energy of the striker.
-    fn take(&mut self, state: &FrameState, striker: &StrikerState, axes: Vec<Tracking>, session: &Session<'_>) -> Told {
-        let tracking = together(&axes);
-        let floor = of_floor(state, striker, self.history.struck, self.setting.body.stiffness);
-        self.summary.push(state, &floor);
-        self.history.blow.steps.push(ImpactStep {
-            step: floor.step,
-            time: floor.time,
-            wall_time: session.guard.time(),
-            state: floor.state,
-            command: floor.target,
-            computed: floor.displacement,
-            displacement: floor.measured_displacement,
-            velocity: floor.velocity,
-            acceleration: floor.acceleration,
-            restoring_force: floor.restoring_force,
-            contact_force: floor.contact_force,
-            striker_displacement: floor.striker_displacement,
-            striker_velocity: floor.striker_velocity,
-            tangent_stiffness: floor.tangent_stiffness,
-            indentation: floor.indentation,
-            energies: floor.energies,
-            tracking,
-        });
-        self.history.floors.push(FloorStep {
-            time: state.time,
-            command: state.target.clone(),
-            displacement: state.measured_displacement.clone(),
-            computed: state.displacement.clone(),
-            velocity: state.velocity.clone(),
-            acceleration: state.acceleration.clone(),
-            restoring_force: state.restoring_force.clone(),
-            storey_energy: self.summary.storey_energy().to_vec(),
-            tracking: axes,
-        });
-        let input = self.setting.body.striker_energy();
-        Told {
-            energy_error: if floor.energies.error == 0.0 { 0.0 } else { floor.energies.error / input },
-            tracking,
-            tracking_energy_error: tracking.share_of(input),
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! What an impact on a storey leaves: that of the struck floor as of any impact, and the peaks of every floor and storey,
 //! collected step by step. In: the ends of steps. Out: results in the schema's order. It drives nothing.
 
+use super::followed::Followed;
 use super::impact;
 use super::results::result;
 use crate::formula::ResultValue;
@@ -94,16 +95,15 @@ impl StoreySummary {
     }
 }
 
-/// In the order of the reference, `worst` the largest share of the input that tracking made of the energy; every number is
-/// missing if not even the start was read.
-pub(super) fn results(summary: Option<&StoreySummary>, worst: Option<f64>, history: &StoreyImpactHistory) -> Vec<NamedResult> {
+/// In the order of the reference; every number is missing if not even the start was read.
+pub(super) fn results(summary: Option<&StoreySummary>, followed: &Followed, history: &StoreyImpactHistory) -> Vec<NamedResult> {
     let list = |name, dimension, values: Option<&Vec<f64>>| match values {
         Some(values) => NamedResult { name, dimension, value: ResultValue::List(values.clone()), contributions: Vec::new() },
         None => result(name, dimension, None),
     };
     let blow = summary.map(StoreySummary::blow);
     let back = summary.map(|summary| -summary.striker_velocity).filter(|back| *back > 0.0);
-    let mut results = impact::results(blow.as_ref(), worst, &history.blow);
+    let mut results = impact::results(blow.as_ref(), followed.worst(), &history.blow);
     results.extend([
         result("contact_duration", Dimension::TIME, summary.and_then(StoreySummary::contact_duration)),
         result("rebound_velocity", Dimension::VELOCITY, back),
@@ -114,5 +114,6 @@ pub(super) fn results(summary: Option<&StoreySummary>, worst: Option<f64>, histo
         result("max_base_shear", Dimension::FORCE, summary.map(|summary| summary.max_base_shear)),
         list("periods", Dimension::TIME, history.modes.as_ref().map(|modes| &modes.periods)),
     ]);
+    results.extend(followed.of_each());
     results
 }

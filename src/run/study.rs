@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use super::stop::Stop;
 use crate::formula::{ProcedureId, ResultValue};
+use crate::mechanics::recorded_path::Rule;
 use crate::record::NamedResult;
 use crate::uncertainty::{Contribution, Source, combined};
 
@@ -33,6 +34,8 @@ pub(super) const CLOSE: f64 = 1e-9;
 const ONE_SIDED: f64 = 0.2;
 /// And half the difference at ±u from that at ±u/2.
 const HALVED: f64 = 0.1;
+/// Suppositions about the specimen that come to results so near to each other, of the larger, agree.
+const AGREED: f64 = 0.2;
 /// How long to wait for the next run before those who watch hear that it goes on.
 const MOMENT: Duration = Duration::from_millis(20);
 
@@ -101,6 +104,13 @@ pub(super) const fn is_alike(source: Source) -> bool {
     )
 }
 
+/// What a run that was taken again comes to.
+pub(super) struct Taken {
+    pub values: Vec<f64>,
+    /// Whether the record tells the way to them.
+    pub seen: bool,
+}
+
 /// The runs to take.
 pub(super) struct Study<J> {
     /// Each source with its input at each of [`Effort::moves`].
@@ -114,7 +124,7 @@ impl<J: Sync> Study<J> {
     pub fn contributions(
         &self,
         nominal: &[f64],
-        again: &(dyn Fn(&J) -> Vec<f64> + Sync),
+        again: &(dyn Fn(&J) -> Taken + Sync),
         tick: Tick,
     ) -> Result<Vec<Vec<Contribution>>, Stop> {
         let jobs: Vec<&J> = self.moved.iter().flat_map(|(_, jobs)| jobs).chain(self.draws.iter().map(|(_, job)| job)).collect();
@@ -122,7 +132,9 @@ impl<J: Sync> Study<J> {
         let mut found = found.into_iter();
         let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); nominal.len()];
         for (source, jobs) in &self.moved {
-            let moved: Vec<Vec<f64>> = found.by_ref().take(jobs.len()).collect();
+            let taken: Vec<Taken> = found.by_ref().take(jobs.len()).collect();
+            let seen = taken.iter().all(|taken| taken.seen);
+            let moved: Vec<Vec<f64>> = taken.into_iter().map(|taken| taken.values).collect();
             for (index, (parts, nominal)) in contributions.iter_mut().zip(nominal).enumerate() {
                 let (amount, smooth) = match moved.as_slice() {
                     [up, down, half_up, half_down] => {
@@ -131,13 +143,14 @@ impl<J: Sync> Study<J> {
                     [up, down] => effect(*nominal, [up[index], down[index]], None),
                     _ => continue,
                 };
+                let smooth = smooth && (seen || amount == 0.0);
                 parts.push(Contribution { smooth, ..Contribution::new(*source, amount) });
             }
         }
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_DRAWS")]
         let root = (self.draws.len() as f64).sqrt();
         for ((source, _), found) in self.draws.iter().zip(found) {
-            for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(nominal) {
+            for ((parts, found), nominal) in contributions.iter_mut().zip(found.values).zip(nominal) {
                 // A result that does not exist has no uncertainty, and none is looked for in its draws.
                 if nominal.is_finite() {
                     parts.push(Contribution::new(*source, (found - nominal) / root));
@@ -216,6 +229,45 @@ fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, b
     (central, true)
 }
 
+/// What the specimen may have done for all the record tells: `find` what each source contributes by each rule, and the most
+/// that any of it makes of a source is told.
+pub(super) fn over_rules(
+    rules: &[Rule],
+    tick: Tick,
+    find: &mut dyn FnMut(Rule, Tick) -> Result<Vec<Vec<Contribution>>, Stop>,
+) -> Result<Vec<Vec<Contribution>>, Stop> {
+    let mut contributions: Vec<Vec<Contribution>> = Vec::new();
+    for (place, rule) in rules.iter().enumerate() {
+        let found = find(*rule, &mut |done, of| tick(place * of + done, rules.len() * of))?;
+        if contributions.is_empty() {
+            contributions = found;
+        } else {
+            for (told, other) in contributions.iter_mut().zip(found) {
+                widen(told, &other);
+            }
+        }
+    }
+    Ok(contributions)
+}
+
+/// Lets `told` be the most of what two suppositions make of one result: source by source of inputs that are moved, the draws
+/// of readings together, for it is their sum that tells. Where the two do not agree, none of them is sure.
+fn widen(told: &mut [Contribution], other: &[Contribution]) {
+    let drawn = |part: &Contribution| matches!(part.source, Source::Readings { .. } | Source::Drawn { .. });
+    let all_drawn =
+        |parts: &[Contribution]| parts.iter().filter(|part| drawn(part)).map(|part| part.amount.powi(2)).sum::<f64>().sqrt();
+    let (draws, of_other) = (all_drawn(told), all_drawn(other));
+    for (told, other) in told.iter_mut().zip(other) {
+        let (one, two, apart) = if drawn(told) {
+            (draws, of_other, (draws - of_other).abs())
+        } else {
+            (told.amount.abs(), other.amount.abs(), (told.amount - other.amount).abs())
+        };
+        let smooth = told.smooth && other.smooth && apart <= AGREED * one.max(two);
+        *told = Contribution { smooth, ..if two > one { *other } else { *told } };
+    }
+}
+
 /// Gives a result that is one number its contributions; one that is not finite is known of nothing.
 pub(super) fn give(result: &mut NamedResult, parts: Vec<Contribution>) {
     let known = parts.iter().all(|part| part.amount.is_finite());
@@ -248,9 +300,9 @@ mod tests {
         let moves = Effort::of(10, 2, 0, false).moves();
         let of = |a: f64, b: f64| moves.iter().map(|by| (1.0 + a * by, 2.0 + b * by)).collect::<Vec<(f64, f64)>>();
         let study = Study { moved: vec![(source(0), of(0.1, 0.0)), (source(1), of(0.0, 0.5))], draws: Vec::new() };
-        let again = |(a, b): &(f64, f64)| vec![3.0 * a + b * b];
+        let again = |(a, b): &(f64, f64)| Taken { values: vec![3.0 * a + b * b], seen: *a < 1.05 };
         let found = study.contributions(&[7.0], &again, &mut |_, _| Ok(())).ok().unwrap();
-        assert!((found[0][0].amount - 0.3).abs() < 1e-12 && found[0][0].smooth);
+        assert!((found[0][0].amount - 0.3).abs() < 1e-12 && !found[0][0].smooth, "where nothing is recorded");
         assert!((found[0][1].amount - 2.25).abs() < 1e-12 && !found[0][1].smooth, "{found:?}");
     }
 

@@ -114,6 +114,8 @@ const SHAKE: &[Column] = &[
     column("damping_energy_j", Dimension::ENERGY),
     column("input_energy_j", Dimension::ENERGY),
     column("energy_error_j", Dimension::ENERGY),
+    column("tracking_energy_error_j", Dimension::ENERGY),
+    column("tracking_indicator_m2", Dimension::AREA),
 ];
 
 /// Of its blows; each blow has the table of an impact besides.

@@ -33,7 +33,7 @@ const MODES: &[Variant] = &[
         &[Field::quantity("time_scale", Dimension::NUMBER, "rig time over virtual time")
             .required("time_scale: 100")
             .above_zero()],
-        "the actuator does not stop: what a damper does at this speed is in the force; virtual rigs only",
+        "the actuator does not stop: what a damper does at this speed is in the force; on virtual rigs, and real ones that speak `native`",
     ),
 ];
 

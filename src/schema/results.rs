@@ -76,18 +76,10 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::measured("damping_energy", Dimension::ENERGY, "energy that the computed `damping` took over the run"),
     ResultKind::measured("striker_energy", Dimension::ENERGY, "kinetic energy of the striker at the start"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
-    ResultKind::new(
-        "tracking_energy_error",
-        Dimension::NUMBER,
-        "energy that following wrongly took out of the test (put in: negative), over the input energy, at its largest",
-    ),
-    ResultKind::new(
-        "tracking_indicator",
-        Dimension::AREA,
-        "area that command against measurement encloses; falling: the actuator lags",
-    ),
-    ResultKind::new("nrms_error", Dimension::NUMBER, "tracking error over command, root mean squares"),
-    ResultKind::new("peak_error", Dimension::LENGTH, "largest measured less commanded displacement, by size"),
+    FOLLOWED[0],
+    FOLLOWED[1],
+    FOLLOWED[2],
+    FOLLOWED[3],
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
     ResultKind::measured("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
     ResultKind::count("steps", "number of steps"),
@@ -101,6 +93,38 @@ pub(super) const IMPACT: &[ResultKind] = &[
         .of_storey(),
     ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey").of_storey(),
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first").of_storey(),
+    FLOORS_FOLLOWED[0].of_storey(),
+    FLOORS_FOLLOWED[1].of_storey(),
+    FLOORS_FOLLOWED[2].of_storey(),
+    FLOORS_FOLLOWED[3].of_storey(),
+];
+
+/// How the actuators of a specimen were followed; of several, energies and areas add, of the others the largest counts.
+const FOLLOWED: [ResultKind; 4] = [
+    ResultKind::new(
+        "tracking_energy_error",
+        Dimension::NUMBER,
+        "energy that following wrongly took out of the test (put in: negative), over the input energy, at its largest",
+    ),
+    ResultKind::new(
+        "tracking_indicator",
+        Dimension::AREA,
+        "area that command against measurement encloses; falling: the actuator lags",
+    ),
+    ResultKind::new("nrms_error", Dimension::NUMBER, "tracking error over command, root mean squares"),
+    ResultKind::new("peak_error", Dimension::LENGTH, "largest measured less commanded displacement, by size"),
+];
+
+/// The same of the actuator of each floor.
+const FLOORS_FOLLOWED: [ResultKind; 4] = [
+    ResultKind::list(
+        "floor_tracking_energy_error",
+        Dimension::NUMBER,
+        "of each floor's actuator: energy that following wrongly took out (put in: negative), over the input energy, at its largest",
+    ),
+    ResultKind::list("floor_tracking_indicator", Dimension::AREA, "of each floor's actuator: the tracking indicator"),
+    ResultKind::list("floor_nrms_error", Dimension::NUMBER, "of each floor's actuator: tracking error over command"),
+    ResultKind::list("floor_peak_error", Dimension::LENGTH, "of each floor's actuator: largest tracking error, by size"),
 ];
 
 pub(super) const SHAKE: &[ResultKind] = &[
@@ -111,4 +135,12 @@ pub(super) const SHAKE: &[ResultKind] = &[
     ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
     ResultKind::count("steps", "number of steps"),
+    FOLLOWED[0],
+    FOLLOWED[1],
+    FOLLOWED[2],
+    FOLLOWED[3],
+    FLOORS_FOLLOWED[0],
+    FLOORS_FOLLOWED[1],
+    FLOORS_FOLLOWED[2],
+    FLOORS_FOLLOWED[3],
 ];

@@ -3,6 +3,7 @@
 //! benches have one ram; what is said without a place is said of the first.
 
 use super::bench_fault::BenchFault;
+use super::bench_glide::Glides;
 use super::ram::{Ram, RamSettings};
 use super::structure::Structure;
 use crate::plan::{Behaviour, Frame, Interval};
@@ -46,9 +47,9 @@ pub struct SentMove {
 pub struct Bench {
     settings: BenchSettings,
     structure: Structure,
-    rams: Vec<Ram>,
+    pub(super) rams: Vec<Ram>,
     /// s since power-up.
-    time: f64,
+    pub(super) time: f64,
     /// One a ram, as the specimen has it: N, without noise.
     restoring_force: Vec<f64>,
     /// Force readings so far; of several rams those of the first.
@@ -56,9 +57,13 @@ pub struct Bench {
     /// Targets that lay outside the limits, m.
     violations: Vec<f64>,
     /// Every target it was sent to, m.
-    targets: Vec<f64>,
-    moves: Vec<SentMove>,
+    pub(super) targets: Vec<f64>,
+    pub(super) moves: Vec<SentMove>,
+    pub(super) glides: Glides,
 }
+
+/// The longest part of a smooth way that is taken in one piece, s: a specimen feels its turn no later.
+const FINELY: f64 = 1e-3;
 
 /// The seed of one ram: the bench's own for the first.
 const fn seed_of(seed: u64, ram: u64) -> u64 {
@@ -93,6 +98,7 @@ impl Bench {
             violations: Vec::new(),
             targets: Vec::new(),
             moves: Vec::new(),
+            glides: Glides::default(),
         };
         bench.restoring_force = bench.structure.bend(&vec![0.0; rams.len()]);
         bench
@@ -145,6 +151,22 @@ impl Bench {
 
     /// Brings the bench to a later moment, s.
     pub fn advance(&mut self, to: f64) {
+        while let Some(until) = self.next_glide().filter(|until| *until < to) {
+            self.pass(until);
+            self.begin_next_glide();
+        }
+        self.pass(to);
+    }
+
+    /// Nothing is told to the rams before that moment, s.
+    fn pass(&mut self, to: f64) {
+        while self.rams.iter().any(Ram::glides) && to - self.time > FINELY {
+            self.take(self.time + FINELY);
+        }
+        self.take(to);
+    }
+
+    fn take(&mut self, to: f64) {
         let seconds = to - self.time;
         if seconds.is_nan() || seconds <= 0.0 {
             return;
@@ -185,8 +207,7 @@ impl Bench {
             self.targets.push(*target);
             let ram = &mut self.rams[ram];
             let way = (target - ram.position).abs();
-            ram.speed = if way == farthest { speed } else { speed * (way / farthest) };
-            ram.target = *target;
+            ram.go(*target, if way == farthest { speed } else { speed * (way / farthest) });
         }
         self.moves.push(SentMove { time: self.time, id, targets: targets.to_vec(), speed });
     }
@@ -203,7 +224,7 @@ impl Bench {
         }
     }
 
-    fn judge(&mut self, ram: usize, target: f64) {
+    pub(super) fn judge(&mut self, ram: usize, target: f64) {
         if !self.rams[ram].allows(target) {
             self.violations.push(target);
         }
@@ -211,8 +232,9 @@ impl Bench {
 
     /// Stops where it stands.
     pub fn hold(&mut self) {
+        self.glides.clear();
         for ram in &mut self.rams {
-            ram.target = ram.position;
+            ram.hold();
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod bench;
 mod bench_fault;
+mod bench_glide;
 mod faulty;
 pub mod firmware;
 mod in_process;
@@ -20,6 +21,7 @@ pub(crate) mod testing;
 
 pub use bench::{Bench, BenchSettings, SentMove};
 pub use bench_fault::BenchFault;
+pub use bench_glide::{NoWay, WayEnd};
 pub use faulty::Faulty;
 pub use in_process::{InProcess, SimulatedClock, SimulatedPort};
 pub use log::Log;

@@ -6,6 +6,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
 use super::bench_fault::BenchFaults;
+use crate::mechanics::path::Path;
 use crate::plan::Interval;
 
 /// A target may lie this far beyond a limit and still be on it, m: the last bits of a turn from mm to m.
@@ -38,19 +39,57 @@ pub(super) struct Ram {
     pub(super) target: f64,
     /// m/s
     pub(super) speed: f64,
+    /// On a smooth way, and how long already, s.
+    course: Option<(Path, f64)>,
 }
 
 impl Ram {
     pub(super) fn new(settings: RamSettings, seed: u64) -> Self {
         let (generator, faults) = (Pcg64::seed_from_u64(seed), BenchFaults::none(seed));
-        Self { settings, generator, faults, position: 0.0, reached: 0.0, at: 0.0, target: 0.0, speed: 0.0 }
+        Self { settings, generator, faults, position: 0.0, reached: 0.0, at: 0.0, target: 0.0, speed: 0.0, course: None }
+    }
+
+    /// Goes along a smooth way from now on; past its end as fast as there.
+    pub(super) fn follow(&mut self, path: Path) {
+        self.target = path.to;
+        self.course = Some((path, 0.0));
+    }
+
+    /// Sets off to a target (m) at a speed (m/s).
+    pub(super) fn go(&mut self, target: f64, speed: f64) {
+        (self.target, self.speed, self.course) = (target, speed, None);
+    }
+
+    /// Stops where it is commanded to be.
+    pub(super) fn hold(&mut self) {
+        self.go(self.position, 0.0);
+    }
+
+    /// Whether it is on a smooth way, or goes on behind one.
+    pub(super) fn glides(&self) -> bool {
+        self.course.is_some()
+    }
+
+    /// Where it is on its course after `seconds` more, m.
+    fn glide(&mut self, seconds: f64) {
+        let Some((path, elapsed)) = &mut self.course else { return };
+        *elapsed += seconds;
+        // The end of a way is no less its end for the last bits of a sum of times.
+        let past = *elapsed - path.seconds;
+        let ended = past > -1e-9;
+        self.position = if ended { path.to + past.max(0.0) * path.end_velocity } else { path.place(*elapsed) };
+        if ended && path.end_velocity == 0.0 {
+            self.course = None;
+        }
     }
 
     /// `seconds` pass.
     pub(super) fn advance(&mut self, seconds: f64) {
         let left = self.target - self.position;
         let before = self.position;
-        if left != 0.0 {
+        if self.course.is_some() {
+            self.glide(seconds);
+        } else if left != 0.0 {
             let way = self.speed * seconds;
             self.position = if left.abs() <= way { self.target } else { self.position + way.copysign(left) };
         }
@@ -64,18 +103,21 @@ impl Ram {
     /// s of the next `seconds` in which it goes on.
     pub(super) fn arrives_in(&self, seconds: f64) -> f64 {
         match self.target - self.position {
-            _ if self.faults.lag > 0.0 => seconds,
+            _ if self.faults.lag > 0.0 || self.glides() => seconds,
             0.0 => 0.0,
             left => (left.abs() / self.speed).min(seconds),
         }
     }
 
     pub(super) fn moving(&self) -> bool {
-        self.position != self.target
+        self.glides() || self.position != self.target
     }
 
     /// m/s, signed; 0 at rest.
     pub(super) fn velocity(&self) -> f64 {
+        if let Some((path, elapsed)) = &self.course {
+            return path.rate(*elapsed).velocity;
+        }
         if self.moving() { self.speed * (self.target - self.position).signum() } else { 0.0 }
     }
 

@@ -8,7 +8,7 @@ use psd::check::{LoadFault, Loader, Options, check};
 use psd::diagnostic::render::{Appearance, render_all};
 use psd::plan::Interval;
 use psd::record::journal::EntryKind;
-use psd::rig::dialect::native::{self, AxisBounds, Bounds, Kind, LONGEST_FRAME, Request};
+use psd::rig::dialect::native::{self, AxisBounds, Bounds, End, Kind, LONGEST_FRAME, Request};
 use psd::source::Sources;
 use psd::syntax::{format, parse};
 
@@ -78,7 +78,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
         let (body, _) = shown[1..].rsplit_once('*').expect("a frame has its checksum");
         let words: Vec<&str> = body.split(' ').collect();
         let sequence: u32 = words[1].parse().expect("a sequence number");
-        let (bounds, targets);
+        let (bounds, targets, ends);
         let request = match (words[0], &words[2..]) {
             ("HELLO", []) => Request::Hello,
             ("LIM", [axes @ .., speed]) => {
@@ -96,6 +96,11 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
                 targets = places.iter().map(|place| metres(place)).collect::<Vec<f64>>();
                 Request::Move { id: id.parse().expect("a number"), targets: &targets, speed: metres(speed) }
             }
+            ("GLIDE", [id, words @ .., time]) => {
+                let end = |pair: &[&str]| End { place: metres(pair[0]), velocity: metres(pair[1]) };
+                ends = words.chunks(2).map(end).collect::<Vec<End>>();
+                Request::Glide { id: id.parse().expect("a number"), ends: &ends, seconds: metres(time) }
+            }
             ("MEAS", [readings]) => Request::Measure { readings: readings.parse().expect("a number") },
             ("STAT", []) => Request::Status,
             ("STOP", []) => Request::Stop,
@@ -108,7 +113,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
         assert!(frame.len() <= LONGEST_FRAME || words.len() > 8);
         verbs.push(words[0].to_owned());
     }
-    for verb in ["HELLO", "LIM", "MOVE", "MEAS", "STAT", "STOP", "CLR", "REF"] {
+    for verb in ["HELLO", "LIM", "MOVE", "GLIDE", "MEAS", "STAT", "STOP", "CLR", "REF"] {
         assert!(verbs.iter().any(|shown| shown == verb), "{verb} is not shown");
     }
 }
@@ -139,6 +144,7 @@ fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
                     assert_eq!((highs, last), (vec![(0.03, 8e3), (0.06, 5e3)], Some((21, vec![1.25e-3, -2.5e-3]))));
                 }
             }
+            (Kind::Ack, 2) if native::left(&reply.words).is_some() => assert!(line.contains("MOVING"), "{line}"),
             (Kind::Ack, _) => assert!(native::state(&reply.words[0]).is_some(), "{line}"),
             (Kind::Err, _) => assert!(!native::refusal(&reply.words).contains("does not know"), "{line}"),
         }
@@ -154,7 +160,7 @@ fn every_refusal_on_the_page_is_one_the_driver_knows() {
         .filter_map(|rest| rest.split('`').next())
         .map(str::to_owned)
         .collect();
-    assert_eq!(codes.len(), 11);
+    assert_eq!(codes.len(), 12);
     for code in codes {
         let told = native::refusal(std::slice::from_ref(&code));
         assert!(!told.contains("for a reason psd does not know"), "{code}: {told}");

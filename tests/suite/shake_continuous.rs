@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use psd::check::{LoadFault, Loader, Options, check};
+use psd::formula::ResultValue;
 use psd::plan::Plan;
 use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
 use psd::rig::virtual_rig;
@@ -183,6 +184,40 @@ fn readings_of_lagging_axes_are_corrected_to_their_targets() {
         assert!((corrected[floor] / ideal[floor] - 1.0).abs() < 1e-9, "{corrected:?} and {ideal:?}");
         // The amplitude grows by exp(½ω²·lag/scale·t) in the first mode, 12 times in eight seconds.
         assert!(raw[floor] / ideal[floor] > 8.0, "{raw:?} and {ideal:?}");
+    }
+}
+
+/// Lagging axes of a shake that nobody corrects, and axes that fall short at every step, are held where they have fed in more than
+/// the plan allows; what each floor came to stands in the results, and the whole is their sum.
+#[test]
+fn tracking_holds_a_shake_in_both_modes() {
+    let raw = format!("{}\n  i_modification = false", continuous("5 ms"));
+    let stepping = "  integrator = explicit\n  time_step = 5 ms".to_owned();
+    for (shake, errs) in [(raw, "lag: 200 ms"), (stepping, "tracking: 0.3")] {
+        let mut plan = plan("sine", "", &shake, errs);
+        let record = run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
+        let held = |record: &Record, what: &str| matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains(what));
+        assert!(held(&record, "tracking energy"), "{errs}: {:?}", record.outcome);
+        let result = |name: &str| record.procedures[0].result(name).map(|result| &result.value);
+        let number = |name: &str| match result(name) {
+            Some(ResultValue::Number { value: Some(value), .. }) => *value,
+            other => panic!("{name}: {other:?}"),
+        };
+        let list = |name: &str| match result(name) {
+            Some(ResultValue::List(values)) => values.clone(),
+            other => panic!("{name}: {other:?}"),
+        };
+        assert!((-0.06..-0.05).contains(&number("tracking_energy_error")), "{errs}: {}", number("tracking_energy_error"));
+        let sum: f64 = list("floor_tracking_energy_error").iter().sum();
+        assert!((sum / number("tracking_energy_error") - 1.0).abs() < 0.05, "{errs}: {sum}");
+        let sum: f64 = list("floor_tracking_indicator").iter().sum();
+        assert!(sum < 0.0 && (sum / number("tracking_indicator") - 1.0).abs() < 1e-12, "{errs}: {sum}");
+        for name in ["nrms_error", "peak_error"] {
+            assert_eq!(list(&format!("floor_{name}")).into_iter().fold(0.0, f64::max), number(name), "{errs}: {name}");
+        }
+        plan.limits.tracking_energy_error.high = 1e6;
+        plan.limits.nrms_error.high = 1e-3;
+        assert!(held(&run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched), "NRMS"), "{errs}");
     }
 }
 

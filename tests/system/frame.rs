@@ -93,6 +93,52 @@ fn results(folder: &Path) -> Vec<(String, f64)> {
     named.collect()
 }
 
+/// The same plan, of which the floors do not stop: a step takes 0.8 s.
+fn gliding() -> Stage {
+    let plan = |text: &str| {
+        let port = text.split("port: \"").nth(1).and_then(|rest| rest.split('"').next()).expect("the port of the stage");
+        let ground = Path::new(port).with_file_name("ground.csv");
+        fs::write(ground, "time_s,acceleration_m_per_s2\n0,0\n0.05,2\n0.1,-3\n0.2,2\n").expect("ground");
+        let mode = "  time_step     = 10 ms\n  mode          = continuous(time_scale: 80)";
+        PLAN.replace("PORT", port).replace("  time_step     = 10 ms", mode).replace("0.4 s\n}", "0.1 s\n}")
+    };
+    Stage::of(plan, "")
+}
+
+/// Continuous in real time over a pseudo-terminal: a reading comes a little behind its target, and the force of an elastic frame
+/// is corrected to it, so that the motion is that of the virtual run as near as the wire tells forces and places.
+#[test]
+fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on() {
+    let whole = gliding();
+    succeeded(&wait(&mut whole.run_with(&["--yes"])));
+    let proven = whole.proven();
+    assert!(proven.contains("out of the record again, byte for byte"), "{proven}");
+    let mut virtual_run = std::process::Command::new(PSD);
+    virtual_run.arg("run").arg(whole.path("plan.psd")).args(["--rig", "ideal", "--out"]).arg(whole.path("ideal"));
+    succeeded(&wait(&mut virtual_run));
+    let ideal = results(&whole.path("ideal"));
+    let same = |real: &[(String, f64)]| {
+        assert!(real.len() == ideal.len() && real.len() > 8);
+        for ((name, real), (_, ideal)) in real.iter().zip(&ideal) {
+            if ["max_displacement", "max_drift", "periods"].contains(&name.as_str()) {
+                assert!((real - ideal).abs() <= 1e-7 + 1e-5 * ideal.abs(), "{name}: {real} is not {ideal}");
+            }
+        }
+    };
+    same(&results(&whole.path("run")));
+
+    let cut_off = gliding();
+    let mut running = start(&mut cut_off.run_with(&["--yes"]));
+    cut_off.after_moves(13);
+    signal(&running, Signal::KILL);
+    assert_eq!(code(&mut running), None);
+    finish(running);
+    // Nobody tells it where to go on: it holds by itself.
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    cut_off.goes_on(&[]);
+    same(&results(&cut_off.path("run")));
+}
+
 fn succeeded(ended: &Ended) {
     assert_eq!(ended.code, Some(0), "{}", ended.told);
 }

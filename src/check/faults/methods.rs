@@ -38,11 +38,11 @@ pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f6
         .help("take the high end of what the ramp finds: a `stiffness` above the specimen's is stable for every step")
 }
 
-pub fn continuous_on_a_real_rig(span: Span) -> Diagnostic {
-    let message = "continuous mode needs a rig that follows a path without stopping; no dialect of this version can say one";
+pub fn continuous_on_a_real_rig(dialect: &str, span: Span) -> Diagnostic {
+    let message = format!("continuous mode needs a rig that follows a path without stopping, and `{dialect}` cannot say one");
     Diagnostic::new(Code::NoPathToFollow, message)
-        .at(span, "every dialect says one target at a time, `native` one stroke at one velocity")
-        .help("write `mode = step_and_pause`, or run the plan on a virtual rig")
+        .at(span, format!("`{dialect}` says one target at a time, and stops there"))
+        .help("write `mode = step_and_pause`; or use a rig that speaks `native`, which has `GLIDE`, or a virtual rig")
 }
 
 pub fn stops_on_the_way(field: &str, span: Span, mode: Span) -> Diagnostic {

@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, behaviour, number};
-use super::{described, method, results};
+use super::{described, followed, method, results};
 use crate::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
@@ -88,6 +88,7 @@ pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, h
     if !history.steps.is_empty() {
         let frame = run.plan.specimens.get(shake.specimen).and_then(|specimen| specimen.frame.as_ref());
         body.push(storey_table(procedure, &history.steps, frame, "max_displacement"));
+        body.extend(followed::table(procedure));
         body.push(energy_balance(history));
     }
 }
@@ -99,6 +100,9 @@ fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
         format!("Time step {}; a tenth of the shortest period is {}.", time(history.time_step), time(history.critical_time_step)),
     ];
     sentences.extend(method::driven(shake.stepping.i_modification, shake.stepping.mode));
+    if let Some(last) = history.steps.last() {
+        sentences.extend(followed::sentence(&last.tracking, last.energies.input));
+    }
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
         sentences.push(format!(
             "The record is linear between its samples, and each step reads it at its end: {}.",

@@ -3,9 +3,13 @@
 
 use super::super::document::Block;
 use super::super::{Run, number};
+use crate::mechanics::monitor::Tracking;
 use crate::plan::{Impact, Integrator, Mode, ProcedureKind};
 use crate::quantity::Dimension;
 use crate::record::ImpactHistory;
+
+/// Errors below this, m, are rounding.
+pub(super) const NOTHING: f64 = 1e-12;
 
 pub(super) fn note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut Vec<Block>) {
     let Some(ProcedureKind::Impact(impact)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
@@ -52,14 +56,16 @@ fn integrator(impact: &Impact) -> String {
     format!("Integrator: {named}.{unstable}")
 }
 
-/// What following wrongly did, where it did anything that can be told from rounding.
-pub(super) fn tracking(history: &ImpactHistory) -> Option<String> {
+fn tracking(history: &ImpactHistory) -> Option<String> {
     let (first, last) = (history.steps.first()?, history.steps.last()?);
-    let found = last.tracking;
-    if found.peak_error < 1e-12 {
-        return Some("The actuator stood at every target.".to_owned());
+    Some(followed(last.tracking, first.energies.striker, "The actuator"))
+}
+
+/// What following wrongly did, where it did anything that can be told from rounding, of an input of so much, J.
+pub(super) fn followed(found: Tracking, input: f64, who: &str) -> String {
+    if found.peak_error < NOTHING {
+        return format!("{who} stood at every target.");
     }
-    let input = first.energies.striker;
     let does = if found.energy_error < 0.0 { "put into the test" } else { "taken out of it" };
     let energy = found.share_of(input).map_or_else(String::new, |share| {
         format!(
@@ -67,9 +73,9 @@ pub(super) fn tracking(history: &ImpactHistory) -> Option<String> {
             number::text(100.0 * share.abs(), Dimension::NUMBER)
         )
     });
-    Some(format!(
+    format!(
         "Tracking: largest error {}, NRMS error {}\u{a0}%{energy}.",
         number::text(found.peak_error, Dimension::LENGTH),
         number::text(100.0 * found.nrms_error, Dimension::NUMBER)
-    ))
+    )
 }

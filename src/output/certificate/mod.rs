@@ -10,6 +10,7 @@ mod curve;
 mod cycles;
 mod drift;
 mod equipment;
+mod followed;
 mod foretold;
 mod frames;
 mod head;

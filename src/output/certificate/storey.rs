@@ -4,7 +4,7 @@
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
 use super::results::{contact_law, energy_balance, percent, scalar};
-use super::{contact_log, frames, method};
+use super::{contact_log, followed, frames};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Mode, ProcedureKind, StoreyImpact};
 use crate::quantity::Dimension;
@@ -27,6 +27,7 @@ pub(super) fn struck(
     let frame = run.plan.specimens.get(impact.specimen).and_then(|specimen| specimen.frame.as_ref());
     body.push(frames::storey_table(procedure, &history.floors, frame, "floor_displacement"));
     body.push(storey_energies(procedure));
+    body.extend(followed::table(procedure));
     energy_balance(&history.blow, body);
     contact_log::table(&history.blow, body);
 }
@@ -76,7 +77,9 @@ fn told(run: &Run<'_>, impact: &StoreyImpact, procedure: &ProcedureRecord, histo
         );
     }
     sentences.extend(met(run, impact));
-    sentences.extend(method::tracking(&history.blow));
+    if let (Some(last), Some(striker)) = (history.floors.last(), scalar(procedure, "striker_energy")) {
+        sentences.extend(followed::sentence(&last.tracking, striker));
+    }
     sentences.join(" ")
 }
 

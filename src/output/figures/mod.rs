@@ -159,6 +159,14 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
     })
 }
 
+/// What the tracking of a frame shows, whatever moved it.
+fn followed(name: &str, chosen: &str) -> String {
+    format!(
+        "{name}: what the actuator of each floor missed of its commands{chosen}, and the tracking indicator of all of them over the \
+         largest command; an indicator that falls says that the lag feeds energy into the test."
+    )
+}
+
 /// The charts of a frame on moving ground; None before its first step.
 fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: &Figure, kind: FigureKind) -> Option<(Chart, String)> {
     if history.steps.is_empty() {
@@ -195,6 +203,7 @@ fn shaken(run: &Run<'_>, name: &str, history: &ShakeHistory, figure: &Figure, ki
         FigureKind::Energy => {
             (shake::energy(history), format!("{name}: what the motion of the ground put in, and what became of it."))
         }
+        FigureKind::Tracking => (shake::tracking(&history.steps), followed(name, chosen)),
         _ => return None,
     })
 }

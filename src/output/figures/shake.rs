@@ -55,6 +55,20 @@ pub(super) fn ground(history: &ShakeHistory) -> Chart {
     chart
 }
 
+/// What the actuator of each floor missed, and the tracking indicator of all as a length: over the largest command.
+pub(super) fn tracking<S: Floors>(steps: &[S]) -> Chart {
+    let missed = |step: &S| step.measured().iter().zip(step.command()).map(|(measured, command)| measured - command).collect();
+    let mut chart = each_floor(steps, Quantity::of("Tracking error", Dimension::LENGTH), "floor", missed);
+    let largest = steps.iter().flat_map(S::command).map(|command| command.abs()).fold(0.0, f64::max);
+    if largest > 0.0 {
+        let all = |step: &S| step.tracking().iter().map(|axis| axis.indicator).sum::<f64>();
+        let points = steps.iter().map(|step| (step.time(), all(step) / largest)).collect();
+        let label = "tracking indicator / largest command".to_owned();
+        chart.series.push(Series { label, points, style: Style::line(palette::BLACK, 2.2, DOTTED) });
+    }
+    chart
+}
+
 /// The input, and what it became.
 pub(super) fn energy(history: &ShakeHistory) -> Chart {
     type Part = (&'static str, fn(&ShakeStep) -> f64, Style);

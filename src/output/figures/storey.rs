@@ -76,13 +76,7 @@ pub(super) fn chart(
                  the balance closes."
             ),
         ),
-        FigureKind::Tracking => (
-            impact::tracking(&history.blow),
-            format!(
-                "{name}: what the actuator of the struck floor missed of its commands, and the tracking indicator of all axes \
-                 over its largest command; an indicator that falls says that the lag feeds energy into the test."
-            ),
-        ),
+        FigureKind::Tracking => (shaded(history, shake::tracking(&history.floors)), super::followed(name, chosen)),
         _ => return None,
     })
 }

@@ -16,6 +16,7 @@ mod scpi;
 mod stream;
 mod unnumbered;
 
+use crate::mechanics::path::Path;
 use crate::plan::Limits;
 
 use super::{LastMove, Tally};
@@ -170,6 +171,23 @@ pub trait Device: Send {
     /// # Errors
     /// It was refused or not heard.
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault>;
+
+    /// The bytes of a way along smooth paths, one an axis and equally long, whose ends are passed and not stopped at; what
+    /// they say of the ends when read back, with the fastest of the speeds. Sends nothing.
+    ///
+    /// # Errors
+    /// As `encode`; most devices follow no path.
+    fn encode_way(&mut self, _paths: &[Path]) -> Result<Move, DeviceFault> {
+        Err(DeviceFault::Unfit("it goes to targets, and follows no path without stopping".to_owned()))
+    }
+
+    /// Sends a way and gives back once it is accepted: how long it is to its end, s.
+    ///
+    /// # Errors
+    /// It was refused, came too late, or was not heard.
+    fn set_out(&mut self, going: &Move) -> Result<f64, DeviceFault> {
+        self.start(going).map(|()| 0.0)
+    }
 
     /// Asks once for a reading of every axis; a reply that is none is [`DeviceFault::NoReading`].
     ///

@@ -2,11 +2,15 @@
 //! from the same power-up. The bytes are `dialect::native`'s; it judges no reading.
 
 use super::{Answer, Channel, Device, DeviceFault, DeviceIdentity, Force, Move, Sample, Talk};
+use crate::mechanics::path::Path;
 use crate::plan::Limits;
 use crate::rig::dialect::native::{self, AxisBounds, Bounds, Hello, Kind, Reply, Request, State};
 use crate::rig::dialect::number;
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{LastMove, Tally};
+
+#[path = "native_way.rs"]
+mod way;
 
 /// How the model of a simulator begins.
 pub const SIMULATED: &str = "PSD-SIM";
@@ -112,6 +116,38 @@ impl NativeDevice {
         Ok(())
     }
 
+    /// Sends a move or a way as it was made. The reply to its last frame.
+    fn send(&mut self, going: &Move) -> Result<Option<Answered>, DeviceFault> {
+        // The bytes are on record before they are sent: they are never made anew with another number.
+        let next = self.sequence.wrapping_add(1);
+        if self.out_of_step || going.frames.first().and_then(|frame| native::sequence(frame)) != Some(next) {
+            return Err(DeviceFault::Unfit("the rig was asked something else since this move was made".to_owned()));
+        }
+        if let Some(proposed) = &mut self.proposed {
+            proposed.sent = true;
+        }
+        let mut last = None;
+        for frame in &going.frames {
+            let answered = self.exchange(frame, Kind::Ack)?;
+            state(&answered.reply, &answered.line)?;
+            last = Some(answered);
+        }
+        self.next_id = going.id.map_or(self.next_id, |id| id + 1);
+        (self.held, self.proposed) = (false, None);
+        Ok(last)
+    }
+
+    /// The frames of a request that moves, in order: a latched hold is let go of first.
+    fn frames_of(&self, moving: Request<'_>) -> Result<Vec<Vec<u8>>, DeviceFault> {
+        let requests = if self.held { vec![Request::Clear, moving] } else { vec![moving] };
+        let mut sequence = self.sequence;
+        let frames = requests.iter().map(|request| {
+            sequence = sequence.wrapping_add(1);
+            framed(sequence, request)
+        });
+        frames.collect()
+    }
+
     /// A request that is answered by the state alone.
     fn command(&mut self, request: &Request<'_>) -> Result<State, DeviceFault> {
         let Answered { reply, line } = self.request(request, Kind::Ack)?;
@@ -195,35 +231,24 @@ impl Device for NativeDevice {
             Some(proposed) => proposed.id + 1,
             None => self.next_id,
         };
-        let moving = Request::Move { id, targets: &targets, speed };
-        let requests = if self.held { vec![Request::Clear, moving] } else { vec![moving] };
-        let mut sequence = self.sequence;
-        let frames = requests.iter().map(|request| {
-            sequence = sequence.wrapping_add(1);
-            framed(sequence, request)
-        });
-        let frames = frames.collect::<Result<_, _>>()?;
+        let frames = self.frames_of(Request::Move { id, targets: &targets, speed })?;
         let sent = self.proposed.as_ref().is_some_and(|proposed| proposed.sent && proposed.id == id);
         self.proposed = Some(Proposed { id, targets: written, sent });
         Ok(Move { frames, targets, speed, id: Some(id) })
     }
 
+    fn encode_way(&mut self, paths: &[Path]) -> Result<Move, DeviceFault> {
+        self.way(paths)
+    }
+
+    fn set_out(&mut self, going: &Move) -> Result<f64, DeviceFault> {
+        let Some(Answered { reply, line }) = self.send(going)? else { return Err(nothing_to_send()) };
+        let strange = || DeviceFault::NoReading { raw: line, reason: "it does not say how long the way is".to_owned() };
+        native::left(&reply.words).ok_or_else(strange)
+    }
+
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
-        // The bytes are on record before they are sent: they are never made anew with another number.
-        let next = self.sequence.wrapping_add(1);
-        if self.out_of_step || going.frames.first().and_then(|frame| native::sequence(frame)) != Some(next) {
-            return Err(DeviceFault::Unfit("the rig was asked something else since this move was made".to_owned()));
-        }
-        if let Some(proposed) = &mut self.proposed {
-            proposed.sent = true;
-        }
-        for frame in &going.frames {
-            let Answered { reply, line } = self.exchange(frame, Kind::Ack)?;
-            state(&reply, &line)?;
-        }
-        self.next_id = going.id.map_or(self.next_id, |id| id + 1);
-        (self.held, self.proposed) = (false, None);
-        Ok(())
+        self.send(going)?.map(drop).ok_or_else(nothing_to_send)
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
@@ -288,6 +313,10 @@ impl Device for NativeDevice {
     fn tally(&self) -> Tally {
         self.talk.tally()
     }
+}
+
+fn nothing_to_send() -> DeviceFault {
+    DeviceFault::Unfit("there are no bytes to send".to_owned())
 }
 
 #[cfg(test)]

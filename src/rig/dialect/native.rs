@@ -25,6 +25,7 @@
 //! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move it began (id 0: none since power-up). The limits of a run are gone after it. |
 //! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Wider than the rig's own: `ERR LIMIT`. |
 //! | `MOVE id {target} rate` | `ACK state`: all axes go to their absolute targets together, and arrive together, the one with the farthest way at the rate. An id is greater than every one before. The last id with its targets again: `ACK` without motion; with others, or an older id: `ERR ID`. |
+//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows the cubic from where and as fast as it is to its target, which it passes with its velocity so many ms after the last `GLIDE` ended, or from now on where none is under way; `left` is how long it is to that end, ms. It does not stop there: it goes on as fast as it passed, and holds where no `GLIDE` follows. |
 //! | `MEAS n` | `DATA t {disp force raw flags} state`: the median of n readings of each channel. |
 //! | `STAT` | `ACK state flags`: a bit is set where it is of any axis. |
 //! | `STOP` | `ACK HELD`: stops all axes, keeps the load, and stays held until `CLR`. |
@@ -33,7 +34,7 @@
 //!
 //! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3
 //! lower limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` carries
-//! one word: `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `HELD`, `STOP`, `REF`, `FAULT`.
+//! one word: `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `LATE`, `HELD`, `STOP`, `REF`, `FAULT`.
 //!
 //! The byte `!` anywhere holds at once, as `STOP` does, and is no part of a frame. No valid frame for W ms (3000 as
 //! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: what it does not do exactly, it refuses. Holding
@@ -63,6 +64,12 @@ pub enum Request<'a> {
         targets: &'a [f64],
         speed: f64,
     },
+    /// Where each axis passes and as fast as what, so long after the way before.
+    Glide {
+        id: u64,
+        ends: &'a [End],
+        seconds: f64,
+    },
     Measure {
         readings: u32,
     },
@@ -72,6 +79,13 @@ pub enum Request<'a> {
     Reference {
         token: &'a str,
     },
+}
+
+/// The end of a smooth way: m, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    pub place: f64,
+    pub velocity: f64,
 }
 
 /// What a rig keeps to.
@@ -177,6 +191,10 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
             several(targets.len());
             format!("MOVE {sequence} {id} {} {}", lengths(targets)?, length(*speed)?)
         }
+        Request::Glide { id, ends, seconds } => {
+            several(ends.len());
+            format!("GLIDE {sequence} {id} {} {}", lengths(&in_turn(ends))?, time(*seconds)?)
+        }
         Request::Measure { readings } => format!("MEAS {sequence} {readings}"),
         Request::Status => format!("STAT {sequence}"),
         Request::Stop => format!("STOP {sequence}"),
@@ -201,6 +219,23 @@ fn bounds_of(axis: &AxisBounds) -> Option<String> {
 pub(crate) fn lengths(values: &[f64]) -> Option<String> {
     let words: Vec<String> = values.iter().map(|value| length(*value)).collect::<Option<_>>()?;
     Some(words.join(" "))
+}
+
+/// Place and velocity of each end after each other.
+pub(crate) fn in_turn(ends: &[End]) -> Vec<f64> {
+    ends.iter().flat_map(|end| [end.place, end.velocity]).collect()
+}
+
+/// s as it is written: ms.
+pub(crate) fn time(seconds: f64) -> Option<String> {
+    number::write(seconds * 1e3, 3)
+}
+
+/// How long it is to the end of a way (s), as the reply to `GLIDE` says.
+#[must_use]
+pub fn left(words: &[String]) -> Option<f64> {
+    let [_, left] = words else { return None };
+    number::fixed(left.as_bytes()).filter(|left| *left >= 0.0).map(|left| left / 1e3)
 }
 
 /// The sequence number of a frame to be sent.
@@ -351,6 +386,7 @@ pub fn refusal(words: &[String]) -> String {
         "RATE" => "faster than the rig may go",
         "ID" => "this number of a move was given to another target",
         "BUSY" => "the rig is still moving",
+        "LATE" => "the way would have ended before it came",
         "HELD" => "the rig is held",
         "STOP" => "the emergency stop is pressed",
         "REF" => "the rig is not referenced",

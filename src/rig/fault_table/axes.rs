@@ -58,7 +58,7 @@ fn the_gate_measures_the_stiffness_matrix_column_by_column() {
 }
 
 /// Told to hold, after which nothing moved.
-fn stopped(ended: &Ended) {
+pub(super) fn stopped(ended: &Ended) {
     let held = ended.log.find("actuator > !").expect("the rig was told to hold");
     assert!(!ended.completed() && !ended.log[held..].contains(" bench move ") && !ended.stand.stand().bench().moving());
 }
@@ -227,7 +227,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     assert!(matches!(relaxed, tape::Refusal::Relaxed { axis: Some(2), band: 5.0, .. }), "{relaxed}");
 }
 
-fn played(disk: &PowerLoss) -> (crate::record::journal::Recovered, Played) {
+pub(super) fn played(disk: &PowerLoss) -> (crate::record::journal::Recovered, Played) {
     let recovered = recover(&disk.written()).unwrap();
     let played = Played::of(&recovered).unwrap();
     (recovered, played)

@@ -22,6 +22,7 @@
 //! | 26 | targets beyond limits, no numbers | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
 //! | 27 | energy error, also of tracking | `motion::an_energy_error_beyond_its_limit_holds_the_rig`, `motion::tracking_that_changes_the_energy_holds_the_rig` |
 //! | 18–22 | the same of one axis of two | `axes::*` |
+//! | 10, 14, 18, 25, 26 | the same of axes that do not stop | `gliding::*` |
 //! | 29 | panic, abort | `tests/system/ended.rs`, for this table is of one process |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
@@ -31,6 +32,7 @@ mod control_points;
 mod device;
 mod drift;
 mod gate;
+mod gliding;
 mod line;
 mod long;
 mod motion;

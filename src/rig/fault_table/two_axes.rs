@@ -77,6 +77,12 @@ pub(super) fn shaken(duration: &str) -> Plan {
     checked(&PLAN.replace("DURATION", duration), "frame_rig")
 }
 
+/// The same, of which the floors do not stop: a step takes two seconds.
+pub(super) fn gliding_text(duration: &str) -> String {
+    let mode = "  time_step = 10 ms\n  mode      = continuous(time_scale: 200)";
+    PLAN.replace("DURATION", duration).replace("  time_step = 10 ms", mode)
+}
+
 /// What the upper axis says of itself.
 pub(super) fn upper(plan: &mut Plan) -> &mut AxisPlan {
     let link: &mut RealLink = super::stage::link(plan);

@@ -8,7 +8,9 @@ mod poll;
 mod settle;
 mod stroke;
 mod validity;
+mod way;
 
+use crate::mechanics::path::Path;
 use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
 
 use super::device::{Device, DeviceFault, Move};
@@ -52,6 +54,8 @@ struct Axis {
     judge: Judge,
     /// The last reading on the way was outside a limit.
     outside: bool,
+    /// Between the farthest places of the last path, m; 0 where a move came after it.
+    span: f64,
 }
 
 /// A move that was offered and not yet sent.
@@ -194,6 +198,11 @@ impl Rig for RealRig {
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         let traversed = self.stroke(targets, velocity, samples, each);
         self.or_hold(traversed)
+    }
+
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let followed = self.follow(paths, samples, each);
+        self.or_hold(followed)
     }
 
     /// Says so, and where that finds no ear sends what needs no answer.

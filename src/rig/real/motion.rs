@@ -95,7 +95,7 @@ impl RealRig {
         self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         self.deaf = false;
         for axis in &mut self.axes {
-            axis.outside = false;
+            (axis.outside, axis.span) = (false, 0.0);
         }
         self.look_up()?;
         let farthest = targets.iter().zip(&from).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);

@@ -116,6 +116,7 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
         rules: link.readings_of(place),
         judge: Judge::of_axis(named_axis(place, count)),
         outside: false,
+        span: 0.0,
     };
     (0..count).map(axis).collect()
 }

@@ -3,11 +3,16 @@
 
 use super::entry::{Doubt, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
 use super::played::{Mismatch, Played, Unplayable, body};
+use crate::mechanics::path::Path;
 use crate::plan::{RealLink, RigPlan};
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
 use crate::rig::{DeclaredNoise, Identity, Reading, named_axis, of_axis, who};
 use crate::run::{Inspection, UNLOADING};
+
+/// A rig that no next path is told goes on for so long at most before it holds, s: a controller's 0.25 s, and what its line and
+/// its clock may add.
+const GOES_ON: f64 = 1.0;
 
 /// How near the rig must stand to where the record left it, one entry an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -193,6 +198,13 @@ pub fn decide(
     if intent.samples.is_some() && lines[at..].iter().all(|line| line.kind != EntryKind::Stroke) {
         return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before[0], others: before[1..].to_vec() }));
     }
+    if at + 1 < lines.len()
+        && let Some(paths) = intent.path.as_ref().filter(|_| !place.is(&target))
+    {
+        // It passed its target, went on as fast as there, and held: brought back, it goes on from rest.
+        place.behind(paths)?;
+        return Ok(decision(last.seq + 1, Doubt::Stroke { back_to: target[0], others: target[1..].to_vec() }));
+    }
     if at + 1 < lines.len() {
         place.expect(&target)?;
         relaxed(recorded.as_ref(), found, bands, accept_relaxation)?;
@@ -294,6 +306,13 @@ impl Place<'_> {
         let (found, recorded) = (self.positions[place], recorded.get(place).copied().unwrap_or(f64::NAN));
         let band = band(self.bands, place);
         Err(Refusal::Elsewhere { recorded, found, band, axis: named_axis(place, self.positions.len()) })
+    }
+
+    /// Whether each axis stands between the end of its path and where it may have come from there before it held.
+    fn behind(self, paths: &[Path]) -> Result<(), Refusal> {
+        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
+        let farthest: Vec<f64> = paths.iter().map(|path| path.to + GOES_ON * path.end_velocity).collect();
+        self.on_the_way(&ends, &farthest).map(drop)
     }
 
     fn on_the_way(self, from: &[f64], to: &[f64]) -> Result<Doubt, Refusal> {

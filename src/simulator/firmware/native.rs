@@ -179,6 +179,10 @@ impl Native {
                 self.run = Bounds { axes: given, top_speed };
             }
             ("MOVE", [id, targets @ .., rate]) if targets.len() == axes => self.move_to(id, targets, rate, bench)?,
+            ("GLIDE", [id, ends @ .., time]) if ends.len() == 2 * axes => {
+                let left = self.glide(id, ends, time, bench)?;
+                return Ok(("ACK", format!("{} {:.3}", self.state(bench), left * 1e3)));
+            }
             ("MEAS", [count]) => {
                 let count = count.parse().ok().filter(|count| (1..=MOST_READINGS).contains(count)).ok_or("ARG")?;
                 return Ok(("DATA", self.measure(count, bench)));
@@ -187,7 +191,7 @@ impl Native {
             ("STOP", []) => self.hold(bench),
             ("CLR", []) => (self.held, self.watchdog_tripped) = (false, false),
             ("REF", [_]) => self.referenced = true,
-            ("HELLO" | "LIM" | "MOVE" | "MEAS" | "STAT" | "STOP" | "CLR" | "REF", _) => return Err("ARG".to_owned()),
+            ("HELLO" | "LIM" | "MOVE" | "GLIDE" | "MEAS" | "STAT" | "STOP" | "CLR" | "REF", _) => return Err("ARG".to_owned()),
             _ => return Err("VERB".to_owned()),
         }
         Ok(("ACK", self.state(bench).to_owned()))
@@ -284,6 +288,9 @@ impl Native {
     }
 }
 
+#[path = "native_glide.rs"]
+mod glide;
+
 impl Firmware for Native {
     fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
         let mut said = self.tick(bench);
@@ -305,6 +312,7 @@ impl Firmware for Native {
     }
 
     fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
+        self.coast(bench);
         if self.heard.is_some_and(|heard| bench.time() - heard > self.settings.watchdog) && !self.watchdog_tripped {
             self.watchdog_tripped = true;
             self.hold(bench);

@@ -233,3 +233,48 @@ fn of_two_axes_both_move_or_neither_and_one_hold_is_for_both() {
     assert_eq!((rig.1.commanded_of(0), rig.1.commanded_of(1)), (0.0005, -0.001));
     assert_eq!(ask(&mut rig, "STAT 8"), "ACK 8 7F3A HELD 0x0000");
 }
+
+#[test]
+fn a_glide_is_passed_and_gone_on_from_until_the_next_one_or_the_hold() {
+    let mut rig = of_two();
+    ask(&mut rig, "HELLO 1");
+    assert_eq!(ask(&mut rig, "GLIDE 2 1 1.000000 2.000000 -2.000000 -4.000000 1000.000"), "ACK 2 7F3A MOVING 1000.000");
+    rig.1.advance(0.25);
+    assert_eq!(ask(&mut rig, "GLIDE 3 2 2.000000 0.000000 -3.000000 0.000000 500.000"), "ACK 3 7F3A MOVING 1250.000");
+    assert_eq!(ask(&mut rig, "GLIDE 4 3 2.000000 0.000000 -3.000000 0.000000 500.000"), "ERR 4 7F3A BUSY");
+    assert_eq!(ask(&mut rig, "MOVE 5 3 2.000000 -3.000000 1.000000"), "ERR 5 7F3A BUSY");
+    rig.1.advance(1.0);
+    assert!((rig.1.commanded_of(0) - 1e-3).abs() < 1e-12 && (rig.1.commanded_of(1) + 2e-3).abs() < 1e-12);
+    rig.1.advance(1.5);
+    assert_eq!(ask(&mut rig, "STAT 6"), "ACK 6 7F3A IDLE 0x0000", "it ended at rest");
+    assert_eq!(ask(&mut rig, "GLIDE 7 3 2.100000 0.500000 -3.000000 0.000000 200.000"), "ACK 7 7F3A MOVING 200.000");
+    rig.1.advance(1.8);
+    assert!((rig.1.commanded_of(0) - 2.15e-3).abs() < 1e-12, "0.1 s behind its end, as fast as there");
+    assert_eq!(ask(&mut rig, "GLIDE 8 4 2.300000 0.500000 -3.000000 0.000000 50.000"), "ERR 8 7F3A LATE");
+    assert_eq!(ask(&mut rig, "GLIDE 9 4 2.200000 0.500000 -3.000000 0.000000 200.000"), "ACK 9 7F3A MOVING 100.000");
+    rig.1.advance(2.2);
+    rig.0.tick(&mut rig.1);
+    assert_eq!(ask(&mut rig, "STAT 10"), "ACK 10 7F3A HELD 0x0000", "nobody told it where to go on");
+    assert_eq!(ask(&mut rig, "GLIDE 11 5 2.200000 0.500000 -3.000000 0.000000 200.000"), "ERR 11 7F3A HELD");
+    assert!(ask(&mut rig, "HELLO 1").ends_with(" 4 2.200000 -3.000000"));
+}
+
+#[test]
+fn a_glide_is_judged_on_its_whole_way() {
+    let mut rig = of_two();
+    ask(&mut rig, "HELLO 1");
+    // Out to 5.12 mm and back to 4 mm: one axis may go to 5 mm, the other to 10 mm.
+    for (sequence, request, answer) in [
+        (2, "1 4.000000 -4.000000 0.000000 0.000000 3000.000", "ERR 2 7F3A LIMIT 1"),
+        (3, "1 0.000000 0.000000 4.000000 -4.000000 300.000", "ERR 3 7F3A RATE"),
+        (4, "1 0.000000 0.000000 4.000000 -4.000000", "ERR 4 7F3A ARG"),
+        (5, "1 0.000000 0.000000 4.000000 -4.000000 3000.000", "ACK 5 7F3A MOVING 3000.000"),
+        // Behind that one, where the other axis is at rest.
+        (6, "1 0.000000 0.000000 4.000000 0.000000 3000.000", "ERR 6 7F3A ID"),
+        (7, "2 4.000000 -4.000000 4.000000 0.000000 3000.000", "ERR 7 7F3A LIMIT 1"),
+        (8, "2 0.000000 0.000000 4.000000 0.000000 3000.000", "ACK 8 7F3A MOVING 6000.000"),
+    ] {
+        assert_eq!(ask(&mut rig, &format!("GLIDE {sequence} {request}")), answer);
+    }
+    assert_eq!(rig.1.violations().len(), 2, "whoever asked for it is found out");
+}

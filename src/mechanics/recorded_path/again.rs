@@ -1,0 +1,238 @@
+//! The recorded way as it is taken again. In: the record, how the way differs, targets one by one. Out: what is read there.
+//! It turns where its own targets turn. Each of its turns is the recorded one of that direction nearest in time; where the
+//! record turned and it does not, it goes on with the curve that it is on; where it turns and the record did not, it goes
+//! back as stiffly as the specimen first was, and says that it went where nothing is recorded.
+
+use super::map::Map;
+use super::{Distortion, RecordedPath, Rule};
+
+/// A curve whose last slope is less than this share of its first has settled on that.
+const SETTLED: f64 = 0.9;
+
+/// The way as it is taken again.
+#[derive(Clone, Debug)]
+pub struct Again<'a> {
+    path: &'a RecordedPath,
+    distortion: Distortion,
+    step: usize,
+    piece: usize,
+    /// Of the curve that begins with each branch; those to come as they were.
+    maps: Vec<Map>,
+    /// Where it turned at the end of each branch, m; those to come as they were.
+    turns: Vec<f64>,
+    /// The last place, in metres of the record.
+    place: f64,
+    aside: Option<Aside>,
+    /// m
+    unseen: f64,
+}
+
+/// Gone back where the record did not.
+#[derive(Clone, Copy, Debug)]
+struct Aside {
+    /// m
+    from: f64,
+    /// Displacement (m) and force (N) there, of the record.
+    displacement: f64,
+    force: f64,
+    /// 1 or −1
+    direction: f64,
+}
+
+impl<'a> Again<'a> {
+    pub(super) fn new(path: &'a RecordedPath, distortion: Distortion) -> Self {
+        let turns = path.branches.iter().map(|branch| path.readings[branch.end].target).collect();
+        let place = path.readings[0].target;
+        let maps = vec![Map::NONE; path.branches.len()];
+        Self { path, distortion, step: 0, piece: 0, maps, turns, place, aside: None, unseen: 0.0 }
+    }
+
+    /// Where it begins (m), and what is read there: displacement (m) and force (N).
+    #[must_use]
+    pub fn start(&self) -> (f64, f64, f64) {
+        let (displacement, force) = self.read();
+        (self.place * self.distortion.displacement_scale, displacement, force)
+    }
+
+    /// Displacement (m) and force (N) read at the target of the next step, m.
+    pub fn move_to(&mut self, target: f64) -> (f64, f64) {
+        let place = target / self.distortion.displacement_scale;
+        self.step += 1;
+        self.go(place);
+        self.place = place;
+        self.read()
+    }
+
+    /// The farthest it went back where the record did not, m.
+    #[must_use]
+    pub const fn unseen(&self) -> f64 {
+        self.unseen
+    }
+
+    fn branch(&self) -> usize {
+        self.path.pieces[self.piece].branch
+    }
+
+    fn go(&mut self, place: f64) {
+        let path = self.path;
+        if let Some(aside) = self.aside {
+            let branch = self.branch();
+            if (place - aside.from) * aside.direction <= 0.0 {
+                self.aside = None;
+            } else if branch + 1 < path.branches.len() && path.branches[branch].end < self.step {
+                // The record has turned by now: it was that turn.
+                self.aside = None;
+                self.turn(aside.from);
+            } else {
+                self.unseen = self.unseen.max((place - aside.from).abs());
+                return;
+            }
+        } else {
+            let moved = place - self.place;
+            let against = moved * path.branches[self.branch()].direction < 0.0;
+            if against {
+                if self.matched(self.step - 1) {
+                    self.turn(self.place);
+                } else {
+                    let (displacement, force) = self.recorded();
+                    self.aside = Some(Aside { from: self.place, displacement, force, direction: moved.signum() });
+                    self.unseen = self.unseen.max(moved.abs());
+                    return;
+                }
+            } else if self.missed() {
+                self.skip();
+            }
+        }
+        self.rejoin(place);
+    }
+
+    /// Goes on to the piece on which a turn's place is passed.
+    fn rejoin(&mut self, place: f64) {
+        let path = self.path;
+        let branch = path.branches[self.branch()];
+        while self.piece < branch.last_piece
+            && let Some(left) = path.pieces[self.piece + 1].rejoins
+            && (place - self.turns[left]) * branch.direction > 0.0
+        {
+            self.piece += 1;
+        }
+    }
+
+    /// Whether the turn after `step` is one of the record, nearer than the last one of that direction. Loops of the record
+    /// that were not made by then are skipped.
+    fn matched(&mut self, step: usize) -> bool {
+        let path = self.path;
+        let turned = |branch: usize| branch + 1 < path.branches.len();
+        let off = |branch: usize| path.branches[branch].end.abs_diff(step);
+        let branch = self.branch();
+        if !turned(branch) {
+            return false;
+        }
+        let last = branch.checked_sub(2).map_or(0, |last| path.branches[last].end);
+        if last.abs_diff(step) < off(branch) {
+            return false;
+        }
+        while turned(self.branch() + 2) && off(self.branch() + 2) < off(self.branch()) {
+            self.skip();
+        }
+        true
+    }
+
+    /// Whether the record has gone there and back again for longer than this way may be late.
+    fn missed(&self) -> bool {
+        let path = self.path;
+        let branch = self.branch();
+        let ended = |branch: usize| path.branches[branch].end;
+        // The next turn that way is nearer than the one not made.
+        branch + 2 < path.branches.len()
+            && ended(branch + 1) < self.step
+            && self.step.saturating_sub(ended(branch)) > ended(branch + 2).saturating_sub(self.step)
+    }
+
+    /// Goes on where the record had turned and come back.
+    fn skip(&mut self) {
+        let path = self.path;
+        let left = self.branch();
+        let curve = path.pieces[self.piece].curve;
+        let back = path.branches[left + 2];
+        let same = (back.first_piece..=back.last_piece).find(|piece| path.pieces[*piece].rejoins == Some(left));
+        self.piece = same.unwrap_or(back.first_piece);
+        for branch in [left + 1, left + 2] {
+            self.maps[branch] = self.maps[curve];
+        }
+    }
+
+    /// Turns at `place` (m) onto the next branch.
+    fn turn(&mut self, place: f64) {
+        let path = self.path;
+        let branch = self.branch();
+        let piece = path.pieces[self.piece];
+        let map = self.maps[piece.curve];
+        let next = branch + 1;
+        let turn = path.readings[path.branches[branch].end];
+        let here = map.back(place);
+        let moved = here - turn.target;
+        let (_, force) = path.at(self.piece, self.nearest(), here);
+        // Readings so near each other tell noise.
+        let rise = if moved.abs() <= path.least {
+            path.pieces[path.branches[branch].last_piece].end_tangent * moved
+        } else {
+            force - turn.force
+        };
+        let own = if path.branches[next].retraces { Map::NONE } else { self.moved(next, moved, rise) };
+        self.maps[next] = map.after(own);
+        self.turns[branch] = place;
+        self.piece = path.branches[next].first_piece;
+    }
+
+    /// What becomes of the curve of a branch that begins `moved` (m) and `rise` (N) from where it began in the record.
+    fn moved(&self, branch: usize, moved: f64, rise: f64) -> Map {
+        let path = self.path;
+        let piece = path.pieces[path.branches[branch].first_piece];
+        let turn = path.readings[piece.begin];
+        let shifted = Map::shifted(moved, rise);
+        match path.rule {
+            Rule::Pivoted => {
+                let stretched = |pivot| Map::about(pivot, [turn.target, turn.force], [turn.target + moved, turn.force + rise]);
+                path.pivot(branch).and_then(stretched).unwrap_or(shifted)
+            }
+            Rule::Shifted if path.branches[branch].drifts => {
+                // Along its own last slope, on which it so comes to lie as it did, to where it begins on the new turn.
+                let (first, last) = (piece.start_tangent, piece.end_tangent);
+                let along = (first * moved - rise) / (first - last);
+                if last.abs() < SETTLED * first.abs() { Map::shifted(along, last * along) } else { shifted }
+            }
+            Rule::Shifted | Rule::Kept => shifted,
+        }
+    }
+
+    /// The step of the record that is looked from: past its end, its last.
+    fn nearest(&self) -> usize {
+        self.step.min(self.path.readings.len() - 1)
+    }
+
+    /// Displacement and force of the specimen at the place where it is, in those of the record.
+    fn recorded(&self) -> (f64, f64) {
+        let path = self.path;
+        if let Some(aside) = self.aside {
+            let back = self.place - aside.from;
+            return (aside.displacement + back, aside.force + path.pieces[0].start_tangent * back);
+        }
+        let map = self.maps[path.pieces[self.piece].curve];
+        let at = map.back(self.place);
+        let (displacement, force) = path.at(self.piece, self.nearest(), at);
+        (displacement + (self.place - at), map.force(force))
+    }
+
+    fn read(&self) -> (f64, f64) {
+        let Distortion { force_scale, displacement_scale, zero, noise } = self.distortion;
+        let (displacement, force) = self.recorded();
+        let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * force + zero);
+        if let Some(noise) = noise {
+            let [of_force, of_displacement] = noise.errors(self.step as u64, 0);
+            force += of_force;
+            displacement += of_displacement;
+        }
+        (displacement, force)
+    }
+}

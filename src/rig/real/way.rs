@@ -1,0 +1,84 @@
+//! A way of a real rig along smooth paths, read as it goes and not stopped at its end. In: a path an axis, how many readings
+//! are wanted. Out: as many as the line can carry, each with its own time and place, the last at the end of the way or
+//! right after it. When a way ends is the rig's word, so that two clocks do not part over a long run.
+
+use super::RealRig;
+use super::{Part, WIRE_ROUNDING};
+use crate::mechanics::path::Path;
+use crate::rig::failpoint::{Guarding, on};
+use crate::rig::{EachReading, Reading, RigFault, named_axis};
+
+impl RealRig {
+    /// Follows `paths` and reads at up to `samples` equal times, the last at their end. A time that has passed while a reading
+    /// was on the line is left out.
+    pub(super) fn follow(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.proposed = None;
+        if let Some(reason) = &self.untrusted {
+            return Err(RigFault::Device(format!("not moved any more: {reason}")));
+        }
+        let seconds = paths.first().map_or(0.0, |path| path.seconds);
+        let together = paths.iter().all(|path| path.seconds.to_bits() == seconds.to_bits());
+        if samples == 0 || paths.len() != self.axes.len() || !together || !(seconds > 0.0 && seconds.is_finite()) {
+            let reason = format!("{} paths of {seconds} s with {samples} readings lead nowhere", paths.len());
+            return Err(RigFault::Device(reason));
+        }
+        let end = self.begin(paths)?;
+        let mut sample = 1;
+        loop {
+            #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+            let due = end - seconds * (samples - sample) as f64 / samples as f64;
+            self.stay_until(due)?;
+            let reading = self.reading_now()?;
+            if sample == samples {
+                self.keeps_up(paths, &reading)?;
+                return each(reading);
+            }
+            each(reading)?;
+            #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+            let passed = (self.clock.now() - (end - seconds)) / seconds * samples as f64;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and ends the way")]
+            let passed = passed.floor() as usize;
+            sample = (passed + 1).max(sample + 1).min(samples);
+        }
+    }
+
+    /// Sends the way. When it ends, s by the clock.
+    fn begin(&mut self, paths: &[Path]) -> Result<f64, RigFault> {
+        let turned = |(axis, path): (&super::Axis, &Path)| Path {
+            from: axis.sign * path.from,
+            to: axis.sign * path.to,
+            start_velocity: axis.sign * path.start_velocity,
+            end_velocity: axis.sign * path.end_velocity,
+            seconds: path.seconds,
+        };
+        let turned: Vec<Path> = self.axes.iter().zip(paths).map(turned).collect();
+        let going = self.actuator.encode_way(&turned).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let ends = going.targets.iter().zip(&turned);
+        let apt = |(axis, (said, path)): (&super::Axis, (&f64, &Path))| {
+            (said - path.to).abs() <= WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6)
+        };
+        if on(Guarding::WireNumber) && (going.targets.len() != paths.len() || !self.axes.iter().zip(ends).all(apt)) {
+            return Err(RigFault::Device(format!("asked for {turned:?}, the bytes say {:?} m: not sent", going.targets)));
+        }
+        let left = self.actuator.set_out(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        self.deaf = false;
+        self.look_up()?;
+        Ok(self.clock.now() + left)
+    }
+
+    /// Whether every axis is where it passes, as near as a moving one can be told to be: one that is farther behind than all it
+    /// went on this way and the one before does not follow. What a lag does to the test is for the limits of tracking.
+    fn keeps_up(&mut self, paths: &[Path], reading: &Reading) -> Result<(), RigFault> {
+        let count = self.axes.len();
+        for (place, (axis, path)) in self.axes.iter_mut().zip(paths).enumerate() {
+            let (low, high) = path.reach();
+            let span = high - low;
+            let band = self.settle.band + span + std::mem::replace(&mut axis.span, span);
+            let error = (reading.displacement[place] - path.to).abs();
+            if on(Guarding::Following) && (error.is_nan() || error > band) {
+                return Err(RigFault::Following { error, band, axis: named_axis(place, count) });
+            }
+        }
+        Ok(())
+    }
+}
