@@ -1,7 +1,10 @@
 //! The build's own name: a digest of everything the program is made from and what it was made with, so that a record can
 //! say which program wrote it, and a run is not gone on with by another. In: sources, grammar, manifests, the compiler. Out:
-//! `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, neither of which knows a place on this machine or a day. Anybody can do it again:
-//! `LC_ALL=C; find Cargo.toml Cargo.lock build.rs grammar src -type f | sort | xargs sha256sum | sha256sum`
+//! `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, neither of which knows a place on this machine or a day. Anybody can do it again
+//! with the two lines of `docs/record.md`.
+//!
+//! Files of tests alone, which the program is made without, do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and what
+//! is in a folder `tests` or `testing`. Who changes a test waits for the tests only.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -14,16 +17,14 @@ fn main() {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo gives the folder"));
     let mut files = Vec::new();
     for folder in ["src", "grammar"] {
-        println!("cargo::rerun-if-changed={folder}");
         walk(&root, folder, &mut files);
     }
-    for file in ["Cargo.toml", "Cargo.lock", "build.rs"] {
-        println!("cargo::rerun-if-changed={file}");
-        files.push(file.to_owned());
-    }
+    files.extend(["Cargo.toml", "Cargo.lock", "build.rs"].map(str::to_owned));
     files.sort();
     let mut listed = String::new();
+    // A new source is named in one that is here: by files, not by folders, a test's file changes nothing.
     for name in files {
+        println!("cargo::rerun-if-changed={name}");
         // A package may come without its lock file.
         let Ok(bytes) = fs::read(root.join(&name)) else { continue };
         let _ = writeln!(listed, "{}  {name}", sha256(&bytes));
@@ -53,8 +54,10 @@ fn walk(root: &Path, folder: &str, files: &mut Vec<String>) {
     for entry in fs::read_dir(root.join(folder)).into_iter().flatten().flatten() {
         let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
         if entry.path().is_dir() {
-            walk(root, &name, files);
-        } else {
+            if !matches!(name.rsplit('/').next(), Some("tests" | "testing")) {
+                walk(root, &name, files);
+            }
+        } else if !["/tests.rs", "/testing.rs", "_tests.rs"].iter().any(|end| name.ends_with(end)) {
             files.push(name);
         }
     }

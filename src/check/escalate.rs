@@ -3,9 +3,9 @@
 use super::checker::{Checker, Place, Reads};
 use super::faults::{cyclic as fault, names, values};
 use super::striker::STANDARD_GRAVITY;
-use super::impact;
+use super::{impact, storey_impact};
 use crate::formula::{Formula, Function, Operator};
-use crate::plan::{Between, Condition, Escalate, MOST_BLOWS, ProcedureKind};
+use crate::plan::{Between, BlowOn, Condition, Escalate, MOST_BLOWS, ProcedureKind};
 use crate::schema::Kind;
 use crate::source::Span;
 
@@ -18,7 +18,10 @@ pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let condition = condition(checker, block);
     let between = checker.word(block, "between", "unload");
     let inspect_between = checker.word(block, "inspect_between", "false").map(|word| word == "true");
-    let blow = impact::blow(checker, block);
+    let blow = match storey_impact::struck_frame(checker, block) {
+        Some((specimen, frame)) => storey_impact::storey_impact(checker, block, specimen, frame.as_ref()).map(BlowOn::Storey),
+        None => impact::blow(checker, block).map(BlowOn::Specimen),
+    };
     Some(ProcedureKind::Escalate(Escalate {
         own,
         blow: blow?,

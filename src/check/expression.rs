@@ -6,7 +6,7 @@ use super::faults::{types as fault, values};
 use super::frame;
 use crate::formula::{Formula, Operator};
 use crate::quantity::{Dimension, Exponent};
-use crate::schema::Kind;
+use crate::schema::{self, Kind};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
 
@@ -127,8 +127,13 @@ impl<'a> Checker<'a> {
 
     /// Entries of a list that the run gives, where the plan tells: a frame has one for each storey.
     fn length_of(&mut self, list: &Formula) -> Option<usize> {
-        let block = self.procedure(list.as_result()?.procedure)?;
-        if self.scope.blocks[block].kind.kind != Kind::Shake {
+        let reference = list.as_result()?;
+        let block = self.procedure(reference.procedure)?;
+        let kind = self.scope.blocks[block].kind;
+        // A condition on a blow reads the results of an impact.
+        let of_storey = [Some(kind), Some(schema::block(Kind::Impact))].into_iter().flatten();
+        let mut of_storey = of_storey.filter_map(|kind| kind.result(reference.name)).take(1).map(|result| result.of_storey);
+        if kind.kind != Kind::Shake && !of_storey.next().unwrap_or(false) {
             return None;
         }
         let known = self.faults.len();

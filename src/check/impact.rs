@@ -14,7 +14,9 @@ pub const FINER: f64 = 20.0;
 
 pub fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     match storey_impact::struck_frame(checker, block) {
-        Some((specimen, frame)) => storey_impact::storey_impact(checker, block, specimen, frame.as_ref()),
+        Some((specimen, frame)) => {
+            storey_impact::storey_impact(checker, block, specimen, frame.as_ref()).map(ProcedureKind::StoreyImpact)
+        }
         None => blow(checker, block).map(ProcedureKind::Impact),
     }
 }

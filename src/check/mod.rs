@@ -59,7 +59,8 @@ pub use literal::MOST_ENTRIES;
 pub use stiffness_ramp::MOST_READINGS;
 
 use crate::diagnostic::Diagnostic;
-use crate::plan::{Plan, PlanFile, Procedure, ProcedureKind, Specimen};
+use crate::formula::Formula;
+use crate::plan::{BlowOn, Escalate, Plan, PlanFile, Procedure, ProcedureKind, Specimen, Striker};
 use crate::schema::Kind;
 use crate::source::{FileId, Sources, Span};
 use checker::Checker;
@@ -173,6 +174,16 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             && let Some(Some(striker)) = strikers.get(impact.striker)
         {
             storey_impact::judge(checker, *block, impact, frame, striker);
+        }
+        if let Some(Procedure {
+            kind: ProcedureKind::Escalate(Escalate { blow: BlowOn::Storey(impact), velocities, .. }), ..
+        }) = procedure
+            && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
+            && let Some(Some(striker)) = strikers.get(impact.striker)
+        {
+            // All blows have one time step: that of the fastest.
+            let velocity = velocities.iter().filter_map(Formula::constant).fold(0.0, f64::max);
+            storey_impact::judge(checker, *block, impact, frame, &Striker { velocity, ..striker.clone() });
         }
         if let Some(Procedure { kind: ProcedureKind::Shake(shaking), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(shaking.specimen)

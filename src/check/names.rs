@@ -4,7 +4,7 @@
 use super::checker::{Checker, Node, Place, Reads, Shape, Typed};
 use super::faults::{frames, names as fault, types, values};
 use super::scope::Meaning;
-use super::{specimen, storey_impact, striker};
+use super::{frame, specimen, storey_impact, striker};
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::quantity::Dimension;
 use crate::schema::{self, Kind};
@@ -15,10 +15,12 @@ impl<'a> Checker<'a> {
     /// The value a bare name stands for.
     pub fn name(&mut self, name: &str, span: Span, place: Place) -> Option<Typed> {
         if let Reads::Blow(procedure) = place.reads
-            && let Some(result) = schema::block(Kind::Impact).result(name).filter(|result| !result.of_storey)
+            && let Some(result) = schema::block(Kind::Impact).result(name)
+            && (!result.of_storey || self.strikes_a_storey(procedure))
         {
             let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
-            return Some(Typed::number(formula, result.dimension, span));
+            let shape = if result.list { Shape::List } else { Shape::Number };
+            return Some(Typed { shape, ..Typed::number(formula, result.dimension, span) });
         }
         if let Some((block, own)) = place.entry
             && let Some(entry) = self.sibling(block, own, name)
@@ -45,9 +47,13 @@ impl<'a> Checker<'a> {
                 let known =
                     siblings.iter().map(|entry| entry.key.node.as_str()).filter(|key| *key != name).chain(self.scope.names());
                 // After a blow its results have names of their own.
-                let results = matches!(place.reads, Reads::Blow(_)).then(|| schema::block(Kind::Impact).results);
-                let results = results.unwrap_or_default().iter().filter(|result| !result.of_storey).map(|result| result.name);
-                let fault = fault::unknown_name(name, span, known.chain(results));
+                let known: Vec<&str> = known.collect();
+                let (results, storey) = match place.reads {
+                    Reads::Blow(procedure) => (schema::block(Kind::Impact).results, self.strikes_a_storey(procedure)),
+                    _ => (&[][..], false),
+                };
+                let results = results.iter().filter(|result| !result.of_storey || storey).map(|result| result.name);
+                let fault = fault::unknown_name(name, span, known.into_iter().chain(results));
                 self.fail(fault)
             }
         }
@@ -106,8 +112,13 @@ impl<'a> Checker<'a> {
     fn member(&mut self, block: usize, name: &Ident, span: Span, place: Place) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
         if let (Some(result), Some(procedure)) = (declared.kind.result(&name.node), declared.procedure) {
-            if result.of_storey && storey_impact::struck_frame(self, block).is_none() {
+            let unloads = declared.kind.kind == Kind::Unload;
+            if result.of_storey && !unloads && storey_impact::struck_frame(self, block).is_none() {
                 let fault = frames::result_of_a_storey(result.name, name.span, declared.block.head);
+                return self.fail(fault);
+            }
+            if result.of_storey && unloads && !self.tests_a_frame(block) {
+                let fault = frames::result_of_a_frame(result.name, name.span, declared.block.head);
                 return self.fail(fault);
             }
             let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
@@ -135,6 +146,20 @@ impl<'a> Checker<'a> {
         }
         let fault = fault::unknown_result(declared.kind, declared.name, &name.node, name.span);
         self.fail(fault)
+    }
+
+    /// Whether a procedure, by its place, strikes one storey of a frame.
+    fn strikes_a_storey(&mut self, procedure: ProcedureId) -> bool {
+        self.procedure(procedure).is_some_and(|block| storey_impact::struck_frame(self, block).is_some())
+    }
+
+    /// Whether what a block tests is a frame.
+    fn tests_a_frame(&mut self, block: usize) -> bool {
+        let known = self.faults.len();
+        let specimen = self.specimen_block(block);
+        // What is wrong with the specimen is said in its place.
+        self.faults.truncate(known);
+        specimen.is_some_and(|specimen| frame::is_frame(self, specimen))
     }
 
     /// Holds every result that a value reads against what may be read here.

@@ -4,7 +4,7 @@ use super::checker::Checker;
 use super::faults::{axes as axis_faults, frames, names, whole as fault};
 use super::rig::CheckedRig;
 use super::{axes, cycle, damping_sweep, escalate, impact, inspect, move_block, shake, stiffness_ramp, unload};
-use crate::plan::{Procedure, ProcedureKind, Specimen};
+use crate::plan::{BlowOn, Escalate, Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
 
@@ -73,7 +73,10 @@ pub fn hold_axes(
         let Some(procedure) = procedure else { continue };
         let head = checker.scope.blocks[*block].block.head;
         match procedure.kind {
-            ProcedureKind::Shake(_) | ProcedureKind::StoreyImpact(_) => {
+            ProcedureKind::Shake(_)
+            | ProcedureKind::StoreyImpact(_)
+            | ProcedureKind::FrameUnload(_)
+            | ProcedureKind::Escalate(Escalate { blow: BlowOn::Storey(_), .. }) => {
                 checker
                     .faults
                     .extend(one_axis.iter().map(|rig| axis_faults::frame_on_one_axis(&specimen.name, storeys, rig, head)));

@@ -9,7 +9,7 @@ use super::fields::whole;
 use super::stepping::FrameSteps;
 use super::{frame, impact, integrator, shake, stepping, warnings};
 use crate::mechanics::frame_properties::{Approach, FrameProperties};
-use crate::plan::{Contact, Frame, ProcedureKind, StoreyImpact, Striker};
+use crate::plan::{Contact, Frame, StoreyImpact, Striker};
 use crate::schema::Kind;
 
 /// The frame that a block strikes one storey of; None where it strikes one degree of freedom, or nothing that is known.
@@ -24,7 +24,7 @@ pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Optio
     (several || checker.given(block, "storey").is_some()).then_some((specimen, frame))
 }
 
-pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame: Option<&Rc<Frame>>) -> Option<ProcedureKind> {
+pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame: Option<&Rc<Frame>>) -> Option<StoreyImpact> {
     let striker = checker.reference(block, "striker", Kind::Striker);
     // Named or the only one: what is wrong with the name was not said before.
     let named = checker.specimen_block(block);
@@ -38,7 +38,7 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
     for (field, help) in own {
         if let Some((_, entry)) = checker.given(block, field) {
             let at = entry.key.span;
-            checker.faults.push(fault::no_use_on_a_frame(field, at, help));
+            checker.faults.push(fault::no_use_on_a_frame(field, "an impact on a storey", at, help));
             foreign = true;
         }
     }
@@ -63,7 +63,7 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
         until: until?,
     };
     integrator::meets_the_contact(checker, block, impact.stepping.integrator, &impact.contact)?;
-    Some(ProcedureKind::StoreyImpact(impact))
+    Some(impact)
 }
 
 /// The struck floor, from 0.

@@ -1,12 +1,22 @@
-//! `unload NAME { … }`
+//! `unload NAME { … }`: of one degree of freedom, or of all floors of a frame together.
 
 use super::checker::Checker;
+use super::faults::frames as fault;
+use super::frame;
 use crate::formula::Formula;
-use crate::plan::{ProcedureKind, Unload};
+use crate::plan::{FrameUnload, ProcedureKind, Unload};
 
 pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let tested = checker.specimen_block(block);
     let specimen = tested.map(|tested| checker.scope.place_in_kind(tested));
+    if tested.is_some_and(|tested| frame::is_frame(checker, tested)) {
+        let (within, speed) = (checker.optional(block, "within"), checker.optional(block, "speed"));
+        if let Some((_, entry)) = checker.given(block, "stiffness") {
+            let help = "remove it: the storeys of the frame have stiffnesses of their own";
+            return checker.fail(fault::no_use_on_a_frame("stiffness", "the unloading of a frame", entry.key.span, help));
+        }
+        return Some(ProcedureKind::FrameUnload(FrameUnload { specimen: specimen?, within: within?, speed: speed? }));
+    }
     let stiffness = checker.stiffness_or_specimens(block, tested);
     let (within, speed) = (checker.optional(block, "within"), checker.optional(block, "speed"));
     Some(ProcedureKind::Unload(Unload { specimen: specimen?, stiffness: stiffness?, within: within?, speed: speed? }))

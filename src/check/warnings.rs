@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::faults::{cyclic, values, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker, Until};
+use crate::plan::{BlowOn, Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker, Until};
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
 use crate::uncertainty::Source;
@@ -55,15 +55,16 @@ pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     }
 }
 
-/// An impact straight after another starts from the peak of that one, which no specimen stays at. A frame that is struck is
-/// not unloaded: its run goes on until it has come to rest.
+/// An impact straight after another starts from the peak of that one, which no specimen stays at. A frame that is damped comes
+/// to rest by itself, where its run goes on for long enough.
 fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     let mut before: Option<usize> = None;
     for (block, procedure) in procedures {
         let (help, rests) = match procedure.as_ref().map(|procedure| &procedure.kind) {
             Some(ProcedureKind::Impact(_)) => ("take the load off in between: `unload rest { }`", false),
             Some(ProcedureKind::StoreyImpact(impact)) => (
-                "let the first run on until the frame rests: `until = duration`, with a `damping_ratio`",
+                "take the load off in between: `unload rest { }`, or let the first run on until the frame rests: `until = duration`, \
+                 with a `damping_ratio`",
                 impact.until == Until::Duration,
             ),
             // A look moves nothing.
@@ -91,8 +92,9 @@ fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Proc
     }
     let mut used = Vec::new();
     for (_, procedure) in procedures {
-        if let Some(ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow, .. })) =
-            procedure.as_ref().map(|procedure| &procedure.kind)
+        if let Some(
+            ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(blow), .. }),
+        ) = procedure.as_ref().map(|procedure| &procedure.kind)
         {
             blow.mass.collect_stated(&mut read);
             used.extend((blow.mass_uncertainty > 0.0).then_some(blow.specimen));

@@ -1,9 +1,9 @@
-//! The table of an impact on a storey: a row a step and storey, striker and contact beside it. In: a history. Out: columns
-//! in SI. Striker, contact and the energies of the whole frame are the same in every row of a step.
+//! Tables of floors: of an impact on a storey a row a step and storey, striker and contact beside it; of an unloading a row a
+//! move and storey. In: a history. Out: columns in SI. Striker, contact and the energies of the whole frame are the same in every row of a step.
 
 use polars::prelude::Column;
 
-use crate::record::{FloorStep, Floors, ImpactStep, StoreyImpactHistory};
+use crate::record::{FloorStep, Floors, ImpactStep, StoreyImpactHistory, UnloadStep};
 
 /// Rows and columns, the storeys of a step after each other from the ground up.
 pub(super) fn columns(history: &StoreyImpactHistory) -> (usize, Vec<Column>) {
@@ -56,4 +56,33 @@ struct Row<'a> {
 fn rows_of<'a>(step: &'a ImpactStep, floors: &'a FloorStep) -> Vec<Row<'a>> {
     let storeys = floors.drift().into_iter().zip(floors.shear()).enumerate();
     storeys.map(|(floor, (drift, shear))| Row { step, floors, floor, drift, shear }).collect()
+}
+
+/// A move, a storey, its drift and its shear.
+type Unloaded<'a> = (&'a UnloadStep, usize, f64, f64);
+
+/// Rows and columns of an unloading; step 0 is where it began.
+pub(super) fn unloading(steps: &[UnloadStep]) -> (usize, Vec<Column>) {
+    let storeys = |step: &'_ UnloadStep| step.drift().into_iter().zip(step.shear()).enumerate().collect::<Vec<_>>();
+    let rows: Vec<Unloaded<'_>> = steps
+        .iter()
+        .flat_map(|step| storeys(step).into_iter().map(move |(floor, (drift, shear))| (step, floor, drift, shear)))
+        .collect();
+    let numbers =
+        |name: &str, read: fn(&Unloaded<'_>) -> f64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<f64>>());
+    let whole =
+        |name: &str, read: fn(&Unloaded<'_>) -> u64| Column::new(name.into(), rows.iter().map(read).collect::<Vec<u64>>());
+    let tangents: Vec<Option<f64>> = rows.iter().map(|(step, floor, ..)| step.tangent_stiffness[*floor]).collect();
+    let columns = vec![
+        whole("step", |(step, ..)| step.step),
+        whole("storey", |(_, floor, ..)| *floor as u64 + 1),
+        numbers("wall_time_s", |(step, ..)| step.wall_time),
+        numbers("command_m", |(step, floor, ..)| step.command[*floor]),
+        numbers("displacement_m", |(step, floor, ..)| step.displacement[*floor]),
+        numbers("restoring_force_n", |(step, floor, ..)| step.restoring_force[*floor]),
+        numbers("drift_m", |(.., drift, _)| *drift),
+        numbers("storey_shear_n", |(.., shear)| *shear),
+        Column::new("tangent_stiffness_n_per_m".into(), tangents),
+    ];
+    (rows.len(), columns)
 }

@@ -10,7 +10,7 @@ use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetW
 use super::{OutputError, OutputFile, Run, shake_table, storey_table, wants};
 use crate::inert;
 use crate::plan::Format;
-use crate::record::{History, Hold, ImpactStep, ProcedureRecord, RampStep, SweepStep};
+use crate::record::{BlowHistory, History, Hold, ImpactStep, ProcedureRecord, RampStep, SweepStep};
 use crate::run::driven::DrivenStep;
 
 /// The tables of every procedure that recorded steps, in the formats the plan asks for.
@@ -22,9 +22,16 @@ pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         written(run, &procedure.name, frame, &mut files).map_err(failed)?;
         if let History::Escalate(history) = &procedure.history {
             for (number, blow) in (1..).zip(&history.blows) {
-                let steps = &blow.history.steps;
-                let frame = DataFrame::new(steps.len(), impact(steps)).map_err(failed)?;
+                let (height, columns) = match &blow.history {
+                    BlowHistory::Impact(history) => (history.steps.len(), impact(&history.steps)),
+                    BlowHistory::Storey(history) => storey_table::columns(history),
+                };
+                let frame = DataFrame::new(height, columns).map_err(failed)?;
                 written(run, &format!("{}_{number}", procedure.name), frame, &mut files).map_err(failed)?;
+            }
+            if let Some((height, columns)) = blows::storeys(history) {
+                let frame = DataFrame::new(height, columns).map_err(failed)?;
+                written(run, &format!("{}_storeys", procedure.name), frame, &mut files).map_err(failed)?;
             }
         }
         if let History::Ramp(history) = &procedure.history
@@ -98,6 +105,7 @@ fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> 
     let (height, columns) = match &procedure.history {
         History::Ramp(history) => (history.steps.len(), ramp(&history.steps)),
         History::Move(steps) => (steps.len(), ramp(steps)),
+        History::FrameUnload(steps) => storey_table::unloading(steps),
         History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
         History::Impact(history) => (history.steps.len(), impact(&history.steps)),
         History::StoreyImpact(history) => storey_table::columns(history),

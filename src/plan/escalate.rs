@@ -1,6 +1,6 @@
 //! A checked `escalate`: blows of rising energy on one specimen, until a condition no longer holds.
 
-use super::{Condition, Impact};
+use super::{Condition, Impact, StoreyImpact, Striker};
 use crate::formula::{Formula, ProcedureId};
 
 /// One impact after the other, each harder.
@@ -9,7 +9,7 @@ pub struct Escalate {
     /// Its own place in the plan: results of a blow that `condition` reads bear it.
     pub own: ProcedureId,
     /// Every blow, but for the velocity of its striker.
-    pub blow: Impact,
+    pub blow: BlowOn,
     /// Velocity of the striker of each blow, m/s.
     pub velocities: Vec<Formula>,
     /// What must hold of the results of a blow for the next to follow; every part of it.
@@ -17,6 +17,44 @@ pub struct Escalate {
     pub between: Between,
     /// Whether a person looks at the specimen between two blows.
     pub inspect_between: bool,
+}
+
+impl Escalate {
+    /// The striker of the fastest blow, as far as the velocities are known before the run: all blows on a frame have its time step.
+    #[must_use]
+    pub fn fastest(&self, striker: &Striker) -> Striker {
+        let known = self.velocities.iter().filter_map(Formula::constant).reduce(f64::max);
+        Striker { velocity: known.unwrap_or(striker.velocity), ..striker.clone() }
+    }
+}
+
+/// What a blow strikes.
+#[derive(Clone, Debug)]
+pub enum BlowOn {
+    /// A specimen of one degree of freedom.
+    Specimen(Impact),
+    /// One storey of a frame.
+    Storey(StoreyImpact),
+}
+
+impl BlowOn {
+    /// As an index into `Plan::specimens`.
+    #[must_use]
+    pub const fn specimen(&self) -> usize {
+        match self {
+            Self::Specimen(impact) => impact.specimen,
+            Self::Storey(impact) => impact.specimen,
+        }
+    }
+
+    /// As an index into `Plan::strikers`.
+    #[must_use]
+    pub const fn striker(&self) -> usize {
+        match self {
+            Self::Specimen(impact) => impact.striker,
+            Self::Storey(impact) => impact.striker,
+        }
+    }
 }
 
 /// What is done between two blows.

@@ -1,6 +1,6 @@
 //! Figures of a report: which there are, and what each procedure can draw.
 
-use super::ProcedureKind;
+use super::{BlowOn, Escalate, ProcedureKind};
 use crate::formula::ProcedureId;
 
 /// Procedures on one chart, at most: more curves cannot be told apart.
@@ -155,7 +155,11 @@ impl FigureKind {
                 Self::Tracking,
             ],
             ProcedureKind::Cycle(_) => &[Self::ForceDisplacement, Self::Backbone, Self::CycleEnergy, Self::StiffnessDegradation],
+            ProcedureKind::Escalate(Escalate { blow: BlowOn::Storey(_), .. }) => {
+                &[Self::Blows, Self::Drift, Self::Hysteresis, Self::Displacement]
+            }
             ProcedureKind::Escalate(_) => &[Self::Blows, Self::ForceDisplacement, Self::Displacement],
+            ProcedureKind::FrameUnload(_) => &[Self::Hysteresis],
             ProcedureKind::Unload(_) | ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => &[],
         }
     }

@@ -23,7 +23,7 @@ use crate::uncertainty::Source;
 pub use axis::{AxisCalibration, AxisPlan};
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
-pub use escalate::{Between, Escalate, MOST_BLOWS};
+pub use escalate::{Between, BlowOn, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
@@ -35,7 +35,7 @@ pub use rig::{
     SafeState, Settle, VirtualLink, ZeroAfter,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
-pub use unload::Unload;
+pub use unload::{FrameUnload, Unload};
 
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -263,6 +263,7 @@ pub enum ProcedureKind {
     Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
+    FrameUnload(FrameUnload),
     Escalate(Escalate),
     Move(Move),
     /// A person looks at the specimen.
@@ -281,7 +282,7 @@ impl ProcedureKind {
             Self::Impact(_) | Self::StoreyImpact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
-            Self::Unload(_) => "unload",
+            Self::Unload(_) | Self::FrameUnload(_) => "unload",
             Self::Escalate(_) => "escalate",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
@@ -299,7 +300,8 @@ impl ProcedureKind {
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
-            Self::Escalate(escalate) => Some(escalate.blow.specimen),
+            Self::FrameUnload(unload) => Some(unload.specimen),
+            Self::Escalate(escalate) => Some(escalate.blow.specimen()),
             Self::Move(_) | Self::Inspect { .. } => None,
         }
     }

@@ -1,4 +1,4 @@
-//! A checked `unload`: the load is taken off until the specimen carries none.
+//! A checked `unload`: the load is taken off until the specimen carries none, of one degree of freedom or of a frame.
 
 use crate::formula::Formula;
 
@@ -12,5 +12,17 @@ pub struct Unload {
     /// Largest |R| that counts as none, N. None: what the readings can tell from none.
     pub within: Option<Formula>,
     /// m/s
+    pub speed: Option<Formula>,
+}
+
+/// The same of a frame: all floors move together to where none of them carries a load. With which stiffness its forces are
+/// expected to fall, its storeys say.
+#[derive(Clone, Debug)]
+pub struct FrameUnload {
+    /// Index into `Plan::specimens`; it has a frame.
+    pub specimen: usize,
+    /// Largest |R| of a floor that counts as none, N. None: what the readings can tell from none.
+    pub within: Option<Formula>,
+    /// m/s, of the floor that goes farthest.
     pub speed: Option<Formula>,
 }

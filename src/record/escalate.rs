@@ -1,6 +1,7 @@
 //! What an `escalate` records: every blow as an impact of its own.
 
-use super::{ImpactHistory, NamedResult};
+use super::{ImpactHistory, NamedResult, Rest, StoreyImpactHistory};
+use crate::formula::ResultValue;
 
 /// One blow.
 #[derive(Clone, Debug)]
@@ -11,14 +12,73 @@ pub struct Blow {
     pub energy: f64,
     /// Those of an impact, in the schema's order.
     pub results: Vec<NamedResult>,
-    pub history: ImpactHistory,
+    pub history: BlowHistory,
     /// Whether the condition held; None where the blow did not run to its end.
     pub held: Option<bool>,
-    /// Displacement (m) and force (N) after it, once the specimen was brought to where the next blow begins.
-    pub rest: Option<(f64, f64)>,
+    /// Where the specimen was brought to after it, and what it carries there: the next blow begins there.
+    pub rest: Option<Rest>,
+}
+
+/// The steps of a blow.
+#[derive(Clone, Debug)]
+pub enum BlowHistory {
+    Impact(ImpactHistory),
+    Storey(StoreyImpactHistory),
+}
+
+impl Blow {
+    /// The striker and what it strikes, step by step; of a frame, the struck floor.
+    #[must_use]
+    pub const fn impact(&self) -> &ImpactHistory {
+        match &self.history {
+            BlowHistory::Impact(history) => history,
+            BlowHistory::Storey(history) => &history.blow,
+        }
+    }
+
+    /// All floors, where a frame was struck.
+    #[must_use]
+    pub const fn storey(&self) -> Option<&StoreyImpactHistory> {
+        match &self.history {
+            BlowHistory::Impact(_) => None,
+            BlowHistory::Storey(history) => Some(history),
+        }
+    }
+
+    /// A number among its results.
+    #[must_use]
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.results.iter().find(|result| result.name == name)?.value {
+            ResultValue::Number { value, .. } => value,
+            ResultValue::List(_) => None,
+        }
+    }
+
+    /// A list among its results.
+    #[must_use]
+    pub fn list(&self, name: &str) -> Option<&[f64]> {
+        match &self.results.iter().find(|result| result.name == name)?.value {
+            ResultValue::List(values) => Some(values),
+            ResultValue::Number { .. } => None,
+        }
+    }
+
+    /// Displacement (m) and force (N) after it, of the struck floor.
+    #[must_use]
+    pub fn rest_of_struck(&self) -> Option<(f64, f64)> {
+        let struck = self.storey().map_or(0, |history| history.struck);
+        self.rest.as_ref().map(|rest| rest.of(struck))
+    }
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct EscalateHistory {
     pub blows: Vec<Blow>,
+}
+
+impl EscalateHistory {
+    /// The blows on a frame, blow by blow; none where one degree of freedom is struck.
+    pub fn storeys(&self) -> impl Iterator<Item = &StoreyImpactHistory> {
+        self.blows.iter().filter_map(Blow::storey)
+    }
 }

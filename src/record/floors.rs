@@ -42,6 +42,32 @@ pub trait Floors {
     }
 }
 
+impl<F: Floors> Floors for &F {
+    fn time(&self) -> f64 {
+        F::time(self)
+    }
+
+    fn computed(&self) -> &[f64] {
+        F::computed(self)
+    }
+
+    fn restoring_force(&self) -> &[f64] {
+        F::restoring_force(self)
+    }
+
+    fn command(&self) -> &[f64] {
+        F::command(self)
+    }
+
+    fn measured(&self) -> &[f64] {
+        F::measured(self)
+    }
+
+    fn tracking(&self) -> &[Tracking] {
+        F::tracking(self)
+    }
+}
+
 /// All floors of one step of an impact on a storey; step, striker and contact stand beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorStep {

@@ -7,6 +7,7 @@ pub mod equipment;
 mod escalate;
 mod floors;
 pub mod journal;
+mod unload;
 
 use serde::{Deserialize, Serialize};
 
@@ -24,8 +25,9 @@ use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use drift::{AxisDrift, Beyond, Drift, Zero};
-pub use escalate::{Blow, EscalateHistory};
+pub use escalate::{Blow, BlowHistory, EscalateHistory};
 pub use floors::{FloorStep, Floors, StoreyImpactHistory};
+pub use unload::{Rest, UnloadStep};
 
 #[derive(Clone, Debug)]
 pub struct Record {
@@ -116,6 +118,8 @@ pub enum History {
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
     Move(Vec<RampStep>),
+    /// The floors of a frame on their way to where they carry no load.
+    FrameUnload(Vec<UnloadStep>),
     Inspect,
 }
 

@@ -2,19 +2,17 @@
 //! of its own, and which was the last that passed. Each decision follows from results, and they from recorded answers.
 
 use super::Performed;
-use super::impact::{Setting, blow};
+use super::blow::{Blown, Struck};
 use super::inputs::Inputs;
-use super::propagation::Doubts;
 use super::results::{measured, result};
 use super::session::Session;
 use super::stop::Stop;
 use super::unload::{MOST_TARGETS, to_rest};
 use crate::formula::{ProcedureId, ResultReference, ResultValue, Results};
-use crate::mechanics::impact::ImpactInput;
 use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
-use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult};
+use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
 use crate::uncertainty::{Contribution, combined, share};
 use crate::verdict::{Verdict, assess_condition};
 
@@ -31,37 +29,24 @@ fn run(
     session: &mut Session<'_>,
     history: &mut EscalateHistory,
 ) -> Result<(), Stop> {
-    let noise = session.guard.declared_noise();
-    let setting = Setting::evaluate(&plan.blow, &whole.strikers[plan.blow.striker], inputs, noise)?;
-    let doubts = Doubts::new(&plan.blow, whole, inputs, noise);
-    let velocities = inputs.list("speeds", &plan.velocities)?;
-    if let Some(value) = velocities.iter().copied().find(|velocity| !(*velocity > 0.0 && velocity.is_finite())) {
-        return Err(Stop::BadInput { field: "speeds", value, wanted: "greater than 0".into() });
-    }
-    let home = session.commanded();
+    let (mut struck, velocities) = Struck::evaluate(plan, whole, inputs, session)?;
+    let home = session.guard.commanded().to_vec();
     let mut done = 0;
-    for (index, striker_velocity) in velocities.iter().copied().enumerate() {
-        let setting = Setting { input: ImpactInput { striker_velocity, ..setting.input }, ..setting };
-        let energy = setting.input.striker_energy();
-        let blown = blow(&plan.blow, &setting, &doubts.of_blow(index), done, session);
-        done += blown.history.steps.last().map_or(0, |last| last.step);
+    for (index, velocity) in velocities.iter().copied().enumerate() {
+        let energy = struck.energy(velocity);
+        let blown = struck.blow((index, velocity), done, session);
+        done += blown.steps;
         let over = blown.stop.is_none();
         let known = OfBlow { own: plan.own, blow: &blown.results, before: inputs.results() };
         let held = over.then(|| {
             plan.condition.iter().all(|part| assess_condition(part, whole.decision_rule, &known).verdict == Verdict::Pass)
         });
-        history.blows.push(Blow {
-            velocity: striker_velocity,
-            energy,
-            results: blown.results,
-            history: blown.history,
-            held,
-            rest: None,
-        });
-        if let Some(stop) = blown.stop {
+        let Blown { results, history: steps, stop, .. } = blown;
+        history.blows.push(Blow { velocity, energy, results, history: steps, held, rest: None });
+        if let Some(stop) = stop {
             return Err(stop);
         }
-        let rest = bring(plan.between, home, &setting, &mut done, session)?;
+        let rest = bring(plan.between, &home, &struck, &mut done, session)?;
         if let Some(blow) = history.blows.last_mut() {
             blow.rest = Some(rest);
         }
@@ -79,25 +64,25 @@ fn run(
     Ok(())
 }
 
-/// To where the next blow begins: displacement (m) and force (N) there.
-fn bring(between: Between, home: f64, setting: &Setting, done: &mut u64, session: &mut Session<'_>) -> Result<(f64, f64), Stop> {
-    match between {
-        Between::Stay => session.read(),
-        Between::Home => {
-            session.go_to(home, None)?;
-            let (displacement, force) = session.read()?;
-            *done += 1;
-            let time = session.guard.time();
-            session.measured(*done, time, displacement, force)?;
-            Ok((displacement, force))
-        }
-        Between::Unload => {
-            let mut steps = Vec::new();
-            let rest = to_rest(setting.input.stiffness, None, None, *done, session, &mut steps)?;
-            *done += steps.len() as u64;
-            Ok((rest.displacement, rest.force))
-        }
+/// To where the next blow begins.
+fn bring(between: Between, home: &[f64], struck: &Struck<'_>, done: &mut u64, session: &mut Session<'_>) -> Result<Rest, Stop> {
+    if between == Between::Unload {
+        let mut steps = Vec::new();
+        let rest = to_rest(struck.unloading(), None, None, *done, session, &mut steps)?;
+        // The first is where it began.
+        *done += steps.len() as u64 - 1;
+        return Ok(rest);
     }
+    if between == Between::Home {
+        session.go_to_all(home, None)?;
+    }
+    let reading = session.guard.read()?;
+    if between == Between::Home {
+        *done += 1;
+        let time = session.guard.time();
+        session.measured_all(*done, time, &reading)?;
+    }
+    Ok(Rest { displacement: reading.displacement, force: reading.force })
 }
 
 /// Moves from one blow to the next, at most.
@@ -133,17 +118,9 @@ impl Results for OfBlow<'_> {
     }
 }
 
-/// A number among the results of a blow.
-fn number(blow: &Blow, name: &str) -> Option<f64> {
-    match blow.results.iter().find(|result| result.name == name)?.value {
-        ResultValue::Number { value, .. } => value,
-        ResultValue::List(_) => None,
-    }
-}
-
 /// The largest of a result of length over all blows, as uncertain as that of its blow.
 fn largest(blows: &[Blow], name: &'static str) -> NamedResult {
-    let found = blows.iter().filter_map(|blow| Some((number(blow, name)?, blow))).filter(|(value, _)| value.is_finite());
+    let found = blows.iter().filter_map(|blow| Some((blow.number(name)?, blow))).filter(|(value, _)| value.is_finite());
     let most = found.reduce(|most, next| if next.0 > most.0 { next } else { most });
     let parts = most.map_or_else(Vec::new, |(_, blow)| contributions(blow, name));
     told(name, Dimension::LENGTH, most.map(|(value, _)| value), parts)
@@ -171,7 +148,7 @@ fn told(name: &'static str, dimension: Dimension, value: Option<f64>, contributi
 /// In the order of the reference.
 fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let blows = &history.blows;
-    let of = |name: &str| blows.iter().map(|blow| number(blow, name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
+    let of = |name: &str| blows.iter().map(|blow| blow.number(name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
     let list =
         |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
     // Each as uncertain as that of its blow.
@@ -186,10 +163,11 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let passed = blows.iter().rev().find(|blow| blow.held == Some(true)).map(|blow| blow.energy);
     let failed = blows.iter().find(|blow| blow.held == Some(false)).map(|blow| blow.energy);
     let some = |values: Vec<f64>| values.into_iter().filter(|value| value.is_finite());
-    let rest = blows.last().and_then(|blow| blow.rest).map(|(displacement, _)| displacement);
-    let rests = blows.iter().map(|blow| blow.rest.map_or(f64::NAN, |(displacement, _)| displacement)).collect();
+    let place = |blow: &Blow| blow.rest_of_struck().map(|(displacement, _)| displacement);
+    let rest = blows.last().and_then(place);
+    let rests = blows.iter().map(|blow| place(blow).unwrap_or(f64::NAN)).collect();
     let absorbed = some(of("absorbed_energy")).reduce(|sum, energy| sum + energy);
-    vec![
+    let mut results = vec![
         result("blows", Dimension::NUMBER, Some(count(None))),
         result("passed", Dimension::NUMBER, Some(count(Some(true)))),
         result("last_passed_energy", Dimension::ENERGY, passed),
@@ -204,5 +182,22 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
         known("absorbed_energies", Dimension::ENERGY, "absorbed_energy"),
         known("impulses", Dimension::IMPULSE, "impulse"),
         list("energy_errors", Dimension::NUMBER, of("energy_error")),
-    ]
+    ];
+    if blows.iter().any(|blow| blow.storey().is_some()) {
+        let rest = blows.last().and_then(|blow| blow.rest.as_ref());
+        results.extend([
+            list("max_drift", Dimension::LENGTH, over_blows(blows, "max_drift", f64::max)),
+            list("residual_drift", Dimension::LENGTH, rest.map(Rest::drift).unwrap_or_default()),
+            list("storey_energy", Dimension::ENERGY, over_blows(blows, "storey_energy", |sum, next| sum + next)),
+        ]);
+    }
+    results
+}
+
+/// A list that every blow has an entry of for each storey, taken together storey by storey.
+fn over_blows(blows: &[Blow], name: &str, together: fn(f64, f64) -> f64) -> Vec<f64> {
+    let lists = blows.iter().filter_map(|blow| blow.list(name));
+    let all =
+        lists.map(<[f64]>::to_vec).reduce(|all, next| all.iter().zip(next).map(|(all, next)| together(*all, next)).collect());
+    all.unwrap_or_default()
 }

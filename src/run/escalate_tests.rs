@@ -3,7 +3,9 @@
 use super::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::formula::Formula::{self, Constant};
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
-use crate::plan::{Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Test, Unload, Until};
+use crate::plan::{
+    Behaviour, Between, BlowOn, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Test, Unload, Until,
+};
 use crate::quantity::Dimension;
 use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
 use crate::rig::VirtualRig;
@@ -22,7 +24,7 @@ fn blow() -> Impact {
 fn rising(velocities: &[f64], limit: f64, between: Between) -> Escalate {
     Escalate {
         own: ProcedureId(0),
-        blow: blow(),
+        blow: BlowOn::Specimen(blow()),
         velocities: velocities.iter().copied().map(Constant).collect(),
         condition: vec![below(limit)],
         between,
@@ -74,7 +76,7 @@ fn every_blow_is_an_impact_of_its_own() {
     for (index, blow) in history(&record).blows.iter().enumerate() {
         assert_eq!(blow.results, apart.procedures[2 * index].results, "blow {index}");
         let rest = number(&apart, 2 * index + 1, "residual_displacement").0;
-        assert_eq!(blow.rest.map(|rest| rest.0), rest);
+        assert_eq!(blow.rest_of_struck().map(|rest| rest.0), rest);
     }
     assert_eq!(list(&record, "velocities"), velocities);
     let peaks = list(&record, "max_displacements");
@@ -87,7 +89,8 @@ fn every_blow_is_an_impact_of_its_own() {
 fn it_ends_with_the_first_blow_that_fails() {
     let velocities = [0.2, 0.4, 0.6, 0.8, 1.0];
     let mut plan = rising(&velocities, 0.0150, Between::Home);
-    plan.blow.contact = crate::plan::Contact::Restitution { coefficient: Constant(0.0) };
+    let contact = crate::plan::Contact::Restitution { coefficient: Constant(0.0) };
+    plan.blow = BlowOn::Specimen(Impact { contact, ..blow() });
     let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(plan)]));
     let reckoned = |velocity: f64| velocity * 10.0 / (2e4_f64 * 11.0).sqrt();
     let fails = velocities.iter().position(|velocity| reckoned(*velocity) >= 0.0150).unwrap();
@@ -159,8 +162,7 @@ impl Observer for Counting {
 fn no_more_steps_come_than_were_foretold() {
     for (between, exact) in [(Between::Home, true), (Between::Unload, false), (Between::Stay, true)] {
         let mut rising = rising(&[0.1, 0.2, 0.3], 1.0, between);
-        rising.blow.until = Until::Duration;
-        rising.blow.duration = Constant(0.02);
+        rising.blow = BlowOn::Specimen(Impact { until: Until::Duration, duration: Constant(0.02), ..blow() });
         let plan = yielding(vec![ProcedureKind::Escalate(rising)]);
         let mut counting = Counting::default();
         let record = crate::run::run(&plan, &mut VirtualRig::of_plan(&plan), &mut counting);

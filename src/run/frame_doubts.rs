@@ -5,13 +5,15 @@
 use super::inputs::Inputs;
 use super::propagation::reading_errors;
 use super::stepping::FrameSteps;
+use super::session::Session;
 use super::stop::Stop;
+use super::storey_impact::no_frame;
 use super::study::{CLOSE, Effort, Study, give, give_entry, is_alike};
 use crate::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Floors, FrameRun};
 use crate::mechanics::recorded_path::Noise;
-use crate::plan::{Frame, Plan, ShakeDamping, Stepping};
+use crate::plan::{Frame, Plan, Shake, ShakeDamping, Stepping, StoreyImpact};
 use crate::record::NamedResult;
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Moved, Source, sources_of};
@@ -25,16 +27,59 @@ pub(super) struct FrameDoubts<'run> {
     pub whole: &'run Plan,
     /// By its place among the plan's specimens.
     pub specimen: usize,
-    pub frame: &'run Frame,
+    /// None of a specimen that is no frame, of which nothing is asked.
+    pub frame: Option<&'run Frame>,
     pub damping: &'run ShakeDamping,
     pub damping_uncertainty: f64,
     pub stepping: &'run Stepping,
     pub results: &'run dyn Results,
     pub procedure: ProcedureId,
     pub noise: DeclaredNoise,
+    /// Which blow of the procedure it is, from 0: each has errors of its own.
+    pub blow: u16,
 }
 
-impl FrameDoubts<'_> {
+impl<'run> FrameDoubts<'run> {
+    pub fn of_shake(plan: &'run Shake, whole: &'run Plan, inputs: &Inputs<'run>, session: &Session<'_>) -> Self {
+        let Shake { specimen, damping, damping_uncertainty, stepping, .. } = plan;
+        Self::new((*specimen, damping, *damping_uncertainty, stepping), whole, inputs, session)
+    }
+
+    pub fn of_blow(plan: &'run StoreyImpact, whole: &'run Plan, inputs: &Inputs<'run>, session: &Session<'_>) -> Self {
+        let StoreyImpact { specimen, damping, damping_uncertainty, stepping, .. } = plan;
+        Self::new((*specimen, damping, *damping_uncertainty, stepping), whole, inputs, session)
+    }
+
+    fn new(
+        (specimen, damping, damping_uncertainty, stepping): (usize, &'run ShakeDamping, f64, &'run Stepping),
+        whole: &'run Plan,
+        inputs: &Inputs<'run>,
+        session: &Session<'_>,
+    ) -> Self {
+        Self {
+            whole,
+            specimen,
+            frame: whole.specimens[specimen].frame.as_ref(),
+            damping,
+            damping_uncertainty,
+            stepping,
+            results: inputs.results(),
+            procedure: inputs.procedure(),
+            noise: session.guard.declared_noise(),
+            blow: 0,
+        }
+    }
+
+    /// Of another blow of the same procedure, from 0.
+    pub fn of_blow_number(self, index: usize) -> Self {
+        Self { blow: u16::try_from(index).unwrap_or(u16::MAX), ..self }
+    }
+
+    /// Degrees of freedom.
+    pub fn floors(&self) -> usize {
+        self.frame.map_or(0, Frame::degrees_of_freedom)
+    }
+
     /// Every source of the frame, the rig and the `formulas` that the procedure reads, each once; `stated` are more, with
     /// their uncertainties.
     pub fn sources(&self, formulas: &[&Formula], stated: &[(Source, f64)]) -> Vec<Source> {
@@ -45,7 +90,8 @@ impl FrameDoubts<'_> {
         let mut sources = sources_of(&references, self.results);
         read().for_each(|formula| formula.collect_stated(&mut sources));
         let specimen = self.specimen;
-        let storeys = self.frame.storeys.iter().enumerate().flat_map(|(storey, it)| {
+        let storeys = self.frame.map_or(&[][..], |frame| &frame.storeys);
+        let storeys = storeys.iter().enumerate().flat_map(|(storey, it)| {
             [
                 (Source::StoreyMass { specimen, storey }, it.mass_uncertainty),
                 (Source::StoreyStiffness { specimen, storey }, it.stiffness_uncertainty),
@@ -53,7 +99,7 @@ impl FrameDoubts<'_> {
         });
         let procedure = self.procedure;
         let modes = (0..ratios.len()).map(|mode| (Source::DampingRatio { procedure, mode }, self.damping_uncertainty));
-        let axes = (0..self.frame.degrees_of_freedom()).flat_map(|axis| {
+        let axes = (0..self.floors()).flat_map(|axis| {
             let calibration = self.whole.rig.calibration_of(axis);
             [
                 (Source::ForceScale(axis), calibration.force_uncertainty),
@@ -87,7 +133,7 @@ impl FrameDoubts<'_> {
     /// How much a study of so many steps takes, by so many rules.
     pub fn effort(&self, steps: usize, rules: usize, sources: &[Source]) -> Effort {
         let alike = sources.iter().filter(|source| is_alike(**source)).count();
-        let steps = (steps * rules * self.frame.degrees_of_freedom()) as u64;
+        let steps = (steps * rules * self.floors()) as u64;
         Effort::of(steps, sources.len(), alike, self.is_sampled())
     }
 
@@ -97,7 +143,7 @@ impl FrameDoubts<'_> {
             let (force, displacement) = reading_errors(self.whole, self.noise, axis);
             Noise { force, displacement, draw }
         };
-        (0..self.frame.degrees_of_freedom()).map(of_axis).collect()
+        (0..self.floors()).map(of_axis).collect()
     }
 
     /// The runs to take: `job` makes one of moved sources and a distorted way.
@@ -114,7 +160,7 @@ impl FrameDoubts<'_> {
             let at = |by: &f64| job(&[(source, *by)], self.distortion(&[(source, *by)], Vec::new()));
             study.moved.push((source, effort.moves().iter().map(at).collect::<Result<_, String>>()?));
         }
-        for (draw, source) in effort.draws(self.procedure, 0) {
+        for (draw, source) in effort.draws(self.procedure, self.blow) {
             // Inputs are drawn as a reading is that the run never has.
             let sign = |place: u64| Noise { force: 1.0, displacement: 0.0, draw }.errors(u64::MAX >> 16 ^ place, 0)[0];
             let shifts: Vec<(Source, f64)> = drawn.iter().zip(0..).map(|(source, place)| (*source, sign(place))).collect();
@@ -124,7 +170,7 @@ impl FrameDoubts<'_> {
     }
 
     fn distortion(&self, shifts: Shifts<'_>, noise: Vec<Noise>) -> FrameDistortion {
-        let mut distortion = FrameDistortion { noise, ..FrameDistortion::none(self.frame.degrees_of_freedom()) };
+        let mut distortion = FrameDistortion { noise, ..FrameDistortion::none(self.floors()) };
         for (source, by) in shifts {
             let calibration = |axis| self.whole.rig.calibration_of(axis);
             match *source {
@@ -140,8 +186,9 @@ impl FrameDoubts<'_> {
     }
 
     /// The frame with its storeys as they are moved.
-    pub fn moved_frame(&self, shifts: Shifts<'_>) -> Frame {
-        self.frame.with(|storeys| {
+    pub fn moved_frame(&self, shifts: Shifts<'_>) -> Result<Frame, Stop> {
+        let frame = self.frame.ok_or_else(no_frame)?;
+        Ok(frame.with(|storeys| {
             for (source, by) in shifts {
                 match *source {
                     Source::StoreyMass { specimen, storey } if specimen == self.specimen => {
@@ -153,7 +200,7 @@ impl FrameDoubts<'_> {
                     _ => {}
                 }
             }
-        })
+        }))
     }
 
     /// The damping as it is moved.

@@ -5,6 +5,7 @@
 
 use std::fmt::Display;
 
+use super::StepReport;
 use super::axes::{Monitors, Told, report};
 use super::followed::Followed;
 use super::gliding::{Gliding, Passing};
@@ -80,6 +81,11 @@ pub(super) trait Stepped {
     /// Keeps the end of a step, with how each axis was followed so far.
     fn keep(&mut self, state: &FrameState, axes: &[Tracking], session: &Session<'_>) -> Balance;
 
+    /// Steps of the procedure done before these.
+    fn before(&self) -> u64 {
+        0
+    }
+
     /// Whether there is nothing more to follow, before all steps are done.
     fn over(&self) -> bool;
 }
@@ -125,7 +131,8 @@ pub(super) fn run<S: Stepped>(
         let told = Told { energy_error, tracking, tracking_energy_error };
         session.guard.check_energy_error(told.energy_error)?;
         session.guard.check_tracking(told.tracking_energy_error, told.tracking.nrms_error)?;
-        session.step_done(&report(&state, &told))?;
+        let reported = report(&state, &told);
+        session.step_done(&StepReport { step: stepped.before() + reported.step, ..reported })?;
         if stepped.over() {
             break;
         }

@@ -2,6 +2,7 @@
 
 mod attribution;
 mod axes;
+mod blow;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -306,6 +307,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
+        ProcedureKind::FrameUnload(unload) => unload::perform_frame(unload, plan, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),
     }

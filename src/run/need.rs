@@ -7,7 +7,10 @@
 
 use crate::formula::{Formula, ResultReference, ResultValue, Results};
 use crate::mechanics::critical_time_step;
-use crate::plan::{DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp, steps_in};
+use crate::plan::{
+    BlowOn, DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp, StoreyImpact,
+    steps_in,
+};
 
 use super::{shake, storey_impact, zero};
 
@@ -184,12 +187,13 @@ impl Reckoner<'_> {
             ProcedureKind::Impact(impact) => self.blow(impact),
             ProcedureKind::Escalate(escalate) => {
                 let between = moves(UNLOADING * self.way).plus(Counts { steps: UNLOADING, ..Counts::default() });
-                Some(self.blow(&escalate.blow)?.plus(between).times(rounded(escalate.velocities.len() as u64)))
+                let blow = match &escalate.blow {
+                    BlowOn::Specimen(blow) => self.blow(blow)?,
+                    BlowOn::Storey(blow) => self.storey_blow(blow)?,
+                };
+                Some(blow.plus(between).times(rounded(escalate.velocities.len() as u64)))
             }
-            ProcedureKind::StoreyImpact(impact) => {
-                let steps = rounded(storey_impact::steps(impact, self.plan)?) + 1.0;
-                Some(stepped(impact.stepping.mode, steps))
-            }
+            ProcedureKind::StoreyImpact(impact) => self.storey_blow(impact),
             ProcedureKind::Shake(shaking) => {
                 let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;
                 Some(stepped(shaking.stepping.mode, steps))
@@ -211,7 +215,9 @@ impl Reckoner<'_> {
                 let ways = legs * rounded(cycle.cycles());
                 Some(begin.plus(Counts { targets: ways, ways, readings, steps: readings }))
             }
-            ProcedureKind::Unload(_) => Some(Counts { steps: UNLOADING, ..moves(UNLOADING * self.way) }),
+            ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => {
+                Some(Counts { steps: UNLOADING, ..moves(UNLOADING * self.way) })
+            }
             ProcedureKind::Move(_) => Some(Counts { steps: 1.0, ..moves(self.way) }),
             ProcedureKind::Inspect { .. } => Some(Counts::default()),
         }
@@ -241,6 +247,11 @@ impl Reckoner<'_> {
         let critical = critical_time_step(self.number(&impact.mass)?, self.number(&impact.stiffness)?);
         let time_step = impact.stepping.time_step.evaluate(&self.assumed, Some(critical)).ok()?.value;
         let steps = steps_in(self.number(&impact.duration)?, time_step) + 1.0;
+        Some(stepped(impact.stepping.mode, steps))
+    }
+
+    fn storey_blow(&self, impact: &StoreyImpact) -> Option<Counts> {
+        let steps = rounded(storey_impact::steps(impact, self.plan)?) + 1.0;
         Some(stepped(impact.stepping.mode, steps))
     }
 }

@@ -319,9 +319,9 @@ fn a_guarded_limit_decides_nothing_where_the_blow_is_uncertain() {
 /// Two blows of one striker and one cell share velocity and calibration, and no error of their readings.
 #[test]
 fn blows_of_one_striker_share_what_is_uncertain_of_it() {
-    use crate::plan::{Between, Escalate};
+    use crate::plan::{Between, BlowOn, Escalate};
     let rising = Escalate {
-        blow: Impact { until: crate::plan::Until::StrikerStop, ..sticking(1e-3) },
+        blow: BlowOn::Specimen(Impact { until: crate::plan::Until::StrikerStop, ..sticking(1e-3) }),
         velocities: vec![constant(0.5), constant(1.0)],
         condition: Vec::new(),
         own: crate::formula::ProcedureId(0),

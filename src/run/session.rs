@@ -6,10 +6,10 @@ use super::shake;
 use super::stop::Stop;
 use super::study::Unknown;
 use super::storey_impact;
-use super::{Inspection, Next, Observer, StepReport, UNLOADING};
+use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;
-use crate::plan::{Impact, Plan, Procedure, ProcedureKind, step_count};
+use crate::plan::{BlowOn, Impact, Plan, Procedure, ProcedureKind, step_count};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
 
@@ -203,18 +203,35 @@ impl<'run> Session<'run> {
 
     /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
     pub(super) fn measured(&mut self, step: u64, time: f64, displacement: f64, force: f64) -> Result<(), Stop> {
-        let command = self.commanded();
-        let nothing = None;
+        self.at_rest(step, time, &[displacement], &[force])
+    }
+
+    /// The same of every axis.
+    pub(super) fn measured_all(&mut self, step: u64, time: f64, reading: &Reading) -> Result<(), Stop> {
+        self.at_rest(step, time, &reading.displacement, &reading.force)
+    }
+
+    fn at_rest(&mut self, step: u64, time: f64, displacement: &[f64], force: &[f64]) -> Result<(), Stop> {
+        let places = self.guard.commanded().iter().zip(displacement).zip(force);
+        let mut axes = places.map(|((command, displacement), force)| AxisReport {
+            command: *command,
+            displacement: *displacement,
+            velocity: 0.0,
+            acceleration: 0.0,
+            force: *force,
+        });
+        let Some(first) = axes.next() else { return Ok(()) };
+        let others = axes.collect();
         self.step_done(&StepReport {
             step,
             time,
-            command,
-            displacement,
-            velocity: nothing,
-            acceleration: nothing,
-            force,
-            energy_error: nothing,
-            others: Vec::new(),
+            command: first.command,
+            displacement: first.displacement,
+            velocity: None,
+            acceleration: None,
+            force: first.force,
+            energy_error: None,
+            others,
             tracking: None,
             tracking_energy_error: None,
         })
@@ -260,10 +277,14 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
             let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
             Some(once * u64::from(ramp.repeats))
         }
-        ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) => None,
+        ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => None,
         ProcedureKind::Impact(impact) => steps_of_blow(impact),
         ProcedureKind::Escalate(escalate) => {
-            let blow = steps_of_blow(&escalate.blow)?.saturating_add(most_moves(escalate.between));
+            let blow = match &escalate.blow {
+                BlowOn::Specimen(blow) => steps_of_blow(blow)?,
+                BlowOn::Storey(blow) => storey_impact::steps(blow, plan)?,
+            };
+            let blow = blow.saturating_add(most_moves(escalate.between));
             Some(blow.saturating_mul(escalate.velocities.len() as u64))
         }
         ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan),

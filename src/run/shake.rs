@@ -54,18 +54,8 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     let mut stop = shaking.run(plan, ground, session).err();
     let summary = Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty());
     let mut results = results(shaking.history.modes.as_ref(), summary, &shaking.followed);
-    if let (Some(frame), None) = (frame, &stop) {
-        let doubts = FrameDoubts {
-            whole,
-            specimen: plan.specimen,
-            frame,
-            damping: &plan.damping,
-            damping_uncertainty: plan.damping_uncertainty,
-            stepping: &plan.stepping,
-            results: inputs.results(),
-            procedure: inputs.procedure(),
-            noise: session.guard.declared_noise(),
-        };
+    if stop.is_none() {
+        let doubts = FrameDoubts::of_shake(plan, whole, inputs, session);
         let mut tick = |done, of| session.study(done, of);
         let found = shake_doubts::propagate(&doubts, plan, ground, &setting, &shaking.history, &mut results, &mut tick);
         stop = session.told_of(found);

@@ -57,7 +57,7 @@ pub(super) fn propagate(
         let lists = [&floors.max_displacement, &floors.max_drift, &floors.residual_drift, &job.periods];
         lists.into_iter().flatten().copied().chain([floors.max_base_shear]).collect::<Vec<f64>>()
     };
-    let floors = doubts.frame.degrees_of_freedom();
+    let floors = doubts.floors();
     let as_it_was = Job {
         run: doubts.run(&setting.frame),
         scale: setting.scale,
@@ -98,7 +98,7 @@ fn moved(
     setting: &Setting,
     (ground, shifts): (&Ground, Shifts<'_>),
 ) -> Result<(FrameRun, Vec<f64>, f64), Stop> {
-    let (frame, damping) = (doubts.moved_frame(shifts), doubts.moved_damping(shifts));
+    let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
     let (properties, scale) = doubts.with_inputs(shifts, &mut |inputs| {
         let properties = stepping::properties(&frame, &damping, inputs)?;
         Ok((properties, inputs.number("scale", &plan.scale, Dimension::NUMBER)?))

@@ -53,7 +53,7 @@ pub(super) fn propagate(
     };
     let path = doubts.path(&setting.frame, history.floors.iter().map(reading).collect())?;
     let take = |job: &Job, path: &FramePath| job.run.struck(&job.blow, path, &job.distortion);
-    let floors = doubts.frame.degrees_of_freedom();
+    let floors = doubts.floors();
     let as_it_was = Job {
         run: doubts.run(&setting.frame),
         blow: Blow { struck: plan.struck, law: setting.law, until: plan.until, body: setting.body },
@@ -118,15 +118,16 @@ fn moved(
     shifts: Shifts<'_>,
     distortion: FrameDistortion,
 ) -> Result<Job, Stop> {
-    let (frame, damping) = (doubts.moved_frame(shifts), doubts.moved_damping(shifts));
+    let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
     let (properties, law) = doubts.with_inputs(shifts, &mut |inputs| {
         Ok((stepping::properties(&frame, &damping, inputs)?, law(&plan.contact, inputs)?))
     })?;
-    let mut striker = setting.striker.clone();
+    let (mut striker, declared) = (setting.striker.clone(), &doubts.whole.strikers[plan.striker]);
     for (source, by) in shifts {
         match source {
             Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
-            Source::StrikerVelocity(_) => striker.velocity += by * striker.velocity_uncertainty,
+            // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion.
+            Source::StrikerVelocity(_) => striker.velocity *= 1.0 + by * declared.velocity_uncertainty / declared.velocity,
             _ => {}
         }
     }

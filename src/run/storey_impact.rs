@@ -21,42 +21,52 @@ use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::structure::Structure;
 use crate::plan::{Contact, Frame, Plan, StoreyImpact, Striker, step_count};
 use crate::quantity::Dimension;
-use crate::record::{History, ImpactHistory, StoreyImpactHistory};
+use crate::record::{History, ImpactHistory, NamedResult, StoreyImpactHistory};
 
 pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let striker = &whole.strikers[plan.striker];
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
-    let setting = frame.map_or_else(
-        || Err(Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }),
-        |frame| Setting::evaluate(plan, frame, striker, inputs, session),
-    );
-    let blow = |setting: Option<&Setting>| ImpactHistory {
-        steps: Vec::new(),
-        time_step: setting.map_or(0.0, |setting| setting.frame.time_step),
-        critical_time_step: setting.map_or(0.0, |setting| setting.frame.critical_time_step),
-    };
-    let mut history = StoreyImpactHistory {
-        blow: blow(setting.as_ref().ok()),
-        floors: Vec::new(),
-        struck: plan.struck,
-        modes: None,
-        damping_ratios: Vec::new(),
-    };
-    let setting = match setting {
-        Ok(setting) => setting,
+    let setting = frame.ok_or_else(no_frame).and_then(|frame| Setting::evaluate(plan, frame, striker, inputs, session));
+    match setting {
+        Ok(setting) => {
+            let doubts = FrameDoubts::of_blow(plan, whole, inputs, session);
+            let Blown { history, results, stop } = blow(plan, &setting, &doubts, 0, session);
+            Performed { results, history: History::StoreyImpact(history), stop }
+        }
         Err(stop) => {
-            return Performed {
+            let history = history_of(plan, None);
+            Performed {
                 results: results(None, &Followed::default(), &history),
                 history: History::StoreyImpact(history),
                 stop: Some(stop),
-            };
+            }
         }
-    };
-    history.modes = Some(setting.frame.properties.modes.clone());
-    history.damping_ratios = setting.frame.properties.damping_ratios();
+    }
+}
+
+pub(super) fn no_frame() -> Stop {
+    Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }
+}
+
+/// One blow, as far as it went.
+pub(super) struct Blown {
+    pub history: StoreyImpactHistory,
+    pub results: Vec<NamedResult>,
+    pub stop: Option<Stop>,
+}
+
+/// The blow of a striker from where the floors are now; `before` steps of the procedure are done already.
+pub(super) fn blow(
+    plan: &StoreyImpact,
+    setting: &Setting,
+    doubts: &FrameDoubts<'_>,
+    before: u64,
+    session: &mut Session<'_>,
+) -> Blown {
+    let history = history_of(plan, Some(setting));
     let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
-    let mut striking = Striking { setting: &setting, history, summary, followed: Followed::default() };
+    let mut striking = Striking { setting, before, history, summary, followed: Followed::default() };
     let mut stop = striking.run(plan, session).err();
     let Striking { history, summary, followed, .. } = striking;
     let summary = (!history.floors.is_empty()).then_some(summary);
@@ -64,23 +74,29 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
         remark(&summary.blow(), plan.until, session);
     }
     let mut results = results(summary.as_ref(), &followed, &history);
-    if let (Some(frame), Some(summary), None) = (frame, &summary, &stop) {
-        let doubts = FrameDoubts {
-            whole,
-            specimen: plan.specimen,
-            frame,
-            damping: &plan.damping,
-            damping_uncertainty: plan.damping_uncertainty,
-            stepping: &plan.stepping,
-            results: inputs.results(),
-            procedure: inputs.procedure(),
-            noise: session.guard.declared_noise(),
-        };
+    if let (Some(summary), None) = (&summary, &stop) {
         let mut tick = |done, of| session.study(done, of);
-        let found = storey_doubts::propagate(&doubts, plan, &setting, &history, &summary.blow(), &mut results, &mut tick);
+        let found = storey_doubts::propagate(doubts, plan, setting, &history, &summary.blow(), &mut results, &mut tick);
         stop = session.told_of(found);
     }
-    Performed { results, history: History::StoreyImpact(history), stop }
+    Blown { results, history, stop }
+}
+
+/// Before its first step.
+fn history_of(plan: &StoreyImpact, setting: Option<&Setting>) -> StoreyImpactHistory {
+    let blow = ImpactHistory {
+        steps: Vec::new(),
+        time_step: setting.map_or(0.0, |setting| setting.frame.time_step),
+        critical_time_step: setting.map_or(0.0, |setting| setting.frame.critical_time_step),
+    };
+    let properties = setting.map(|setting| &setting.frame.properties);
+    StoreyImpactHistory {
+        blow,
+        floors: Vec::new(),
+        struck: plan.struck,
+        modes: properties.map(|properties| properties.modes.clone()),
+        damping_ratios: properties.map(FrameProperties::damping_ratios).unwrap_or_default(),
+    }
 }
 
 /// Steps of an impact on a storey, where the plan alone tells.
@@ -107,7 +123,7 @@ pub(super) struct Setting {
 }
 
 impl Setting {
-    fn evaluate(
+    pub(super) fn evaluate(
         plan: &StoreyImpact,
         frame: &Frame,
         striker: &Striker,
@@ -136,5 +152,11 @@ impl Setting {
         };
         let body = body.struck_by(striker, &plan.stepping);
         Ok(Self { frame: steps, law, striker: striker.clone(), body })
+    }
+
+    /// The same with a striker of another velocity, m/s.
+    pub(super) const fn strikes_at(&mut self, velocity: f64) {
+        self.striker.velocity = velocity;
+        self.body.striker_velocity = velocity;
     }
 }

@@ -17,6 +17,8 @@ use crate::rig::Reading;
 
 pub(super) struct Striking<'a> {
     pub(super) setting: &'a Setting,
+    /// Steps of the procedure done before these.
+    pub(super) before: u64,
     pub(super) history: StoreyImpactHistory,
     pub(super) summary: StoreySummary,
     pub(super) followed: Followed,
@@ -24,7 +26,7 @@ pub(super) struct Striking<'a> {
 
 impl Striking<'_> {
     pub(super) fn run(&mut self, plan: &StoreyImpact, session: &mut Session<'_>) -> Result<(), Stop> {
-        let Self { setting, history, summary, followed } = self;
+        let Self { setting, before, history, summary, followed } = self;
         let unloaded = vec![0.0; setting.frame.properties.matrices.order()];
         frame_steps::run((&setting.frame, &plan.stepping), followed, session, |start| {
             let input = FrameImpactInput {
@@ -37,7 +39,7 @@ impl Striking<'_> {
                 law: setting.law,
             };
             let solver = FrameImpactSolver::new(&input).map_err(|error| not_stepped(input.frame.time_step, &error))?;
-            Ok(Struck { setting, until: plan.until, solver, unloaded: &unloaded, history, summary })
+            Ok(Struck { setting, before: *before, until: plan.until, solver, unloaded: &unloaded, history, summary })
         })
     }
 }
@@ -45,6 +47,7 @@ impl Striking<'_> {
 /// The frame under way, with its striker.
 struct Struck<'a> {
     setting: &'a Setting,
+    before: u64,
     until: Until,
     solver: FrameImpactSolver,
     /// N
@@ -108,6 +111,10 @@ impl Stepped for Struck<'_> {
             tracking: axes.to_vec(),
         });
         Balance { error: floor.energies.error, input: self.setting.body.striker_energy() }
+    }
+
+    fn before(&self) -> u64 {
+        self.before
     }
 
     fn over(&self) -> bool {

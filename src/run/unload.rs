@@ -1,99 +1,184 @@
-//! `unload`: takes the load off. In: the stiffness with which the force is expected to fall. Out: the way there, and where
-//! the specimen rests. Each target is where the force would be 0 along the stiffness that the last move showed; the guard
-//! holds every one against the limits.
+//! `unload`: takes the load off, of one degree of freedom or of all floors of a frame together. In: the stiffness with which
+//! the forces are expected to fall. Out: the way there, and where the specimen rests. Each target is where the forces would
+//! be 0 along the stiffness that the last move showed (`mechanics/frame/unloading.rs`); the guard holds every one against the limits.
 
 use super::Performed;
 use super::inputs::Inputs;
 use super::results::result;
 use super::session::Session;
-use super::stiffness_ramp::secant;
 use super::stop::Stop;
-use crate::plan::Unload;
+use crate::formula::{Formula, ResultValue};
+use crate::mechanics::frame::{Damping, Loaded, Unloading};
+use crate::mechanics::frame_properties::FrameProperties;
+use crate::plan::{Frame, FrameUnload, Plan, Unload};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
-use crate::record::{EventKind, History, RampStep};
+use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
+use crate::rig::Reading;
 
 /// Targets on the way, at most: a specimen that bends as it is expected to needs one or two.
 pub(super) const MOST_TARGETS: u64 = 50;
-/// A stiffness shown by a move is believed within this factor of the expected one.
-const BELIEVED: f64 = 4.0;
 /// Of the force at the start: as near to none as is asked for where nothing else bounds it.
 const SMALL: f64 = 1e-3;
 /// Noise of the cell in a reading that is not to be mistaken for load, standard deviations.
 const NOISE: f64 = 3.0;
-
-/// Where a specimen came to rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rest {
-    /// m
-    pub displacement: f64,
-    /// What it still carries, N.
-    pub force: f64,
-}
+/// Of a place, in units of its last digit: what adding the drifts of storeys up leaves.
+const ROUNDING: f64 = 8.0;
 
 pub(super) fn perform(plan: &Unload, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut steps = Vec::new();
-    let outcome = go(plan, inputs, session, &mut steps);
-    let rest = outcome.as_ref().ok();
+    let outcome = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS).and_then(|stiffness| {
+        asked((plan.within.as_ref(), plan.speed.as_ref()), Unloading::of_one(stiffness), inputs, session, &mut steps)
+    });
+    let rest = outcome.as_ref().ok().map(|rest| rest.of(0));
     let results = vec![
-        result("residual_displacement", Dimension::LENGTH, rest.map(|rest| rest.displacement)),
-        result("residual_force", Dimension::FORCE, rest.map(|rest| rest.force)),
+        result("residual_displacement", Dimension::LENGTH, rest.map(|(displacement, _)| displacement)),
+        result("residual_force", Dimension::FORCE, rest.map(|(_, force)| force)),
     ];
-    Performed { history: History::Move(steps), results, stop: outcome.err() }
+    // The start is no move.
+    let moved = steps.iter().skip(1).map(of_one).collect();
+    Performed { history: History::Move(moved), results, stop: outcome.err() }
 }
 
-fn go(plan: &Unload, inputs: &mut Inputs<'_>, session: &mut Session<'_>, steps: &mut Vec<RampStep>) -> Result<Rest, Stop> {
-    let stiffness = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS)?;
-    let within = plan.within.as_ref().map(|within| inputs.positive("within", within, Dimension::FORCE)).transpose()?;
-    let speed = inputs.speed(plan.speed.as_ref())?;
-    to_rest(stiffness, within, speed, 0, session, steps)
+fn of_one(step: &UnloadStep) -> RampStep {
+    RampStep {
+        step: step.step,
+        wall_time: step.wall_time,
+        command: step.command[0],
+        displacement: step.displacement[0],
+        restoring_force: step.restoring_force[0],
+        force_scatter: 0.0,
+        relaxation: 0.0,
+        tangent_stiffness: step.tangent_stiffness[0],
+        returning: true,
+    }
 }
 
-/// Takes the load off; `before` steps of the procedure are done already.
+/// The same of a frame.
+pub(super) fn perform_frame(plan: &FrameUnload, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+    let mut steps = Vec::new();
+    // `check` has seen that the specimen is a frame.
+    let frame = whole.specimens[plan.specimen].frame.as_ref();
+    let known = frame.map_or_else(|| Err(no_frame()), of_frame);
+    let outcome =
+        known.and_then(|unloading| asked((plan.within.as_ref(), plan.speed.as_ref()), unloading, inputs, session, &mut steps));
+    let results = frame_results(outcome.as_ref().ok());
+    Performed { history: History::FrameUnload(steps), results, stop: outcome.err() }
+}
+
+fn no_frame() -> Stop {
+    Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }
+}
+
+/// How the forces of a frame are expected to fall.
+pub(super) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
+    let unfit = |reason: String| Stop::BadInput { field: "specimen", value: 0.0, wanted: reason.into() };
+    let properties = FrameProperties::of(frame, &Damping::None);
+    let properties = properties.map_err(|reason| unfit(format!("a frame that can be unloaded: {reason}")))?;
+    Unloading::of(&properties.matrices.stiffness).map_err(|reason| unfit(format!("a stiffness that resists: {reason}")))
+}
+
+/// In the order of the reference.
+fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
+    let list = |name, dimension, values: Option<Vec<f64>>| match values {
+        Some(values) => NamedResult { name, dimension, value: ResultValue::List(values), contributions: Vec::new() },
+        None => result(name, dimension, None),
+    };
+    let largest = rest.map(Rest::largest);
+    vec![
+        result("residual_displacement", Dimension::LENGTH, largest.map(|(displacement, _)| displacement)),
+        result("residual_force", Dimension::FORCE, largest.map(|(_, force)| force)),
+        list("floor_displacement", Dimension::LENGTH, rest.map(|rest| rest.displacement.clone())),
+        list("residual_drift", Dimension::LENGTH, rest.map(Rest::drift)),
+        list("residual_shear", Dimension::FORCE, rest.map(Rest::shear)),
+    ]
+}
+
+/// Takes the load off as a block asks for it.
+fn asked(
+    (within, speed): (Option<&Formula>, Option<&Formula>),
+    unloading: Unloading,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+    steps: &mut Vec<UnloadStep>,
+) -> Result<Rest, Stop> {
+    let within = within.map(|within| inputs.positive("within", within, Dimension::FORCE)).transpose()?;
+    let speed = inputs.speed(speed)?;
+    to_rest(unloading, within, speed, 0, session, steps)
+}
+
+/// Takes the load off; `before` steps of the procedure are done already. The first of `steps` is where it began.
 pub(super) fn to_rest(
-    stiffness: f64,
+    mut unloading: Unloading,
     within: Option<f64>,
     speed: Option<f64>,
     before: u64,
     session: &mut Session<'_>,
-    steps: &mut Vec<RampStep>,
+    steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
-    let (mut displacement, mut force) = session.read()?;
+    let mut at = session.guard.read()?;
+    let start = session.guard.commanded().to_vec();
+    keep((before, start), &at, vec![None; at.force.len()], session, steps);
     let noise = session.guard.declared_noise();
-    let tells = (NOISE * noise.force).max(stiffness * noise.resolution);
-    let within = within.unwrap_or_else(|| tells.max(SMALL * force.abs()).max(f64::MIN_POSITIVE));
-    let mut slope = stiffness;
+    let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
+    let tells = (NOISE * noise.force).max(unloading.felt(noise.resolution.max(rounding)));
+    let mut left = largest(&at.force);
+    let within = within.unwrap_or_else(|| tells.max(SMALL * left).max(f64::MIN_POSITIVE));
     for step in before + 1..=before + MOST_TARGETS {
-        if force.abs() <= within {
-            return Ok(Rest { displacement, force });
+        if left <= within {
+            return Ok(rest(at));
         }
-        let target = session.commanded() - force / slope;
-        session.go_to(target, speed)?;
-        let (moved_to, felt) = session.read()?;
-        let wall_time = session.guard.time();
-        let tangent_stiffness = secant((displacement, force), (moved_to, felt));
-        steps.push(RampStep {
-            step,
-            wall_time,
-            command: target,
-            displacement: moved_to,
-            restoring_force: felt,
-            force_scatter: 0.0,
-            relaxation: 0.0,
-            tangent_stiffness,
-            returning: true,
-        });
-        session.measured(step, wall_time, moved_to, felt)?;
-        let nearer = felt.abs() < force.abs();
-        (displacement, force) = (moved_to, felt);
+        let way = unloading.way(&at.force);
+        let target: Vec<f64> = session.guard.commanded().iter().zip(way).map(|(place, way)| place + way).collect();
+        session.go_to_all(&target, speed)?;
+        let reached = session.guard.read()?;
+        let secants = unloading.learn(loaded(&at), loaded(&reached));
+        let wall_time = keep((step, target), &reached, secants, session, steps);
+        session.measured_all(step, wall_time, &reached)?;
+        let felt = largest(&reached.force);
+        let nearer = felt < left;
+        (at, left) = (reached, felt);
         if !nearer {
             break;
         }
-        slope = tangent_stiffness.map_or(slope, |shown| shown.clamp(stiffness / BELIEVED, BELIEVED * stiffness));
     }
-    if force.abs() > within {
-        let (left, wanted) = (readable(force, Dimension::FORCE), readable(within, Dimension::FORCE));
-        session.event(EventKind::Remark, format!("the load could not be taken off to within {wanted}: {left} is left"));
+    if left > within {
+        let (force, wanted) = (rest(at.clone()).largest().1, readable(within, Dimension::FORCE));
+        let force = readable(force, Dimension::FORCE);
+        session.event(EventKind::Remark, format!("the load could not be taken off to within {wanted}: {force} is left"));
     }
-    Ok(Rest { displacement, force })
+    Ok(rest(at))
+}
+
+/// Keeps a step; gives the rig's time, s.
+fn keep(
+    (step, command): (u64, Vec<f64>),
+    at: &Reading,
+    secants: Vec<Option<f64>>,
+    session: &Session<'_>,
+    steps: &mut Vec<UnloadStep>,
+) -> f64 {
+    let wall_time = session.guard.time();
+    steps.push(UnloadStep {
+        step,
+        wall_time,
+        command,
+        displacement: at.displacement.clone(),
+        restoring_force: at.force.clone(),
+        tangent_stiffness: secants,
+    });
+    wall_time
+}
+
+fn loaded(reading: &Reading) -> Loaded<'_> {
+    Loaded { displacement: &reading.displacement, force: &reading.force }
+}
+
+fn rest(reading: Reading) -> Rest {
+    Rest { displacement: reading.displacement, force: reading.force }
+}
+
+/// Largest size.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }

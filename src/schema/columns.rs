@@ -136,16 +136,25 @@ const ESCALATE: &[Column] = &[
     column("rest_force_n", Dimension::FORCE),
 ];
 
+/// What each storey went through in a blow on a frame, and what stayed; each blow has the table of an impact on a storey besides.
+const STOREYS: &[Column] = &[
+    column("floor_displacement_m", Dimension::LENGTH),
+    column("max_drift_m", Dimension::LENGTH),
+    column("rest_drift_m", Dimension::LENGTH),
+    column("rest_shear_n", Dimension::FORCE),
+];
+
 /// The numeric columns of a procedure's tables; none where it has none.
 pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
-    let (own, more): (&[Column], &[Column]) = match kind {
-        Kind::StiffnessRamp | Kind::Move | Kind::Unload => (RAMP, &[]),
-        Kind::DampingSweep => (SWEEP, &[]),
-        Kind::Impact => (IMPACT, STOREY),
-        Kind::Cycle => (CYCLE, &[]),
-        Kind::Shake => (SHAKE, &[]),
-        Kind::Escalate => (ESCALATE, IMPACT),
-        _ => (&[], &[]),
+    let tables: &[&[Column]] = match kind {
+        Kind::StiffnessRamp | Kind::Move => &[RAMP],
+        Kind::Unload => &[RAMP, STOREY],
+        Kind::DampingSweep => &[SWEEP],
+        Kind::Impact => &[IMPACT, STOREY],
+        Kind::Cycle => &[CYCLE],
+        Kind::Shake => &[SHAKE],
+        Kind::Escalate => &[ESCALATE, IMPACT, STOREY, STOREYS],
+        _ => &[],
     };
-    own.iter().chain(more)
+    tables.iter().copied().flatten()
 }

@@ -5,30 +5,44 @@ use super::procedures::IMPACT;
 use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind, Variant};
 use crate::quantity::Dimension;
 
-pub(super) const UNLOAD: BlockKind =
-    BlockKind {
-        kind: Kind::Unload,
-        keyword: &["unload"],
-        naming: Naming::Named,
-        procedure: true,
-        fields: &[
-            Field::reference("specimen", Kind::Specimen, "what is unloaded").or_said("the only one declared"),
-            Field::quantity("stiffness", Dimension::STIFFNESS, "with which the force is expected to fall")
-                .above_zero()
-                .required_on(RigKind::Real, "stiffness = k0.stiffness", "the behaviour's initial stiffness"),
-            Field::quantity("within", Dimension::FORCE, "largest force that counts as none")
-                .above_zero()
-                .or_said("a thousandth of the force at the start, or what noise and resolution can tell"),
-            Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own"),
-        ],
-        exports: &[],
-        results: &[
-            ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen rests"),
-            ResultKind::new("residual_force", Dimension::FORCE, "what it still carries there"),
-        ],
-        example: "unload rest { }",
-        doc: "Takes the load off: moves to where the restoring force is none",
-    };
+pub(super) const UNLOAD: BlockKind = BlockKind {
+    kind: Kind::Unload,
+    keyword: &["unload"],
+    naming: Naming::Named,
+    procedure: true,
+    fields: &[
+        Field::reference("specimen", Kind::Specimen, "what is unloaded").or_said("the only one declared"),
+        Field::quantity(
+            "stiffness",
+            Dimension::STIFFNESS,
+            "with which the force is expected to fall; the storeys of a frame have their own",
+        )
+        .above_zero()
+        .required_on(RigKind::Real, "stiffness = k0.stiffness", "the behaviour's initial stiffness"),
+        Field::quantity("within", Dimension::FORCE, "largest force, of a frame that of a floor, that counts as none")
+            .above_zero()
+            .or_said("a thousandth of the force at the start, or what noise and resolution can tell"),
+        Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own"),
+    ],
+    exports: &[],
+    results: &[
+        ResultKind::new(
+            "residual_displacement",
+            Dimension::LENGTH,
+            "where the specimen rests; of a frame, the floor that rests farthest out",
+        ),
+        ResultKind::new(
+            "residual_force",
+            Dimension::FORCE,
+            "what it still carries there; of a frame, the floor that carries most",
+        ),
+        ResultKind::list("floor_displacement", Dimension::LENGTH, "where each floor rests").of_storey(),
+        ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift there").of_storey(),
+        ResultKind::list("residual_shear", Dimension::FORCE, "what each storey still carries there").of_storey(),
+    ],
+    example: "unload rest { }",
+    doc: "Takes the load off: moves to where the restoring force is none, of a frame all floors together",
+};
 
 /// What an `escalate` has besides the fields of an impact.
 const OWN: [Field; 6] = [
@@ -52,27 +66,11 @@ const OWN: [Field; 6] = [
     Field::choice("inspect_between", TRUTH, "whether a person looks at the specimen between two blows").or_said("false"),
 ];
 
-/// Fields of an impact that say something of one degree of freedom.
-const OF_ONE: usize = {
-    let (mut count, mut at) = (0, 0);
-    while at < IMPACT.fields.len() {
-        if !IMPACT.fields[at].of_frames {
-            count += 1;
-        }
-        at += 1;
-    }
-    count
-};
-
-const FIELDS: [Field; OWN.len() + OF_ONE] = {
-    let mut all = [OWN[0]; OWN.len() + OF_ONE];
-    let (mut at, mut next) = (0, 0);
-    while at < OWN.len() + IMPACT.fields.len() {
-        let field = if at < OWN.len() { OWN[at] } else { IMPACT.fields[at - OWN.len()] };
-        if !field.of_frames {
-            all[next] = field;
-            next += 1;
-        }
+const FIELDS: [Field; OWN.len() + IMPACT.fields.len()] = {
+    let mut all = [OWN[0]; OWN.len() + IMPACT.fields.len()];
+    let mut at = 0;
+    while at < all.len() {
+        all[at] = if at < OWN.len() { OWN[at] } else { IMPACT.fields[at - OWN.len()] };
         at += 1;
     }
     all
@@ -108,7 +106,12 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ),
         ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each blow"),
         ResultKind::list("energy_errors", Dimension::NUMBER, "what the energy balance of each blow misses, over its input"),
+        ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift over all blows").of_storey(),
+        ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift where it was brought to after the last blow")
+            .of_storey(),
+        ResultKind::list("storey_energy", Dimension::ENERGY, "what each storey took in all blows, its shear over its drift")
+            .of_storey(),
     ],
     example: "escalate rising {\n  striker  = pendulum\n  speeds   = [0.5, 1, 1.5] m/s\n  while    = max_displacement < 20 mm\n  duration = 50 ms\n}",
-    doc: "Blows of rising energy on one specimen, until a condition on the last blow no longer holds or the list ends",
+    doc: "Blows of rising energy on one specimen, or on one storey of a frame, until a condition on the last blow no longer holds or the list ends",
 };

@@ -438,7 +438,7 @@ mod tests {
                 count += 1;
             }
         }
-        assert_eq!(count, 30, "as many phrases as there are");
+        assert_eq!(count, 31, "as many phrases as there are");
     }
 
     #[test]

@@ -155,6 +155,31 @@ fn simulator_and_drivers_share_no_parsing_code() {
     none(&found, "the stand-in and the driver must not know each other");
 }
 
+/// The program's name is a digest of its sources, without the files that are named as tests (`build.rs`): none of them may
+/// become a part of the program.
+#[test]
+fn what_is_named_a_test_is_built_for_tests_alone() {
+    let named = |name: &str| name == "tests" || name == "testing" || name.ends_with("_tests");
+    let mut found = Vec::new();
+    let mut modules = 0;
+    for file in rust_files("src") {
+        let lines: Vec<&str> = file.text.lines().map(str::trim).collect();
+        let test = file.path.split(['/', '.']).any(named);
+        for (at, line) in lines.iter().enumerate() {
+            let module = line.strip_suffix(';').and_then(|line| line.split("mod ").nth(1)).is_some_and(named);
+            let path = line.starts_with("#[path = ") && line.split(['"', '/', '.']).any(named);
+            let included = line.contains("include_") && line.split(['"', '/', '.']).any(named);
+            let for_tests = lines[at.saturating_sub(2)..at].contains(&"#[cfg(test)]");
+            if included && !test || (module || path) && !for_tests {
+                found.push(format!("{}:{}: {line}", file.path, at + 1));
+            }
+            modules += usize::from(module);
+        }
+    }
+    assert!(modules > 20, "{modules} modules of tests");
+    none(&found, "not of tests alone");
+}
+
 #[test]
 fn every_file_says_what_it_is_and_stays_short() {
     let mut found = Vec::new();

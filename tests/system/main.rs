@@ -2,6 +2,7 @@
 //! talked at. What needs a program of the system is skipped without it, and fails where `PSD_REQUIRE_SYSTEM=1`.
 
 mod amended;
+mod build;
 mod certificate;
 mod clock;
 mod disk;

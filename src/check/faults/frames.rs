@@ -85,7 +85,7 @@ pub fn one_degree_of_freedom(keyword: &str, specimen: &str, axes: usize, span: S
         Some(declared) => fault.at(declared, format!("{axes} storeys")),
         None => fault,
     };
-    fault.help("test the storeys by `shake` or `impact`, or a specimen of one degree of freedom in a plan of its own")
+    fault.help("test the storeys by `shake`, `impact` or `escalate`, or a specimen of one degree of freedom in a plan of its own")
 }
 
 /// A frame, and no word of which floor the striker hits.
@@ -112,10 +112,8 @@ pub fn storey_of_none(specimen: &str, at: Span, declared: Span) -> Diagnostic {
 }
 
 /// A field of the other kind of impact.
-pub fn no_use_on_a_frame(field: &str, at: Span, help: &str) -> Diagnostic {
-    Diagnostic::new(Code::NoUseOnAFrame, format!("`{field}` says nothing of an impact on a storey"))
-        .at(at, "has no use here")
-        .help(help)
+pub fn no_use_on_a_frame(field: &str, of: &str, at: Span, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::NoUseOnAFrame, format!("`{field}` says nothing of {of}")).at(at, "has no use here").help(help)
 }
 
 pub fn of_a_frame_only(field: &str, at: Span, help: &str) -> Diagnostic {
@@ -129,6 +127,13 @@ pub fn result_of_a_storey(result: &str, at: Span, head: Span) -> Diagnostic {
         .at(at, "not of this impact")
         .at(head, "strikes one degree of freedom")
         .help("strike a frame: its specimen has `storeys`, and the impact says `storey = 1`")
+}
+
+pub fn result_of_a_frame(result: &str, at: Span, head: Span) -> Diagnostic {
+    Diagnostic::new(Code::NoUseOnAFrame, format!("only the unloading of a frame has `{result}`"))
+        .at(at, "not of this unloading")
+        .at(head, "unloads one degree of freedom")
+        .help("read `residual_displacement` and `residual_force`")
 }
 
 pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {

@@ -19,6 +19,7 @@ mod solver;
 mod storeys;
 mod sweeps;
 mod tangents;
+mod unloading;
 
 pub use band::{RowsError, SymmetricBand};
 pub use damping::{Damping, DampingError, damping_matrix, rayleigh_coefficients};
@@ -28,6 +29,7 @@ pub use modes::{Modes, ModesError, modes};
 pub use solver::{FrameError, FrameInput, FrameSolver, FrameState};
 pub use storeys::{drifts, floor_forces, shears, storey_stiffness, storeys_of};
 pub use tangents::Tangents;
+pub use unloading::{Loaded, Unloading};
 
 /// M, C and K of a frame, of one order: kg, N·s/m, N/m.
 #[derive(Clone, Debug, PartialEq)]

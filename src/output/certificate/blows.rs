@@ -1,22 +1,39 @@
-//! The blows of an `escalate`, one row each. In: the history. Out: a table.
+//! The blows of an `escalate`, one row each, and on a frame what became of its storeys. In: plan and history. Out: blocks.
 
 use super::super::document::{Block, Column, Table, Text};
-use super::super::number;
+use super::super::{Run, number};
+use super::results::contact_law;
+use super::{frames, results};
 use crate::formula::ResultValue;
+use crate::plan::{BlowOn, Frame, ProcedureKind, StoreyImpact};
 use crate::quantity::Dimension;
-use crate::record::{Blow, EscalateHistory};
+use crate::record::{Blow, EscalateHistory, ProcedureRecord, StoreyImpactHistory};
 
 /// Blows printed; the tables hold every one.
 const PRINTED: usize = 40;
 
-pub(super) fn table(history: &EscalateHistory, body: &mut Vec<Block>) {
+pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history: &EscalateHistory, body: &mut Vec<Block>) {
     let blows = &history.blows;
     if blows.is_empty() {
         return;
     }
+    let Some(ProcedureKind::Escalate(planned)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
+    if let (BlowOn::Storey(impact), Some(first)) = (&planned.blow, history.storeys().next()) {
+        body.push(Block::paragraph(struck(impact, first)));
+        body.extend(first.modes.as_ref().map(|modes| frames::mode_table(modes, &first.damping_ratios)));
+    }
     body.push(rows(blows));
     if blows.len() > PRINTED {
         body.push(Block::note(format!("{} more blows are in the table of this procedure.", blows.len() - PRINTED)));
+    }
+    if let BlowOn::Storey(impact) = &planned.blow {
+        let frame = run.plan.specimens.get(impact.specimen).and_then(|specimen| specimen.frame.as_ref());
+        body.push(storeys(procedure, frame));
+        body.push(Block::note(
+            "X is that of the struck floor and counts from where the frame was born; the striker of each blow touches the floor where \
+             it then was. Every blow has a table of its own, with all its floors.",
+        ));
+        return;
     }
     body.push(Block::note(
         "X counts from where the specimen was born; the striker of each blow touches the surface where it then was. Every blow has a \
@@ -24,14 +41,63 @@ pub(super) fn table(history: &EscalateHistory, body: &mut Vec<Block>) {
     ));
 }
 
+/// Which floor was struck, and how it was integrated.
+fn struck(impact: &StoreyImpact, first: &StoreyImpactHistory) -> String {
+    let time = |value| number::text(value, Dimension::TIME);
+    format!(
+        "Floor {} is struck in every blow. Contact law: {}. {} Time step {}; the critical one is {}.",
+        first.struck + 1,
+        contact_law(&impact.contact),
+        frames::integrated(impact.stepping.integrator, &impact.damping, &first.damping_ratios),
+        time(first.blow.time_step),
+        time(first.blow.critical_time_step),
+    )
+}
+
+/// What each storey went through in all blows, and what stayed.
+fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
+    let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
+        Some(ResultValue::List(values)) => values.as_slice(),
+        _ => &[],
+    };
+    let (largest, stayed, energy) = (list("max_drift"), list("residual_drift"), list("storey_energy"));
+    let whole = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let height = |storey: usize| frame.and_then(|frame| frame.storeys.get(storey)).and_then(|storey| storey.height);
+    let columns = vec![
+        Column::words("Storey", 1),
+        Column::numbers("Largest drift of all blows"),
+        Column::numbers("Of its height"),
+        Column::numbers("Drift after the last blow"),
+        Column::numbers("Of its height"),
+        Column::numbers("Energy it took"),
+    ];
+    let row = |storey: usize| -> Vec<Text> {
+        let length = |values: &[f64]| {
+            values
+                .get(storey)
+                .map_or_else(|| "—".to_owned(), |value| number::text_beside(*value, whole(largest), Dimension::LENGTH))
+        };
+        let share = |values: &[f64]| {
+            let share = height(storey).zip(values.get(storey)).map(|(height, drift)| results::percent(drift / height));
+            share.unwrap_or_else(|| "—".to_owned())
+        };
+        let took = energy.get(storey).map_or(0.0, |energy| *energy);
+        vec![
+            (storey + 1).to_string().into(),
+            length(largest).into(),
+            share(largest).into(),
+            length(stayed).into(),
+            share(stayed).into(),
+            number::text_beside(took, whole(energy), Dimension::ENERGY).into(),
+        ]
+    };
+    Block::Table(Table { columns, rows: (0..largest.len()).map(row).collect() })
+}
+
 /// Every number of a column in the unit of its largest.
 fn rows(blows: &[Blow]) -> Block {
-    let of = |blow: &Blow, name: &str| match blow.results.iter().find(|result| result.name == name)?.value {
-        ResultValue::Number { value, .. } => value,
-        ResultValue::List(_) => None,
-    };
     let energy = blows.iter().map(|blow| blow.energy).fold(0.0, f64::max);
-    let travel = blows.iter().filter_map(|blow| of(blow, "max_displacement")).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let travel = blows.iter().filter_map(|blow| blow.number("max_displacement")).fold(0.0, |most: f64, x| most.max(x.abs()));
     let shown = |value: Option<f64>, beside: f64, dimension| {
         value.map_or_else(|| Text::from("—"), |value| number::text_beside(value, beside, dimension).into())
     };
@@ -45,9 +111,9 @@ fn rows(blows: &[Blow]) -> Block {
             Text::from((index + 1).to_string()),
             number::text(blow.velocity, Dimension::VELOCITY).into(),
             shown(Some(blow.energy), energy, Dimension::ENERGY),
-            shown(of(blow, "max_displacement"), travel, Dimension::LENGTH),
-            shown(of(blow, "absorbed_energy"), energy, Dimension::ENERGY),
-            shown(blow.rest.map(|(displacement, _)| displacement), travel, Dimension::LENGTH),
+            shown(blow.number("max_displacement"), travel, Dimension::LENGTH),
+            shown(blow.number("absorbed_energy"), energy, Dimension::ENERGY),
+            shown(blow.rest_of_struck().map(|(displacement, _)| displacement), travel, Dimension::LENGTH),
             Text::from(held),
         ]
     };

@@ -8,7 +8,7 @@ use crate::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
-use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory};
+use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
 
 /// Storeys from the ground up, or the files of the matrices.
 pub(super) fn structure(frame: &Frame, body: &mut Vec<Block>) {
@@ -216,6 +216,47 @@ pub(super) fn entry(result: &NamedResult, place: usize) -> Text {
         }
     }
     .into()
+}
+
+/// Where the storeys of a frame came to rest: what stayed of it is permanent.
+pub(super) fn unloaded(run: &Run<'_>, index: usize, steps: &[UnloadStep], body: &mut Vec<Block>) {
+    let (Some(first), Some(last)) = (steps.first(), steps.last()) else { return };
+    let specimen = run.plan.procedures.get(index).and_then(|planned| planned.kind.specimen());
+    let frame = specimen.and_then(|specimen| run.plan.specimens.get(specimen)?.frame.as_ref());
+    let moves = steps.len() - 1;
+    body.push(Block::paragraph(format!(
+        "All floors moved together to where their forces vanish, in {moves} {}: each storey by the stiffness that its last move \
+         showed.",
+        if moves == 1 { "move" } else { "moves" }
+    )));
+    let whole = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let (before, drift) = (first.drift(), last.drift());
+    let (loaded, left) = (first.shear(), last.shear());
+    let travel = whole(&before).max(whole(&drift));
+    let columns = vec![
+        Column::words("Storey", 1),
+        Column::numbers("Its floor rests at"),
+        Column::numbers("Drift before"),
+        Column::numbers("Permanent drift"),
+        Column::numbers("Of its height"),
+        Column::numbers("Shear before"),
+        Column::numbers("Shear left"),
+    ];
+    let height = |storey: usize| frame.and_then(|frame| frame.storeys.get(storey)).and_then(|storey| storey.height);
+    let row = |storey: usize| -> Vec<Text> {
+        let length = |value, beside| number::text_beside(value, beside, Dimension::LENGTH);
+        let force = |value| number::text_beside(value, whole(&loaded), Dimension::FORCE);
+        vec![
+            (storey + 1).to_string().into(),
+            length(last.displacement[storey], whole(&last.displacement).max(travel)).into(),
+            length(before[storey], travel).into(),
+            length(drift[storey], travel).into(),
+            height(storey).map_or_else(|| "—".to_owned(), |height| results::percent(drift[storey] / height)).into(),
+            force(loaded[storey]).into(),
+            force(left[storey]).into(),
+        ]
+    };
+    body.push(Block::Table(Table { columns, rows: (0..drift.len()).map(row).collect() }));
 }
 
 fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {

@@ -48,7 +48,8 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::StoreyImpact(history) => storey::struck(run, index, procedure, history, body),
             History::Cycle(history) => cycles::table(history, body),
             History::Shake(history) => frames::shaken(run, index, procedure, history, body),
-            History::Escalate(history) => blows::table(history, body),
+            History::Escalate(history) => blows::table(run, index, procedure, history, body),
+            History::FrameUnload(steps) => frames::unloaded(run, index, steps, body),
             History::Move(_) | History::Inspect => {}
         }
     }
@@ -73,7 +74,7 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let tabled = match &procedure.history {
         History::Ramp(history) => history.multilinear.is_some(),
-        History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) => true,
+        History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) | History::FrameUnload(_) => true,
         _ => false,
     };
     let printed = procedure.results.iter().filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));

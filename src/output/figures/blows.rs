@@ -2,7 +2,7 @@
 //! energy. In: the history. Out: [`Chart`]s in SI.
 
 use super::chart::{Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
-use crate::formula::ResultValue;
+use super::shake;
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::record::{Blow, EscalateHistory, ImpactStep};
@@ -25,12 +25,9 @@ pub(super) fn displacement(history: &EscalateHistory) -> Chart {
 
 /// Largest displacement, and where the specimen then rested, against the energy of the blow.
 pub(super) fn blows(history: &EscalateHistory) -> Chart {
-    let largest = |blow: &Blow| match blow.results.iter().find(|result| result.name == "max_displacement")?.value {
-        ResultValue::Number { value, .. } => value,
-        ResultValue::List(_) => None,
-    };
+    let largest = |blow: &Blow| blow.number("max_displacement");
     let peaks = history.blows.iter().filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
-    let rests = history.blows.iter().filter_map(|blow| Some((blow.energy, blow.rest?.0))).collect();
+    let rests = history.blows.iter().filter_map(|blow| Some((blow.energy, blow.rest_of_struck()?.0))).collect();
     let failed = history.blows.iter().filter(|blow| blow.held == Some(false));
     let failed: Vec<(f64, f64)> = failed.filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
     let mut series = vec![
@@ -61,12 +58,38 @@ pub(super) fn blows(history: &EscalateHistory) -> Chart {
     }
 }
 
+/// Largest drift of each storey, and what stayed of it, against the energy of the blow.
+pub(super) fn drift(history: &EscalateHistory) -> Chart {
+    let storeys = history.storeys().next().and_then(|blow| blow.floors.first()).map_or(0, |floors| floors.computed.len());
+    let largest = |blow: &Blow, storey: usize| blow.list("max_drift")?.get(storey).copied();
+    let stayed = |blow: &Blow, storey: usize| blow.rest.as_ref()?.drift().get(storey).copied();
+    let points = |of: &dyn Fn(&Blow, usize) -> Option<f64>, storey: usize| -> Vec<(f64, f64)> {
+        history.blows.iter().filter_map(|blow| Some((blow.energy, of(blow, storey)?))).collect()
+    };
+    let series = shake::shown(storeys).into_iter().enumerate().flat_map(|(curve, storey)| {
+        let colour = shake::style(curve, 1.6).colour;
+        let peak = Style { marker: Some(Marker::Disc(3.2)), ..Style::line(colour, 1.6, SOLID) };
+        let rest = Style { marker: Some(Marker::Ring(3.6)), ..Style::line(colour, 1.4, DASHED) };
+        [
+            Series { label: format!("storey {}, largest", storey + 1), points: points(&largest, storey), style: peak },
+            Series { label: format!("storey {}, stayed", storey + 1), points: points(&stayed, storey), style: rest },
+        ]
+    });
+    Chart {
+        x: Quantity::along("Energy of the blow", Dimension::ENERGY),
+        y: Quantity::of("Drift", Dimension::LENGTH),
+        bands: Vec::new(),
+        series: series.collect(),
+        references: Vec::new(),
+    }
+}
+
 /// Earlier blows lighter, the last one in a colour of its own; the first and the last bear their energies.
 fn over_each_other(history: &EscalateHistory, x: Quantity, y: Quantity, of: impl Fn(&ImpactStep) -> (f64, f64)) -> Chart {
     let last = history.blows.len().saturating_sub(1);
     let series = history.blows.iter().enumerate().map(|(index, blow)| Series {
         label: if index == 0 || index == last { format!("blow {}, {}", index + 1, energy(blow)) } else { String::new() },
-        points: blow.history.steps.iter().map(&of).collect(),
+        points: blow.impact().steps.iter().map(&of).collect(),
         style: if index == last {
             Style::line(palette::VERMILION, 2.0, SOLID)
         } else {

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use super::{OutputError, Run};
 use crate::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
-use crate::record::{History, ProcedureRecord, ShakeHistory};
+use crate::record::{FloorStep, History, ProcedureRecord, ShakeHistory};
 use chart::Chart;
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
@@ -120,19 +120,45 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
             relaxation::left(history, history.relaxation.as_ref()?),
             format!("{name}: force still to relax, the measured less the fitted one after long, against the time held."),
         ),
-        (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.history.steps.is_empty()) => return None,
+        (History::Escalate(history), _) if history.blows.iter().all(|blow| blow.impact().steps.is_empty()) => return None,
         (History::Escalate(history), FigureKind::ForceDisplacement) => (
             blows::force_displacement(history),
             format!("{name}: restoring force against computed displacement, blow over blow; lighter lines are earlier blows."),
         ),
         (History::Escalate(history), FigureKind::Displacement) => (
             blows::displacement(history),
-            format!("{name}: displacement against the virtual time of each blow; lighter lines are earlier blows."),
+            match history.storeys().next() {
+                None => format!("{name}: displacement against the virtual time of each blow; lighter lines are earlier blows."),
+                Some(blow) => format!(
+                    "{name}: displacement of floor {} against the virtual time of each blow; lighter lines are earlier blows.",
+                    blow.struck + 1
+                ),
+            },
         ),
         (History::Escalate(history), FigureKind::Blows) => (
             blows::blows(history),
-            format!("{name}: largest displacement of each blow, and where the specimen rested after it, against its energy."),
+            match history.storeys().next() {
+                None => format!(
+                    "{name}: largest displacement of each blow, and where the specimen rested after it, against its energy."
+                ),
+                Some(blow) => format!(
+                    "{name}: largest displacement of floor {} in each blow, and where it rested after it, against its energy.",
+                    blow.struck + 1
+                ),
+            },
         ),
+        (History::Escalate(history), FigureKind::Drift) => (
+            blows::drift(history),
+            format!("{name}: largest drift of each storey in each blow, and the drift that stayed after it, against its energy."),
+        ),
+        (History::Escalate(history), FigureKind::Hysteresis) => {
+            let steps: Vec<&FloorStep> = history.storeys().flat_map(|blow| &blow.floors).collect();
+            let caption = format!(
+                "{name}: measured storey shear against drift, blow after blow; between two blows the straight way from the end of \
+                 the one to the start of the next."
+            );
+            (shake::hysteresis(&steps), caption)
+        }
         (History::Cycle(history), _) if history.cycles.is_empty() => return None,
         (History::Cycle(history), FigureKind::ForceDisplacement) => (
             cyclic::loops(history),
@@ -152,6 +178,10 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
             format!(
                 "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
             ),
+        ),
+        (History::FrameUnload(steps), FigureKind::Hysteresis) if !steps.is_empty() => (
+            shake::hysteresis(steps),
+            format!("{name}: measured storey shear against drift, from where the unloading began to where each storey rests."),
         ),
         (History::StoreyImpact(history), kind) => return storey::chart(run, name, history, figure, kind),
         (History::Shake(history), kind) => return shaken(run, name, history, figure, kind),

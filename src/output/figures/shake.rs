@@ -120,7 +120,7 @@ fn floors<S: Floors>(steps: &[S]) -> usize {
 }
 
 /// The floors that are drawn: all, or as many as can be told apart, evenly from the lowest to the highest.
-fn shown(floors: usize) -> Vec<usize> {
+pub(super) fn shown(floors: usize) -> Vec<usize> {
     if floors <= MOST_CURVES {
         return (0..floors).collect();
     }
@@ -139,7 +139,7 @@ fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> V
     chart
 }
 
-fn style(curve: usize, width: f64) -> Style {
+pub(super) fn style(curve: usize, width: f64) -> Style {
     Style::line(COLOURS[curve % MOST_CURVES], width, DASHES[curve % MOST_CURVES])
 }
 

@@ -1,19 +1,15 @@
-//! The table of an `escalate`: one row a blow. In: the history. Out: columns.
+//! Tables of an `escalate`: one row a blow, and on a frame one row a blow and storey. In: the history. Out: columns.
 
 use polars::prelude::Column;
 
 use super::{integers, numbers};
-use crate::formula::ResultValue;
-use crate::record::{Blow, EscalateHistory};
+use crate::record::{Blow, EscalateHistory, Rest};
 
 /// The results of each blow, with its level and what followed.
 pub(super) fn rows(history: &EscalateHistory) -> Vec<Column> {
     let blows = &history.blows;
     let of = |name: &str, result: &str| {
-        let read = |blow: &Blow| match blow.results.iter().find(|found| found.name == result)?.value {
-            ResultValue::Number { value, .. } => value,
-            ResultValue::List(_) => None,
-        };
+        let read = |blow: &Blow| blow.number(result);
         Column::new(name.into(), blows.iter().map(read).collect::<Vec<Option<f64>>>())
     };
     let some = |name: &str, read: fn(&Blow) -> Option<f64>| {
@@ -33,8 +29,36 @@ pub(super) fn rows(history: &EscalateHistory) -> Vec<Column> {
         of("contacts", "contacts"),
         of("indentation_m", "indentation"),
         of("energy_error", "energy_error"),
-        some("rest_displacement_m", |blow| blow.rest.map(|rest| rest.0)),
-        some("rest_force_n", |blow| blow.rest.map(|rest| rest.1)),
+        some("rest_displacement_m", |blow| blow.rest_of_struck().map(|rest| rest.0)),
+        some("rest_force_n", |blow| blow.rest_of_struck().map(|rest| rest.1)),
         Column::new("held".into(), blows.iter().map(|blow| blow.held).collect::<Vec<Option<bool>>>()),
     ]
+}
+
+/// What each storey went through in each blow, and what stayed; None where no frame was struck.
+pub(super) fn storeys(history: &EscalateHistory) -> Option<(usize, Vec<Column>)> {
+    let storeys = history.storeys().next()?.floors.first()?.computed.len();
+    let rows: Vec<(u64, &Blow, usize)> =
+        (1..).zip(&history.blows).flat_map(|(number, blow)| (0..storeys).map(move |storey| (number, blow, storey))).collect();
+    let of = |name: &str, result: &str| {
+        let read = |(_, blow, storey): &(u64, &Blow, usize)| blow.list(result)?.get(*storey).copied();
+        Column::new(name.into(), rows.iter().map(read).collect::<Vec<Option<f64>>>())
+    };
+    let rest = |name: &str, read: fn(&Rest) -> Vec<f64>| {
+        let read = |(_, blow, storey): &(u64, &Blow, usize)| read(blow.rest.as_ref()?).get(*storey).copied();
+        Column::new(name.into(), rows.iter().map(read).collect::<Vec<Option<f64>>>())
+    };
+    let columns = vec![
+        integers("blow", &rows, |(number, ..)| *number),
+        integers("storey", &rows, |(.., storey)| *storey as u64 + 1),
+        numbers("energy_j", &rows, |(_, blow, _)| blow.energy),
+        of("floor_displacement_m", "floor_displacement"),
+        of("max_drift_m", "max_drift"),
+        of("storey_energy_j", "storey_energy"),
+        rest("rest_displacement_m", |rest| rest.displacement.clone()),
+        rest("rest_force_n", |rest| rest.force.clone()),
+        rest("rest_drift_m", Rest::drift),
+        rest("rest_shear_n", Rest::shear),
+    ];
+    Some((rows.len(), columns))
 }

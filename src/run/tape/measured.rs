@@ -32,8 +32,13 @@ pub(super) fn measured(record: &Record) -> String {
                 }
             }
             History::Move(steps) => writeln!(told, "{:?}", steps.iter().map(|step| step.command).collect::<Vec<_>>()).unwrap(),
+            History::FrameUnload(steps) => {
+                for step in steps {
+                    writeln!(told, "{:?} {:?} {:?}", step.command, step.displacement, step.restoring_force).unwrap();
+                }
+            }
             History::Escalate(history) => {
-                writeln!(told, "{:?}", history.blows.iter().map(|blow| (&blow.results, blow.rest)).collect::<Vec<_>>()).unwrap();
+                writeln!(told, "{:?}", history.blows.iter().map(|blow| (&blow.results, &blow.rest)).collect::<Vec<_>>()).unwrap();
             }
             History::Cycle(history) => {
                 for step in &history.steps {

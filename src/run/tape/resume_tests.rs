@@ -6,9 +6,9 @@ use super::*;
 use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, Ground, Impact, InspectTrigger, Integrator,
-    Level, Mode, Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until,
-    ZeroAfter,
+    Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, Ground, Impact, InspectTrigger,
+    Integrator, Level, Mode, Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
+    Until, ZeroAfter,
 };
 use crate::quantity::Dimension;
 use crate::run::testing::{elastic_plan, every, impact, ramp, result_of};
@@ -95,7 +95,7 @@ fn escalating() -> Plan {
     };
     yielding(vec![ProcedureKind::Escalate(Escalate {
         own: ProcedureId(0),
-        blow: Impact { duration: Constant(0.03), ..short(Mode::StepAndPause) },
+        blow: BlowOn::Specimen(Impact { duration: Constant(0.03), ..short(Mode::StepAndPause) }),
         velocities: [0.2, 0.4, 0.6].map(Constant).to_vec(),
         condition: vec![below],
         between: Between::Unload,

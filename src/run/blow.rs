@@ -1,0 +1,108 @@
+//! One blow of a row of blows, whatever is struck: one degree of freedom, or one storey of a frame. In: the blow of the plan,
+//! evaluated once; for each blow a velocity. Out: the blow as an impact of its own, and how its load is taken off. It decides
+//! nothing about the next one.
+
+use super::frame_doubts::FrameDoubts;
+use super::inputs::Inputs;
+use super::propagation::Doubts;
+use super::session::Session;
+use super::stop::Stop;
+use super::{impact, storey_impact, unload};
+use crate::mechanics::frame::Unloading;
+use crate::mechanics::impact::ImpactInput;
+use crate::plan::{BlowOn, Escalate, Impact, Plan, StoreyImpact, Striker};
+use crate::record::{BlowHistory, NamedResult};
+
+/// What is struck again and again.
+#[expect(clippy::large_enum_variant, reason = "one of it in an escalate")]
+pub(super) enum Struck<'a> {
+    Specimen { plan: &'a Impact, setting: impact::Setting, doubts: Doubts<'a> },
+    Storey { plan: &'a StoreyImpact, setting: storey_impact::Setting, unloading: Unloading, doubts: FrameDoubts<'a> },
+}
+
+/// A blow, as far as it went.
+pub(super) struct Blown {
+    pub history: BlowHistory,
+    pub results: Vec<NamedResult>,
+    pub stop: Option<Stop>,
+    /// Of its steps.
+    pub steps: u64,
+}
+
+impl<'a> Struck<'a> {
+    /// What is struck, and the velocity of each blow, m/s.
+    pub(super) fn evaluate<'record: 'a>(
+        plan: &'a Escalate,
+        whole: &'a Plan,
+        inputs: &mut Inputs<'record>,
+        session: &Session<'_>,
+    ) -> Result<(Self, Vec<f64>), Stop> {
+        match &plan.blow {
+            BlowOn::Specimen(blow) => {
+                let noise = session.guard.declared_noise();
+                let setting = impact::Setting::evaluate(blow, &whole.strikers[blow.striker], inputs, noise)?;
+                let doubts = Doubts::new(blow, whole, inputs, noise);
+                Ok((Self::Specimen { plan: blow, setting, doubts }, velocities(plan, inputs)?))
+            }
+            BlowOn::Storey(blow) => {
+                let velocities = velocities(plan, inputs)?;
+                // One time step for all blows: the fastest is the shortest under a contact of finite stiffness.
+                let striker = &whole.strikers[blow.striker];
+                let velocity = velocities.iter().copied().fold(0.0, f64::max);
+                let fastest = Striker { velocity, ..striker.clone() };
+                // `check` has seen that the specimen is a frame.
+                let frame = whole.specimens[blow.specimen].frame.as_ref().ok_or_else(storey_impact::no_frame)?;
+                let setting = storey_impact::Setting::evaluate(blow, frame, &fastest, inputs, session)?;
+                let unloading = unload::of_frame(frame)?;
+                let doubts = FrameDoubts::of_blow(blow, whole, inputs, session);
+                Ok((Self::Storey { plan: blow, setting, unloading, doubts }, velocities))
+            }
+        }
+    }
+
+    /// ½ Ms v² of a blow, J.
+    pub(super) fn energy(&self, striker_velocity: f64) -> f64 {
+        let body = match self {
+            Self::Specimen { setting, .. } => setting.input,
+            Self::Storey { setting, .. } => setting.body,
+        };
+        ImpactInput { striker_velocity, ..body }.striker_energy()
+    }
+
+    /// The blow number `index`, from 0; `before` steps of the procedure are done already.
+    pub(super) fn blow(&mut self, (index, striker_velocity): (usize, f64), before: u64, session: &mut Session<'_>) -> Blown {
+        match self {
+            Self::Specimen { plan, setting, doubts } => {
+                let setting = impact::Setting { input: ImpactInput { striker_velocity, ..setting.input }, ..*setting };
+                let impact::Blown { history, results, stop } =
+                    impact::blow(plan, &setting, &doubts.of_blow(index), before, session);
+                let steps = history.steps.last().map_or(0, |last| last.step);
+                Blown { history: BlowHistory::Impact(history), results, stop, steps }
+            }
+            Self::Storey { plan, setting, doubts, .. } => {
+                setting.strikes_at(striker_velocity);
+                let storey_impact::Blown { history, results, stop } =
+                    storey_impact::blow(plan, setting, &doubts.of_blow_number(index), before, session);
+                let steps = history.blow.steps.last().map_or(0, |last| last.step);
+                Blown { history: BlowHistory::Storey(history), results, stop, steps }
+            }
+        }
+    }
+
+    /// How its forces are expected to fall.
+    pub(super) fn unloading(&self) -> Unloading {
+        match self {
+            Self::Specimen { setting, .. } => Unloading::of_one(setting.input.stiffness),
+            Self::Storey { unloading, .. } => unloading.clone(),
+        }
+    }
+}
+
+/// m/s, each above 0.
+fn velocities(plan: &Escalate, inputs: &mut Inputs<'_>) -> Result<Vec<f64>, Stop> {
+    let velocities = inputs.list("speeds", &plan.velocities)?;
+    match velocities.iter().copied().find(|velocity| !(*velocity > 0.0 && velocity.is_finite())) {
+        Some(value) => Err(Stop::BadInput { field: "speeds", value, wanted: "greater than 0".into() }),
+        None => Ok(velocities),
+    }
+}
