@@ -128,7 +128,10 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
     };
     let drift = drift::drift(checker, block, kind);
     let name = checker.scope.blocks[block].name?.node.clone();
-    let plan = RigPlan { name, link: link?, settle: settle?, sign: sign?, calibration: calibration?, drift: drift? };
+    let (mut calibration, drift) = (calibration?, drift?);
+    // Every drift within the bound is as likely (JCGM 100:2008, 4.3.7).
+    calibration.zero_drift = drift.map_or(0.0, |check| check.force / 3.0_f64.sqrt());
+    let plan = RigPlan { name, link: link?, settle: settle?, sign: sign?, calibration, drift };
     Some(CheckedRig { plan, limits: limits?, block: Some(block) })
 }
 
@@ -220,5 +223,6 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         force_uncertainty: force?,
         displacement_uncertainty: displacement?,
         zero_uncertainty: zero?,
+        zero_drift: 0.0,
     })
 }

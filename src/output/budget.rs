@@ -151,7 +151,7 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             (of_axis("displacement calibration", plan, axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
         }
         Source::ForceZero(axis) => {
-            let u = plan.rig.calibration_of(axis).zero_uncertainty;
+            let u = plan.rig.calibration_of(axis).zero();
             (of_axis("zero of the load cell", plan, axis), From::Rig, Some(0.0), Some(u), Dimension::FORCE)
         }
         Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),

@@ -161,6 +161,16 @@ pub struct Calibration {
     pub displacement_uncertainty: f64,
     /// Of its reading of no force, N.
     pub zero_uncertainty: f64,
+    /// Of what that reading may drift in a run that decides anything: the bound over √3, N.
+    pub zero_drift: f64,
+}
+
+impl Calibration {
+    /// Standard uncertainty of a reading of no force at any time of a run, N.
+    #[must_use]
+    pub fn zero(&self) -> f64 {
+        self.zero_uncertainty.hypot(self.zero_drift)
+    }
 }
 
 /// A rig that moves a real specimen.

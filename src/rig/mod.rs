@@ -285,6 +285,24 @@ pub trait Rig {
         Err(RigFault::Device("this rig follows no path without stopping".to_owned()))
     }
 
+    /// The rest of a traverse that was cut off after some of its readings, from where the rig stands: no part of it is gone
+    /// twice. A rig that stands at its end reads once more there, if a reading is left.
+    ///
+    /// # Errors
+    /// As `traverse`.
+    fn traverse_on(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.traverse(cut_off.to, velocity, cut_off.left(), each)
+    }
+
+    /// The same of paths.
+    ///
+    /// # Errors
+    /// As `glide`.
+    fn glide_on(&mut self, _paths: &[Path], _samples: usize, _done: usize, _each: EachReading<'_>) -> Result<(), RigFault> {
+        self.hold();
+        Err(RigFault::Device("this rig follows no path without stopping".to_owned()))
+    }
+
     /// Stops all motion and keeps the load.
     fn hold(&mut self);
 
@@ -304,6 +322,24 @@ pub trait Rig {
     /// What was mended on the line so far.
     fn tally(&self) -> Tally {
         Tally::default()
+    }
+}
+
+/// A traverse that was cut off.
+#[derive(Clone, Copy, Debug)]
+pub struct CutOff<'a> {
+    /// Where it began and where it leads, m.
+    pub from: &'a [f64],
+    pub to: &'a [f64],
+    /// Readings that were wanted of the whole, and those that were taken.
+    pub samples: usize,
+    pub done: usize,
+}
+
+impl CutOff<'_> {
+    #[must_use]
+    pub const fn left(&self) -> usize {
+        self.samples.saturating_sub(self.done)
     }
 }
 

@@ -7,6 +7,7 @@ use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, relaxing_time, settling_time, shared};
 use super::virtual_rig::OWN_SPEED;
+use super::virtual_rig::glide::Course;
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
@@ -31,6 +32,8 @@ pub struct VirtualFrame {
     restoring_force: Vec<f64>,
     /// Targets at the rig (m) and speed of the fastest axis (m/s).
     proposed: Option<(Vec<f64>, f64)>,
+    /// The paths that they follow, or were stopped on.
+    under_way: Vec<Course>,
 }
 
 struct Axis {
@@ -179,6 +182,7 @@ impl VirtualFrame {
             bent: at_rest,
             restoring_force,
             proposed: None,
+            under_way: Vec::new(),
         }
     }
 
@@ -330,7 +334,12 @@ impl Rig for VirtualFrame {
     }
 
     fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
-        self.glide_along(paths, samples, each)
+        self.under_way.clear();
+        self.glide_along(paths, (samples, 0), each)
+    }
+
+    fn glide_on(&mut self, paths: &[Path], samples: usize, done: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.glide_along(paths, (samples, done), each)
     }
 
     fn hold(&mut self) {

@@ -3,10 +3,11 @@
 
 pub(super) mod glide;
 
+use self::glide::Course;
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
 use super::settling::{Unsettled, relaxing_time, settling_time, shared};
-use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
+use super::{CutOff, DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::maxwell::{MaxwellBranch, Travel};
 use crate::mechanics::path::Path;
@@ -38,6 +39,8 @@ pub struct VirtualRig {
     restoring_force: f64,
     /// Target at the rig (m) and speed (m/s).
     proposed: Option<(f64, f64)>,
+    /// The path that it follows, or was stopped on.
+    under_way: Option<Course>,
 }
 
 impl VirtualRig {
@@ -64,6 +67,7 @@ impl VirtualRig {
             bent: 0.0,
             restoring_force,
             proposed: None,
+            under_way: None,
         }
     }
 
@@ -109,6 +113,38 @@ impl VirtualRig {
         let travel = self.actuator.rest(seconds);
         self.time += seconds;
         self.follow(&travel);
+    }
+
+    /// The readings of an even way between two places at the rig (m), of which some may be done.
+    fn stroke(
+        &mut self,
+        (from, aim): (f64, f64),
+        velocity: f64,
+        (samples, done): (usize, usize),
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        let seconds = (aim - from) / (self.sign * velocity);
+        if samples == 0 || !(seconds > 0.0 && seconds.is_finite()) {
+            return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
+        }
+        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+        let fraction = |sample: usize| sample as f64 / samples as f64;
+        #[expect(clippy::cast_precision_loss, reason = "the same")]
+        let each_takes = seconds / samples as f64;
+        let began = self.time - seconds * fraction(done);
+        for sample in done + 1..=samples {
+            let to = if sample == samples { aim } else { from + (aim - from) * fraction(sample) };
+            let travel = self.actuator.advance(to, each_takes);
+            self.time = began + seconds * fraction(sample);
+            self.follow(&travel);
+            let reading = self.reading();
+            if let Err(refused) = each(reading) {
+                self.hold();
+                return Err(refused);
+            }
+        }
+        self.actuator.stop();
+        Ok(())
     }
 
     fn reading(&mut self) -> Reading {
@@ -195,32 +231,23 @@ impl Rig for VirtualRig {
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         let aim = self.actuator.aim(self.at_rig(targets)?);
-        let from = self.actuator.reference();
-        let seconds = (aim - from) / (self.sign * velocity);
-        if samples == 0 || !(seconds > 0.0 && seconds.is_finite()) {
-            return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
-        }
-        let began = self.time;
-        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
-        for sample in 1..=samples {
-            let fraction = sample as f64 / samples as f64;
-            let to = if sample == samples { aim } else { from + (aim - from) * fraction };
-            let travel = self.actuator.advance(to, seconds / samples as f64);
-            self.time = began + seconds * fraction;
-            self.follow(&travel);
-            let reading = self.reading();
-            if let Err(refused) = each(reading) {
-                self.hold();
-                return Err(refused);
-            }
-        }
-        self.actuator.stop();
-        Ok(())
+        self.stroke((self.actuator.reference(), aim), velocity, (samples, 0), each)
+    }
+
+    fn traverse_on(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+        let aim = self.actuator.aim(self.at_rig(cut_off.to)?);
+        let from = self.at_rig(cut_off.from)?;
+        self.stroke((from, aim), velocity, (cut_off.samples, cut_off.done), each)
     }
 
     fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        self.under_way = None;
+        self.glide_on(paths, samples, 0, each)
+    }
+
+    fn glide_on(&mut self, paths: &[Path], samples: usize, done: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         match paths {
-            [path] => self.glide_along(path, samples, each),
+            [path] => self.glide_along(path, (samples, done), each),
             _ => Err(RigFault::Device(format!("this rig has one degree of freedom, not {}", paths.len()))),
         }
     }

@@ -129,7 +129,7 @@ fn of_lists(procedure: ProcedureId, fit: &MultilinearFit, calibration: &Calibrat
 fn of_calibration(result: &NamedResult, value: f64, calibration: &Calibration) -> Vec<Contribution> {
     let Dimension { mass, length, .. } = result.dimension;
     let (force, displacement) = (mass.as_f64(), length.as_f64() - mass.as_f64());
-    let zero = if SHIFTED.contains(&result.name) { calibration.zero_uncertainty } else { 0.0 };
+    let zero = if SHIFTED.contains(&result.name) { calibration.zero() } else { 0.0 };
     let parts = [
         (Source::ForceScale(0), value * force * calibration.force_uncertainty),
         (Source::DisplacementScale(0), value * displacement * calibration.displacement_uncertainty),

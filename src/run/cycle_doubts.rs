@@ -39,7 +39,7 @@ pub(super) fn propagate(
             displacement_scale: 1.0 + by,
             ..Distortion::NONE
         }),
-        (Source::ForceZero(0), calibration.zero_uncertainty, |by| Distortion { zero: by, ..Distortion::NONE }),
+        (Source::ForceZero(0), calibration.zero(), |by| Distortion { zero: by, ..Distortion::NONE }),
     ];
     for (source, uncertainty, distortion) in at.into_iter().filter(|(_, uncertainty, _)| *uncertainty > 0.0) {
         let (up, down) = (moved(distortion(uncertainty)), moved(distortion(-uncertainty)));
@@ -140,7 +140,8 @@ mod tests {
         let calibration = Calibration {
             force_uncertainty: 0.01,
             displacement_uncertainty: 0.003,
-            zero_uncertainty: 0.5,
+            zero_uncertainty: 0.3,
+            zero_drift: 0.4,
             ..Calibration::default()
         };
         let record = run_unwatched(&plan(behaviour, VirtualLink::default(), calibration));

@@ -104,7 +104,7 @@ impl<'run> FrameDoubts<'run> {
             [
                 (Source::ForceScale(axis), calibration.force_uncertainty),
                 (Source::DisplacementScale(axis), calibration.displacement_uncertainty),
-                (Source::ForceZero(axis), calibration.zero_uncertainty),
+                (Source::ForceZero(axis), calibration.zero()),
             ]
         });
         let all = storeys.chain(modes).chain(axes).chain(stated.iter().copied());
@@ -178,7 +178,7 @@ impl<'run> FrameDoubts<'run> {
                 Source::DisplacementScale(axis) => {
                     distortion.displacement_scale[axis] += by * calibration(axis).displacement_uncertainty;
                 }
-                Source::ForceZero(axis) => distortion.zero[axis] = by * calibration(axis).zero_uncertainty,
+                Source::ForceZero(axis) => distortion.zero[axis] = by * calibration(axis).zero(),
                 _ => {}
             }
         }

@@ -121,7 +121,7 @@ impl<'run> Doubts<'run> {
             (Source::SpecimenMass(*specimen), self.plan.mass_uncertainty),
             (Source::ForceScale(0), calibration.force_uncertainty),
             (Source::DisplacementScale(0), calibration.displacement_uncertainty),
-            (Source::ForceZero(0), calibration.zero_uncertainty),
+            (Source::ForceZero(0), calibration.zero()),
         ];
         let stated = stated.into_iter().filter(|(_, uncertainty)| *uncertainty > 0.0).map(|(source, _)| source);
         sources.extend(stated);
@@ -143,7 +143,7 @@ impl<'run> Doubts<'run> {
             Source::SpecimenMass(_) => heavier = by * self.plan.mass_uncertainty,
             Source::ForceScale(0) => distortion.force_scale += by * calibration.force_uncertainty,
             Source::DisplacementScale(0) => distortion.displacement_scale += by * calibration.displacement_uncertainty,
-            Source::ForceZero(0) => distortion.zero = by * calibration.zero_uncertainty,
+            Source::ForceZero(0) => distortion.zero = by * calibration.zero(),
             // Formulas are moved by it, where they read it; the rest is of frames or of no input.
             _ => {}
         }

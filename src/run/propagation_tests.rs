@@ -46,8 +46,13 @@ fn all_uncertain(mut plan: Plan) -> Plan {
     if let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind {
         impact.mass_uncertainty = 0.01 * MASS;
     }
-    plan.rig.calibration =
-        Calibration { force_uncertainty: 0.01, displacement_uncertainty: 0.01, zero_uncertainty: 0.2, ..Calibration::default() };
+    plan.rig.calibration = Calibration {
+        force_uncertainty: 0.01,
+        displacement_uncertainty: 0.01,
+        zero_uncertainty: 0.12,
+        zero_drift: 0.16,
+        ..Calibration::default()
+    };
     plan
 }
 

@@ -182,6 +182,7 @@ fn uncertainty(calibration: &Calibration) -> Option<String> {
         ("force", calibration.force_uncertainty, percent(calibration.force_uncertainty)),
         ("displacement", calibration.displacement_uncertainty, percent(calibration.displacement_uncertainty)),
         ("zero of the force", calibration.zero_uncertainty, number::stated(calibration.zero_uncertainty, Dimension::FORCE)),
+        ("its drift, as far as it is allowed", calibration.zero_drift, number::text(calibration.zero_drift, Dimension::FORCE)),
     ];
     let stated = terms.into_iter().filter(|(_, size, _)| *size > 0.0).map(|(name, _, size)| format!("{name} {size}"));
     let stated: Vec<String> = stated.collect();

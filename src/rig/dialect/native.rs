@@ -260,20 +260,20 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
     if stated != checksum(body) && on(Guarding::Checksum) {
         return Err(Broken::Checksum);
     }
-    let mut words = body.split(|byte| *byte == b' ').map(word);
-    let mut next = || words.next().flatten().ok_or(Broken::Shape);
-    let kind = match next()?.as_str() {
-        "ACK" => Kind::Ack,
-        "DATA" => Kind::Data,
-        "ERR" => Kind::Err,
+    let mut words = body.split(|byte| *byte == b' ');
+    let kind = match words.next() {
+        Some(b"ACK") => Kind::Ack,
+        Some(b"DATA") => Kind::Data,
+        Some(b"ERR") => Kind::Err,
         _ => return Err(Broken::Shape),
     };
-    let sequence = number::count(next()?.as_bytes()).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
-    let boot = next()?;
+    let mut next = || words.next().ok_or(Broken::Shape);
+    let sequence = number::count(next()?).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
+    let boot = word(next()?).ok_or(Broken::Shape)?;
     number::hexadecimal(boot.as_bytes(), 4).ok_or(Broken::Shape)?;
     // Whole and in order, but with an empty or strange field: the rig says the same however often it is asked for this
     // reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
-    let words = words.map(Option::unwrap_or_default).collect();
+    let words = words.map(|bytes| word(bytes).unwrap_or_default()).collect();
     Ok(Reply { kind, sequence, boot, words })
 }
 
@@ -400,9 +400,26 @@ pub fn refusal(words: &[String]) -> String {
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xffff, |sum, byte| {
-        (0..8).fold(sum ^ u16::from(*byte) << 8, |sum, _| if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 })
+        let [high, _] = sum.to_be_bytes();
+        sum << 8 ^ REMAINDERS[usize::from(high ^ byte)]
     })
 }
+
+/// What is left of each byte, eight places up, when it is divided by the polynomial.
+const REMAINDERS: [u16; 256] = {
+    let mut remainders = [0; 256];
+    let mut byte: u16 = 0;
+    while byte < 256 {
+        let (mut sum, mut bit) = (byte << 8, 0);
+        while bit < 8 {
+            sum = if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 };
+            bit += 1;
+        }
+        remainders[byte as usize] = sum;
+        byte += 1;
+    }
+    remainders
+};
 
 #[cfg(test)]
 #[path = "native_tests.rs"]

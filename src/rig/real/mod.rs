@@ -16,7 +16,7 @@ use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
-use super::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -200,8 +200,18 @@ impl Rig for RealRig {
         self.or_hold(traversed)
     }
 
+    fn traverse_on(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+        let traversed = self.rest_of_stroke(cut_off, velocity, each);
+        self.or_hold(traversed)
+    }
+
     fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         let followed = self.follow(paths, samples, each);
+        self.or_hold(followed)
+    }
+
+    fn glide_on(&mut self, paths: &[Path], samples: usize, done: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let followed = self.rest_of_way(paths, samples.saturating_sub(done), each);
         self.or_hold(followed)
     }
 

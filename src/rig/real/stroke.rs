@@ -5,7 +5,7 @@ use super::motion::first_astray;
 use super::settle::Settling;
 use super::{Proposed, RealRig};
 use crate::rig::failpoint::{Guarding, on};
-use crate::rig::{EachReading, Rig as _, RigFault};
+use crate::rig::{CutOff, EachReading, Rig as _, RigFault};
 
 /// Readings that a stroke of which more are wanted must give.
 const LEAST: usize = 2;
@@ -48,6 +48,18 @@ impl RealRig {
             return Err(RigFault::Device(reason));
         }
         self.come_to_rest(&targets, began + seconds)
+    }
+
+    /// What is left of a stroke, from where the rig stands. At its end one reading is made, late and at rest, if any is left.
+    pub(super) fn rest_of_stroke(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+        let (targets, left) = (cut_off.to, cut_off.left());
+        self.propose(targets, Some(velocity.abs()))?;
+        let way = self.proposed.as_ref().map_or(0.0, |Proposed { targets, from, .. }| (targets[0] - from[0]) * velocity.signum());
+        if left > 0 && way > self.settle.band {
+            return self.stroke(targets, velocity, left, each);
+        }
+        self.carry_out()?;
+        if left > 0 { each(self.reading_now()?) } else { Ok(()) }
     }
 
     /// Waits at the end of a stroke until it rests there, so that the next one sets off from rest. How the force settles

@@ -29,14 +29,8 @@ fn plan() -> RigPlan {
         axes: Vec::new(),
     };
     let settle = Settle { band: 1e-5, force_rate: 5.0, dwell: 0.5, timeout: 5.0 };
-    RigPlan {
-        name: "frame".to_owned(),
-        link: Link::Real(link),
-        settle,
-        sign: 1.0,
-        calibration: Calibration::default(),
-        drift: None,
-    }
+    let (name, calibration) = ("frame".to_owned(), Calibration::default());
+    RigPlan { name, link: Link::Real(link), settle, sign: 1.0, calibration, drift: None }
 }
 
 struct Stand {
@@ -416,6 +410,19 @@ fn a_stroke_stops_at_a_refused_reading() {
     assert_eq!((refused, count), (Err(RigFault::Interrupted), 3));
     let stood = stand.device.inside().position;
     assert!((0.003..0.0031).contains(&stood) && stand.device.inside().target == stood);
+    // What is left is gone from there; at the end only the reading that is missing is made.
+    let mut on = |done| {
+        let mut places = Vec::new();
+        let cut_off = CutOff { from: &[0.0], to: &[0.008], samples: 8, done };
+        let rest = stand.rig.traverse_on(&cut_off, 0.001, &mut |reading| {
+            places.push(reading.displacement[0]);
+            Ok(())
+        });
+        rest.map(|()| places).unwrap()
+    };
+    let rest = on(2);
+    assert!(rest.len() == 6 && rest[0] > stood && rest.is_sorted() && rest[5] == 0.008, "{rest:?}");
+    assert_eq!((on(7), on(8)), (vec![0.008], Vec::new()));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::RealRig;
 use super::{Part, WIRE_ROUNDING};
 use crate::mechanics::path::Path;
 use crate::rig::failpoint::{Guarding, on};
-use crate::rig::{EachReading, Reading, RigFault, named_axis};
+use crate::rig::{EachReading, Reading, Rig as _, RigFault, named_axis};
 
 impl RealRig {
     /// Follows `paths` and reads at up to `samples` equal times, the last at their end. A time that has passed while a reading
@@ -40,6 +40,15 @@ impl RealRig {
             let passed = passed.floor() as usize;
             sample = (passed + 1).max(sample + 1).min(samples);
         }
+    }
+
+    /// What is left of a way that was cut off. The rig went on past it, or holds on it, and cannot be set on it again as fast as it
+    /// was: it goes to the end of the way as to any target, and one reading is made there, late and at rest, if any is left.
+    pub(super) fn rest_of_way(&mut self, paths: &[Path], left: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
+        self.propose(&ends, None)?;
+        self.carry_out()?;
+        if left > 0 { each(self.reading_now()?) } else { Ok(()) }
     }
 
     /// Sends the way. When it ends, s by the clock.

@@ -8,20 +8,31 @@ use crate::rig::virtual_rig::glide::{Course, instants};
 use crate::rig::{EachReading, Rig as _, RigFault};
 
 impl VirtualFrame {
-    /// Reads at `samples` equal times, the last at the end of the paths, where the references are still moving.
+    /// Reads at `samples` equal times, of which the first may be done; the last at the end of the paths, where the references
+    /// are still moving.
     ///
     /// # Errors
     /// The paths lead nowhere, or `each` refuses; the rig then holds.
-    pub(super) fn glide_along(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+    pub(super) fn glide_along(
+        &mut self,
+        paths: &[Path],
+        (samples, done): (usize, usize),
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         if paths.len() != self.axes.len() {
             let reason = format!("this rig has {} degrees of freedom, not {}", self.axes.len(), paths.len());
             return Err(RigFault::Device(reason));
         }
         let instants = instants(paths, samples)?;
-        let course = |(path, axis): (&Path, &super::Axis)| Course::of(*path, self.sign, &axis.actuator);
-        let courses: Vec<Course> = paths.iter().zip(&self.axes).map(course).collect();
-        let began = self.time;
-        for pair in instants.windows(2) {
+        let before = |axis: usize| self.under_way.get(axis).copied();
+        let axes = paths.iter().zip(&self.axes).enumerate();
+        let course = |(number, (path, axis)): (usize, (&Path, &super::Axis))| {
+            Course::again(*path, self.sign, &axis.actuator, before(number))
+        };
+        let courses: Vec<Course> = axes.map(course).collect();
+        self.under_way.clone_from(&courses);
+        let began = self.time - instants.get(done).copied().unwrap_or(0.0);
+        for pair in instants.windows(2).skip(done) {
             let axes = courses.iter().zip(&mut self.axes);
             let travels: Vec<Travel> = axes.map(|(course, axis)| course.advance(&mut axis.actuator, pair[0], pair[1])).collect();
             self.structure.relax(&travels);
@@ -60,7 +71,7 @@ mod tests {
 
     fn readings(link: VirtualLink, samples: usize) -> Vec<crate::rig::Reading> {
         let (mut rig, mut readings) = (rig(link), Vec::new());
-        rig.glide_along(&[LOWER, UPPER], samples, &mut |reading| {
+        rig.glide_along(&[LOWER, UPPER], (samples, 0), &mut |reading| {
             readings.push(reading);
             Ok(())
         })
@@ -109,7 +120,7 @@ mod tests {
     #[test]
     fn paths_that_are_not_of_one_length_lead_nowhere() {
         let short = Path { seconds: 0.05, ..UPPER };
-        assert!(rig(VirtualLink::default()).glide_along(&[LOWER, short], 4, &mut |_| Ok(())).is_err());
-        assert!(rig(VirtualLink::default()).glide_along(&[LOWER], 4, &mut |_| Ok(())).is_err());
+        assert!(rig(VirtualLink::default()).glide_along(&[LOWER, short], (4, 0), &mut |_| Ok(())).is_err());
+        assert!(rig(VirtualLink::default()).glide_along(&[LOWER], (4, 0), &mut |_| Ok(())).is_err());
     }
 }

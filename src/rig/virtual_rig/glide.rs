@@ -26,6 +26,11 @@ impl Course {
         Self { path, sign, missed, drifts: (misses - missed) / path.seconds }
     }
 
+    /// Of the path that the actuator was stopped on before, else of one that it sets off on.
+    pub(in crate::rig) fn again(path: Path, sign: f64, actuator: &Actuator, under_way: Option<Self>) -> Self {
+        under_way.filter(|course| course.path == path).unwrap_or_else(|| Self::of(path, sign, actuator))
+    }
+
     /// The actuator goes on from one time on the path to another, s. How the piston went.
     pub(in crate::rig) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Travel {
         let place = self.sign * self.path.place(to) - (self.missed + self.drifts * to);
@@ -57,15 +62,22 @@ pub(in crate::rig) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64
 }
 
 impl VirtualRig {
-    /// Reads at `samples` equal times, the last at the end of the path, where the reference is still moving.
+    /// Reads at `samples` equal times, of which the first may be done; the last at the end of the path, where the reference is
+    /// still moving.
     ///
     /// # Errors
     /// The path leads nowhere, or `each` refuses; the rig then holds.
-    pub(super) fn glide_along(&mut self, path: &Path, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+    pub(super) fn glide_along(
+        &mut self,
+        path: &Path,
+        (samples, done): (usize, usize),
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         let instants = instants(std::slice::from_ref(path), samples)?;
-        let course = Course::of(*path, self.sign, &self.actuator);
-        let began = self.time;
-        for pair in instants.windows(2) {
+        let course = Course::again(*path, self.sign, &self.actuator, self.under_way);
+        self.under_way = Some(course);
+        let began = self.time - instants.get(done).copied().unwrap_or(0.0);
+        for pair in instants.windows(2).skip(done) {
             let travel = course.advance(&mut self.actuator, pair[0], pair[1]);
             self.time = began + pair[1];
             self.follow(&travel);
@@ -88,7 +100,7 @@ mod tests {
     fn readings(link: VirtualLink, path: &Path, samples: usize) -> Vec<(f64, f64, f64)> {
         let mut rig = VirtualRig::new(link, AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
         let mut readings = Vec::new();
-        rig.glide_along(path, samples, &mut |reading| {
+        rig.glide_along(path, (samples, 0), &mut |reading| {
             readings.push((reading.time, reading.displacement[0], reading.force[0]));
             Ok(())
         })

@@ -196,7 +196,14 @@ pub fn decide(
     let before = place_before(&lines[..at], found.displacement.len())?;
     let target = intent.to;
     if intent.samples.is_some() && lines[at..].iter().all(|line| line.kind != EntryKind::Stroke) {
-        return Ok(decision(lines[at].seq, Doubt::Stroke { back_to: before[0], others: before[1..].to_vec() }));
+        let taken = lines[at..].iter().filter(|line| line.kind == EntryKind::Sample).count();
+        let reached = if taken > 0 { recorded.as_ref().map_or(&before, |(x, _)| x) } else { &before };
+        let samples = intent.samples.unwrap_or(0);
+        let way = Cut { reached, target: &target, paths: intent.path.as_deref(), samples, taken };
+        return Ok(match way.doubt(place, &before)? {
+            doubt @ Doubt::Stroke { .. } => decision(lines[at].seq, doubt),
+            doubt => decision(last.seq + 1, doubt),
+        });
     }
     if at + 1 < lines.len()
         && let Some(paths) = intent.path.as_ref().filter(|_| !place.is(&target))
@@ -279,6 +286,50 @@ fn relaxed(recorded: Option<&(Vec<f64>, Vec<f64>)>, found: &Reading, bands: &Ban
     let Some(place) = recorded.iter().zip(&found.force).enumerate().position(|axis| !inside(axis)) else { return Ok(()) };
     let (axis, band) = (named_axis(place, found.force.len()), band(&bands.force, place));
     Err(Refusal::Relaxed { recorded: recorded[place], found: found.force[place], band, axis })
+}
+
+/// A way that was read as it was gone, and cut off.
+struct Cut<'a> {
+    /// Where its last reading was, else where it began, m.
+    reached: &'a [f64],
+    target: &'a [f64],
+    /// Of a way that is no straight one.
+    paths: Option<&'a [Path]>,
+    /// Readings that were wanted, and those on record.
+    samples: usize,
+    taken: usize,
+}
+
+impl Cut<'_> {
+    /// A specimen that has a memory goes no way twice: what is left is gone from where the rig stands. Only a stroke that went on to
+    /// its end by itself, and of which most was not read, is begun anew.
+    fn doubt(&self, place: Place<'_>, before: &[f64]) -> Result<Doubt, Refusal> {
+        match self.paths {
+            Some(paths) => {
+                let (low, high): (Vec<f64>, Vec<f64>) = paths.iter().map(may_be_held).unzip();
+                place.on_the_way(&low, &high)?;
+            }
+            None if self.mostly_lost() && place.is(self.target) && !place.is(self.reached) => {
+                return Ok(Doubt::Stroke { back_to: before[0], others: before[1..].to_vec() });
+            }
+            None => {
+                place.on_the_way(self.reached, self.target)?;
+            }
+        }
+        Ok(Doubt::RestOfTheWay { from: before.to_vec() })
+    }
+
+    /// One reading that is lost is made at the end of the way, late.
+    const fn mostly_lost(&self) -> bool {
+        self.taken + 1 < self.samples && 2 * self.taken < self.samples
+    }
+}
+
+/// Where an axis may hold that was on a path, on its way to it, or past it, m: as fast as it was at either end it goes on.
+fn may_be_held(path: &Path) -> (f64, f64) {
+    let (low, high) = path.reach();
+    let (short, past) = (path.from + GOES_ON * path.start_velocity, path.to + GOES_ON * path.end_velocity);
+    (low.min(short).min(past), high.max(short).max(past))
 }
 
 #[derive(Clone, Copy)]

@@ -144,7 +144,8 @@ fn told(resume: &ResumeBody) -> String {
         Doubt::Executed => "the last target had been carried out, its reading is late",
         Doubt::NotExecuted => "the last target had not arrived and was sent",
         Doubt::HeldOnTheWay => "the last target had been held on the way and was sent anew",
-        Doubt::Stroke { .. } => "a stroke had been cut off and was begun anew",
+        Doubt::RestOfTheWay { .. } => "a way had been cut off and was gone on with from where the rig stood",
+        Doubt::Stroke { .. } => "a way had been cut off, and the rig was brought back to where it begins",
     };
     // At another place than the last reading's the force tells nothing of the specimen.
     let relaxed = match (&resume.recorded, resume.found.1.as_slice()) {

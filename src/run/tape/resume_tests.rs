@@ -4,14 +4,14 @@
 use super::tests::{Standing, Witness, killed_everywhere, played, recorded};
 use super::*;
 use crate::formula::Formula::Constant;
-use crate::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
     Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, Ground, Impact, InspectTrigger,
-    Integrator, Level, Mode, Move, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
-    Until, ZeroAfter,
+    Integrator, Level, Mode, Move, ProcedureKind, RelaxationModel, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey,
+    Test, Unload, Until, WatchedHold, ZeroAfter,
 };
 use crate::quantity::Dimension;
-use crate::run::testing::{elastic_plan, every, impact, ramp, result_of};
+use crate::run::testing::{elastic_plan, every, impact, ramp, result_of, struck_frame};
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
 
@@ -48,13 +48,9 @@ fn cycle(rate: Option<f64>) -> Cycle {
     }
 }
 
-/// Two floors on a ground that shakes, and stops for a look. Where they never stop they do not yield: a way that is gone twice
-/// is rounded otherwise on a specimen with a memory.
+/// Two floors on a ground that shakes, and stops for a look. They yield, so that a way gone twice would show.
 fn shaken(mode: Mode) -> Plan {
-    let behaviour = |stiffness| match mode {
-        Mode::StepAndPause => Behaviour::Bilinear { stiffness, yield_force: stiffness * 0.002, hardening: 0.1 },
-        Mode::Continuous { .. } => Behaviour::Elastic { stiffness },
-    };
+    let behaviour = |stiffness| Behaviour::Bilinear { stiffness, yield_force: stiffness * 0.0002, hardening: 0.1 };
     let storey = |mass, stiffness| Storey::new(mass, stiffness, behaviour(stiffness));
     let mut plan = elastic_plan(300.0, Vec::new());
     plan.specimens[0].behaviour = None;
@@ -108,6 +104,29 @@ fn unloading() -> Plan {
     yielding(vec![to(0.03), ProcedureKind::Unload(unload)])
 }
 
+/// The upper floor is struck, and the actuators never stop.
+fn struck_on_the_way() -> Plan {
+    let mut plan = struck_frame();
+    if let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind {
+        (blow.stepping.mode, blow.duration) = (CONTINUOUS, Constant(0.05));
+    }
+    plan
+}
+
+/// Out past yield and back, each pause watched; then anew.
+fn watched() -> Plan {
+    let watched = StiffnessRamp {
+        displacements: [0.005, 0.02].map(Constant).to_vec(),
+        pause: Constant(0.2),
+        samples: 2,
+        repeats: 2,
+        return_path: true,
+        relaxation: Some(WatchedHold { model: RelaxationModel::Exponential, readings: 3, accuracy: None }),
+        ..ramp(1e-4)
+    };
+    yielding(vec![ProcedureKind::StiffnessRamp(watched), to(0.0)])
+}
+
 /// Zeros are read, also during a look, and the rig goes back for the last.
 fn drifting() -> Plan {
     let ramped = StiffnessRamp { pause: Constant(0.5), displacements: vec![Constant(1e-3), Constant(2e-3)], ..ramp(1e-4) };
@@ -120,14 +139,16 @@ fn drifting() -> Plan {
 /// Every plan here, by what it shows.
 fn plans() -> Vec<(&'static str, Plan)> {
     vec![
-        ("continuous", elastic_plan(300.0, vec![ProcedureKind::Impact(short(CONTINUOUS))])),
+        ("continuous", yielding(vec![ProcedureKind::Impact(short(CONTINUOUS))])),
         ("cycle", yielding(vec![ProcedureKind::Cycle(cycle(None))])),
-        ("cycle without a stop", elastic_plan(300.0, vec![ProcedureKind::Cycle(cycle(Some(2.0)))])),
+        ("cycle without a stop", yielding(vec![ProcedureKind::Cycle(cycle(Some(2.0)))])),
         ("escalate", escalating()),
         ("drift", drifting()),
         ("shake", shaken(Mode::StepAndPause)),
         ("shake without a stop", shaken(CONTINUOUS)),
+        ("storey without a stop", struck_on_the_way()),
         ("unload", unloading()),
+        ("watched", watched()),
     ]
 }
 
@@ -154,8 +175,22 @@ fn rising_blows() {
 
 #[test]
 fn a_shake_of_two_floors() {
+    // Both storeys have yielded, each at 0.2 mm: a part of a way gone twice would be felt.
+    let (_, whole, _) = recorded(&shaken(CONTINUOUS));
+    let drifts = whole.record.procedures[0].result("max_drift").map(|result| result.value.clone());
+    assert!(matches!(drifts, Some(ResultValue::List(drifts)) if drifts.iter().all(|drift| *drift > 4e-4)));
     killed("shake");
     killed("shake without a stop");
+}
+
+#[test]
+fn a_blow_on_a_storey_without_a_stop() {
+    killed("storey without a stop");
+}
+
+#[test]
+fn pauses_that_are_watched() {
+    killed("watched");
 }
 
 #[test]

@@ -114,15 +114,15 @@ impl<'rig> TapedRig<'rig> {
         Ok(Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() })
     }
 
-    /// The readings of a stroke, up to its end or to where it failed.
-    pub(super) fn played_stroke(&self, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+    /// The readings of a stroke, up to its end or to where it failed. How many there are where the record ends before it does.
+    pub(super) fn played_stroke(&self, samples: usize, each: EachReading<'_>) -> Result<Option<usize>, RigFault> {
         let mut taken = 0;
         loop {
             if let Some(fault) = self.state.borrow_mut().played_fault(Call::Traverse) {
                 return Err(fault);
             }
             if !self.state.borrow().playing() {
-                return Err(ended());
+                return Ok(Some(taken));
             }
             let mut state = self.state.borrow_mut();
             if state.next_kind() == Some(EntryKind::Stroke) {
@@ -131,7 +131,7 @@ impl<'rig> TapedRig<'rig> {
                     return Err(state.disagrees(format!("a stroke of {taken} readings")));
                 }
                 state.consume();
-                return Ok(());
+                return Ok(None);
             }
             drop(state);
             if taken == samples {

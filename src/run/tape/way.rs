@@ -8,7 +8,7 @@ use super::rig::{TapedRig, append_sample, bits, finite, intent};
 use super::state::ended;
 use crate::mechanics::path::Path;
 use crate::record::journal::EntryKind;
-use crate::rig::{EachReading, Offer, Reading, Rig, RigFault};
+use crate::rig::{CutOff, EachReading, Offer, Reading, Rig, RigFault};
 
 /// A way as it is asked for.
 pub(super) enum Way<'a> {
@@ -39,7 +39,24 @@ impl Way<'_> {
             Self::Paths(paths) => rig.glide(paths, samples, each),
         }
     }
+
+    /// What is left of it, where it began at `from` (m) and some readings are done.
+    fn go_on(
+        &self,
+        rig: &mut dyn Rig,
+        from: &[f64],
+        (samples, done): (usize, usize),
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        match self {
+            Self::Stroke(targets, velocity) => rig.traverse_on(&CutOff { from, to: targets, samples, done }, *velocity, each),
+            Self::Paths(paths) => rig.glide_on(paths, samples, done, each),
+        }
+    }
 }
+
+/// How a rig goes a way, or what is left of it.
+type Goes<'a> = &'a mut dyn FnMut(&mut dyn Rig, EachReading<'_>) -> Result<(), RigFault>;
 
 /// Bit for bit.
 fn same(one: &IntentBody, other: &IntentBody) -> bool {
@@ -60,7 +77,10 @@ impl TapedRig<'_> {
                 return Err(self.state.borrow_mut().disagrees(format!("a way to {:?} m at {:?} m/s", intent.to, intent.speed)));
             }
             self.state.borrow_mut().consume();
-            return self.played_stroke(samples, each);
+            let Some(done) = self.played_stroke(samples, each)? else { return Ok(()) };
+            let doubt = self.state.borrow_mut().take_doubt();
+            let Some(Doubt::RestOfTheWay { from }) = doubt.filter(|_| self.state.borrow().goes_on()) else { return Err(ended()) };
+            return self.go_way(done, each, &mut |rig, each| way.go_on(rig, &from, (samples, done), each));
         }
         self.rig()?;
         let doubt = self.state.borrow_mut().take_doubt();
@@ -69,12 +89,17 @@ impl TapedRig<'_> {
             self.send_again(&back, None)?;
         }
         self.record_intent(&mut intent)?;
+        self.go_way(0, each, &mut |rig, each| way.follow(rig, samples, each))
+    }
+
+    /// Goes a way and records its readings, the first `done` of which are on record.
+    fn go_way(&mut self, done: usize, each: EachReading<'_>, goes: Goes<'_>) -> Result<(), RigFault> {
         self.rig()?;
         let (offset, state) = (self.offset.unwrap_or(0.0), Rc::clone(&self.state));
         let Some(rig) = self.live.as_deref_mut() else { return Err(ended()) };
         // A refusal of the guard, or of the record, is not the rig's fault, and comes out again when the record is played.
-        let (mut refused, mut taken) = (false, 0);
-        let followed = way.follow(rig, samples, &mut |reading| {
+        let (mut refused, mut taken) = (false, done);
+        let followed = goes(rig, &mut |reading| {
             let recorded = finite(Reading { time: reading.time + offset, ..reading }).and_then(|reading| {
                 append_sample(&mut state.borrow_mut(), &reading)?;
                 Ok(reading)
