@@ -365,7 +365,7 @@ pub struct PlanSettings {
     /// Gives a `param` another value: `--set impact_speed="1.5 m/s"`
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
-    /// The date on the certificate; it is never taken from the clock
+    /// The date on the certificate; a virtual rig never takes it from the clock, a real rig's record has its own day
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
     pub date: Option<String>,
 }

@@ -31,6 +31,13 @@ pub struct Circumstances {
     pub served: Option<String>,
 }
 
+impl Circumstances {
+    /// Who, where and when: what makes a run on a real rig another than every other.
+    pub const fn told(&self) -> [&Option<String>; 3] {
+        [&self.operator, &self.host, &self.began]
+    }
+}
+
 /// What a run starts from, on the device that answered.
 pub fn header(
     plan: &Plan,
@@ -188,7 +195,7 @@ fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provena
         build: Build { sources: header.build.clone(), toolchain: header.toolchain.clone() },
         plan_sha256: header.files.first().map_or_else(String::new, |file| file.sha256.clone()),
         equipment: header.equipment.clone(),
-        ..super::provenance::of(plan)
+        ..super::provenance::of(plan, header.date.as_deref())
     };
     if plan.rig.link.as_real().is_none() {
         return stated;

@@ -19,7 +19,7 @@ use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::rig::Rig;
-use crate::run::tape::{self, AmendBody, Bands, Header, Played, ResumeBody, RigBody};
+use crate::run::tape::{self, AmendBody, Bands, Header, Played, RecoverBody, ResumeBody, RigBody};
 
 /// Goes on with one run.
 pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -57,7 +57,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
     if let Some(torn) = torn {
         let name = torn.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        journal.append(EntryKind::Recover, &serde_json::json!({ "t": read.played.time, "put_aside": name }))?;
+        journal.append(EntryKind::Recover, &RecoverBody { t: read.played.time, put_aside: name })?;
         tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
     }
     if let Some((amendment, texts)) = &amendment {
@@ -105,7 +105,8 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
             return Err(Failure::command_line(format!("{} has errors: see `psd check`", path.display())));
         };
         let nobody = record_file::Circumstances::default();
-        let now = record_file::header(&given, was.device.clone(), &options, &provenance::of(&given), nobody);
+        let now =
+            record_file::header(&given, was.device.clone(), &options, &provenance::of(&given, options.date.as_deref()), nobody);
         differences.extend(changed_files(recorded, &now));
         header = Header { files: now.files, ..header };
         texts = record_file::texts(&given);

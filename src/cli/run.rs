@@ -84,7 +84,7 @@ pub(super) fn on_its_rig(
 fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
     let mut watcher = Watcher::new(settings, attendance, plan, true, Wish::default()).map_err(Failure::Signals)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
-    let provenance = provenance::of(plan);
+    let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
     let mut rig = virtual_rig(plan);
     let device = record_file::device(rig.as_ref());
     let header = record_file::header(plan, device, &arguments.plan_settings, &provenance, Circumstances::default());
@@ -100,7 +100,8 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let mut opened = real_rig::open(plan, attendance, settings)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
-    let provenance = provenance::of_real_run(plan, &circumstances);
+    tell(&provenance::told_of_another_day(plan, circumstances.began.as_deref()));
+    let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
     let device = record_file::device(&opened.connected.rig);
     let header = record_file::header(plan, device, &arguments.plan_settings, &provenance, circumstances);
     let provenance = Provenance { equipment: header.equipment.clone(), ..provenance };

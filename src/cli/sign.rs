@@ -52,7 +52,8 @@ fn role<'a>(given: Option<&'a str>, roles: &'a [String]) -> Result<Option<&'a st
     match given {
         None if roles.len() > 1 => Err(Failure::command_line("the plan names several who sign")
             .help(format!("say with `--role` as whom you sign: {}", known()))),
-        None => Ok(None),
+        // One alone is whoever signs.
+        None => Ok(roles.first().map(String::as_str)),
         Some(given) if roles.is_empty() => Ok(Some(given)),
         Some(given) => roles.iter().map(String::as_str).find(|role| *role == given).map(Some).ok_or_else(|| {
             Failure::command_line(format!("nobody signs as `{}`", one_line(given))).help(format!("the plan names {}", known()))

@@ -47,7 +47,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
         return Ok(Trial { files, tolerances: Tolerances::default(), verdict: None, ended: None });
     };
     let operator = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
-    let provenance = provenance::of(plan);
+    let provenance = provenance::of(plan, None);
     let mut rig = virtual_rig(plan);
     let device = record_file::device(rig.as_ref());
     let header = record_file::header(plan, device, &PlanSettings::default(), &provenance, Circumstances::default());

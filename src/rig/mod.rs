@@ -234,6 +234,11 @@ impl std::fmt::Display for LimitedQuantity {
 pub trait Rig {
     fn identity(&self) -> Identity;
 
+    /// The replies in which it said who it is; none on a virtual rig.
+    fn introduction(&self) -> Vec<Vec<u8>> {
+        Vec::new()
+    }
+
     /// Actuators with their load cells, at least 1.
     fn degrees_of_freedom(&self) -> usize;
 

@@ -17,24 +17,30 @@ fn watched() -> Stage {
 
 #[test]
 fn by_an_abort_in_any_phase() {
-    // In the ramp, after it, in the blow.
-    for (word, moves) in [(Signal::ABORT, 3), (Signal::ILL, 18), (Signal::ABORT, 30)] {
-        let stage = watched();
-        let run = start(&mut stage.run_with(&["--yes"]));
-        stage.after_moves(moves);
-        signal(&run, word);
-        let run = finish(run);
-        assert_eq!(run.code, None, "ended by the signal at move {moves}: {:?}", run.told.lines().last());
-        let (done, asked) = (stage.moves().len(), stage.requests().len());
-        // What is on the line after the end of the program is nothing; the rig trips its watchdog alone.
-        std::thread::sleep(Duration::from_secs(5));
-        assert_eq!((stage.moves().len(), stage.requests().len()), (done, asked));
-        stage.goes_on(&[]);
-        assert!(stage.requests()[asked..].iter().any(|request| request.contains(">CLR")), "it had tripped");
-        let (mut moves, count) = (stage.moves(), stage.moves().len());
-        moves.dedup();
-        assert_eq!(moves.len(), count, "{moves:?}");
-    }
+    // In the ramp, after it, in the blow, beside each other: each has its own rig, whose watchdog is waited for.
+    let phases = [(Signal::ABORT, 3), (Signal::ILL, 18), (Signal::ABORT, 30)];
+    std::thread::scope(|scope| {
+        phases.map(|(word, moves)| scope.spawn(move || aborted(word, moves))).map(|one| one.join().unwrap())
+    });
+}
+
+/// The run of a watched rig ends by this signal after so many moves; the rig holds itself, and the run goes on.
+fn aborted(word: Signal, moves: usize) {
+    let stage = watched();
+    let run = start(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(moves);
+    signal(&run, word);
+    let run = finish(run);
+    assert_eq!(run.code, None, "ended by the signal at move {moves}: {:?}", run.told.lines().last());
+    let (done, asked) = (stage.moves().len(), stage.requests().len());
+    // What is on the line after the end of the program is nothing; the rig trips its watchdog alone.
+    std::thread::sleep(Duration::from_secs(5));
+    assert_eq!((stage.moves().len(), stage.requests().len()), (done, asked));
+    stage.goes_on(&[]);
+    assert!(stage.requests()[asked..].iter().any(|request| request.contains(">CLR")), "it had tripped");
+    let (mut moves, count) = (stage.moves(), stage.moves().len());
+    moves.dedup();
+    assert_eq!(moves.len(), count, "{moves:?}");
 }
 
 /// The run, where the n-th thread cannot be started: the standard library panics.

@@ -68,6 +68,11 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
     // Only the last words of a run that is over can be cut off without anything being left to do.
     let over = resumed.told.contains("there is nothing to go on with");
     assert!(resumed.code == Some(0) || over, "{at:?} {count}: {}", resumed.told);
+    if over && !stage.path("run").join("manifest.sha256").exists() {
+        let gone = stage.verify();
+        assert!(gone.code == Some(3) && gone.told.contains("its results are gone"), "{at:?} {count}: {}", gone.told);
+        wait(Command::new(PSD).arg("report").arg(stage.path("run")));
+    }
     let verified = stage.verify();
     assert!(verified.code == Some(0) && !verified.told.contains("INCOMPLETE"), "{at:?} {count}: {}", verified.told);
     assert_eq!(stage.moves(), whole.moves, "{at:?} {count}: each target once, in order");

@@ -95,8 +95,11 @@ fn what_minisign_signs_with_its_own_key_psd_takes() {
     assert!(accepts(bench, "minisign", &["-G", "-W", "-p", "own.pub", "-s", "own.key"]));
     assert!(accepts(bench, "minisign", &["-Sm", "run/manifest.sha256", "-s", "own.key"]));
     assert!(accepts(bench, PSD, &["verify", "run"]));
-    assert!(accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
-    assert!(accepts(bench, PSD, &["sign", "run", "--key", "own.key", "--role", "Quality"]));
+    // Good, and in none of the roles that the plan names.
+    assert!(!accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
+    for role in ["Quality", "Prüfer"] {
+        assert!(accepts(bench, PSD, &["sign", "run", "--key", "own.key", "--role", role]));
+    }
     assert!(accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
     flip(&bench.join("run/manifest.sha256.minisig"), 100);
     assert!(!accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));

@@ -38,8 +38,13 @@ pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Fin
     if let Some(report) = rebuilt.report.as_ref().filter(|_| has_results) {
         results(folder, report, &mut findings);
     }
-    findings.push(if has_results || !folder.odd.is_empty() {
+    let ended = rebuilt.report.as_ref().is_some_and(|report| report.ended);
+    findings.push(if has_results {
         manifest(folder, rebuilt.report.as_ref())
+    } else if ended {
+        Finding::wrong("results", "the run came to its end, and its results are gone: `psd report` makes them again")
+    } else if let Some(fault) = foreign(folder).first() {
+        Finding::wrong("manifest", fault)
     } else {
         Finding::sound("manifest", "no results yet: there is none")
     });
@@ -84,12 +89,19 @@ fn results(folder: &Folder, report: &Report, findings: &mut Vec<Finding>) {
     }
 }
 
+/// What has no place in a run folder, whatever a manifest says.
+fn foreign(folder: &Folder) -> Vec<String> {
+    let odd = folder.odd.iter().map(|(name, reason)| format!("`{name}` {reason}"));
+    let reserve = (folder.reserve_is_ours() == Some(false)).then(|| "the reserve holds what psd does not lay there".to_owned());
+    odd.chain(reserve).collect()
+}
+
 /// Every file of the folder against its manifest, and the manifest against the one that the record gives.
 fn manifest(folder: &Folder, report: Option<&Report>) -> Finding {
     let Some(bytes) = folder.bytes(MANIFEST) else {
         return Finding::wrong("manifest", "there are results and no manifest");
     };
-    let mut faults: Vec<String> = folder.odd.iter().map(|(name, reason)| format!("`{name}` {reason}")).collect();
+    let mut faults = foreign(folder);
     let Some(lines) = lines(bytes) else {
         return Finding::wrong("manifest", "it is no list of digests");
     };

@@ -14,6 +14,7 @@ use crate::cli::exit::Failure;
 use crate::cli::loader::plain;
 use crate::cli::record_file::JOURNAL;
 use crate::digest::{hex, sha256};
+use crate::record::journal::is_part_of_a_reserve;
 
 use super::amending::AMENDMENT;
 use super::signature;
@@ -76,6 +77,12 @@ impl Folder {
         self.files.iter().filter(|(name, _)| *name != MANIFEST && !signature::is_name(name) && !is_reserve(name))
     }
 
+    /// The reserve of a run that was killed holds what psd lays there and nothing else; None where there is none.
+    pub fn reserve_is_ours(&self) -> Option<bool> {
+        let (_, reserve) = self.files.iter().find(|(name, _)| is_reserve(name))?;
+        Some(reserve.bytes.as_deref().is_some_and(is_part_of_a_reserve))
+    }
+
     /// The signatures, by name.
     pub fn signatures(&self) -> impl Iterator<Item = (&str, &[u8])> {
         let named = self.files.iter().filter(|(name, _)| signature::is_name(name));
@@ -94,7 +101,11 @@ impl Folder {
             let name = format!("{prefix}{own}");
             let kind = entry.file_type().map_err(failed)?;
             if kind.is_dir() && depth < DEEPEST {
+                let before = self.files.len() + self.odd.len();
                 self.walk(&path, &format!("{name}/"), depth + 1)?;
+                if self.files.len() + self.odd.len() == before {
+                    self.odd.push((name, "is an empty folder".to_owned()));
+                }
                 continue;
             }
             match held(&path, &name) {
@@ -139,7 +150,7 @@ fn held(path: &PathBuf, name: &str) -> Result<Held, String> {
 }
 
 fn is_read(name: &str) -> bool {
-    matches!(name, JOURNAL | MANIFEST | AMENDMENT) || signature::is_name(name)
+    matches!(name, JOURNAL | MANIFEST | AMENDMENT) || signature::is_name(name) || is_reserve(name)
 }
 
 fn is_kept(name: &str) -> bool {
@@ -163,6 +174,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn an_empty_folder_is_odd_also_inside_another() {
+        let run = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(run.path().join("tables/more")).unwrap();
+        std::fs::create_dir_all(run.path().join("notes")).unwrap();
+        std::fs::write(run.path().join("tables/k.csv"), "x").unwrap();
+        let mut odd = Folder::read(run.path()).unwrap().odd;
+        odd.sort();
+        assert_eq!(odd, ["notes", "tables/more"].map(|name| (name.to_owned(), "is an empty folder".to_owned())));
+    }
+
+    #[test]
     fn a_folder_is_its_files_and_a_link_leads_nowhere() {
         let root = tempfile::tempdir().unwrap();
         let run = root.path().join("run");
@@ -180,6 +202,7 @@ mod tests {
         assert_eq!(kept, ["before-resume-1/tables/k.csv", "journal.psdj", "journal.psdj.torn-1"]);
         let listed: Vec<&String> = folder.listed().map(|(name, _)| name).collect();
         assert_eq!(listed, ["before-resume-1/tables/k.csv", "journal.psdj", "journal.psdj.torn-1", "own"]);
+        assert_eq!(folder.reserve_is_ours(), Some(false));
         assert_eq!((folder.bytes(JOURNAL), folder.bytes("own")), (Some(b"abc".as_slice()), None));
     }
 }

@@ -57,17 +57,27 @@ fn who_tells_another_factor_certificate_limit_or_rig_is_found_out() {
         let told = retold(|header| *header["equipment"].pointer_mut(place).unwrap() = value.clone());
         assert_eq!(found(&told), ["record"], "{place}");
     }
+    for (place, value) in [("/run_id", json!("0123456789abcdef")), ("/date", json!("2026-05-31")), ("/zzz", json!(5))] {
+        let told = retold(|header| header[&place[1..]] = value.clone());
+        assert!(found(&told).contains(&"record"), "{place}");
+    }
     let silent = retold(|header| drop(header.as_object_mut().unwrap().remove("equipment")));
     assert_eq!(found(&silent), ["record"], "version 2 says it");
 }
 
 #[test]
 fn a_record_of_version_1_gives_the_same_results() {
-    let old = retold(|header| {
+    let aged = |header: &mut Value| {
         header["format"] = json!(OLDEST_FORMAT);
         header.as_object_mut().unwrap().remove("equipment");
+    };
+    let old = retold(|header| {
+        aged(header);
+        header["build"] = json!("0".repeat(64));
     });
-    assert_eq!(found(&old), [""; 0], "every page and table came out of it again");
+    let told = examine(&old, &Rebuilt::of(&old), &[]);
+    assert!(told[0].sound && told[0].told.contains("version 1") && told[1].told.contains("another build"), "{told:?}");
+    assert_eq!(found(&retold(aged)), ["record"], "this program writes what was measured with");
     let unknown = retold(|header| header["format"] = json!(3));
     assert!(unknown.files.get(JOURNAL).is_some_and(|held: &Held| held.bytes.is_some()));
     assert_eq!(found(&unknown), ["record"]);

@@ -9,6 +9,7 @@ mod header_tests;
 pub mod keys;
 mod rebuilt;
 mod signature;
+mod standing;
 #[cfg(test)]
 mod tests;
 

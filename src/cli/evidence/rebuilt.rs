@@ -4,6 +4,7 @@
 use super::amending::{AMENDMENT, AmendmentFile, amended};
 use super::check::Finding;
 use super::folder::Folder;
+use super::standing;
 use crate::cli::conclude::made_of;
 use crate::cli::provenance::BUILD;
 use crate::cli::record_file::{self, JOURNAL, ReadRecord};
@@ -96,8 +97,13 @@ impl Rebuilt {
         let torn = read.recovered.torn.as_ref();
         let torn = torn.map_or(String::new(), |torn| format!(", {} bytes torn at its end", torn.end - torn.start));
         let (records, head) = (read.recovered.lines.len(), read.recovered.head());
-        let mut findings =
-            vec![Finding::sound("record", format!("run {}, {records} records{torn}, head {head}", read.provenance.run_id))];
+        let remarks = standing::remarks(&read.recovered, &read.played.header);
+        let mut findings = vec![match standing::stands(&read) {
+            Ok(()) => {
+                Finding::sound("record", format!("run {}, {records} records{torn}{remarks}, head {head}", read.provenance.run_id))
+            }
+            Err(fault) => Finding::wrong("record", fault),
+        }];
         let ended = read.played.ended;
         let header = &read.played.header;
         let other_build = (header.build != BUILD).then(|| format!("psd {} build {}", header.psd, header.build));

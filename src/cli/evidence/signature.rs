@@ -97,14 +97,17 @@ pub fn sign(manifest: &[u8], key: &SecretKey, statement: &Statement) -> Result<S
     Ok(signed.into_string())
 }
 
-/// Every signature of a folder. With keys, each of them must have signed, and nobody else.
+/// Every signature of a folder, and who of those that the plan names has not signed. With keys, each of them must have signed, in
+/// every role that the plan names, and nobody else.
 pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut signed: Vec<Vec<u8>> = Vec::new();
+    let mut places: Vec<&str> = Vec::new();
     for (name, bytes) in folder.signatures() {
         findings.push(match one(folder, name, bytes, report, keys) {
             Ok((told, keynum)) => {
                 signed.push(keynum);
+                places.push(name);
                 Finding::sound("signature", told)
             }
             Err(fault) => Finding::wrong("signature", format!("`{name}`: {fault}")),
@@ -112,6 +115,12 @@ pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> V
     }
     for key in keys.iter().filter(|key| !signed.iter().any(|signed| signed == key.key.keynum())) {
         findings.push(Finding::wrong("signature", format!("none by key {} of `{}`", keys::number(key.key.keynum()), key.name)));
+    }
+    // Where nobody has signed, that alone is told.
+    let roles = report.filter(|_| !signed.is_empty()).map_or(&[][..], |report| &report.roles);
+    for role in roles.iter().filter(|role| !places.contains(&file_name(Some(role), roles).as_str())) {
+        let told = format!("{} has not signed", one_line(role));
+        findings.push(if keys.is_empty() { Finding::sound("signature", told) } else { Finding::wrong("signature", told) });
     }
     if findings.is_empty() {
         findings.push(Finding::sound("signature", "unsigned: nobody vouches for this folder"));

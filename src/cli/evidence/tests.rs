@@ -150,6 +150,29 @@ fn a_sound_folder_is_sound_and_names_its_parts() {
 }
 
 #[test]
+fn who_has_not_signed_is_told_and_with_a_key_is_a_fault() {
+    let signed = signed();
+    let quality = "manifest.sha256.quality.minisig";
+    let half = with(&signed.folder, quality, None);
+    let told = examine(&half, &signed.rebuilt, &[]);
+    assert!(told.iter().all(|finding| finding.sound) && told.last().unwrap().told == "Quality has not signed", "{told:#?}");
+    assert_eq!(faults(&examine(&half, &signed.rebuilt, &signed.keys[..1])), ["signature"]);
+}
+
+#[test]
+fn what_has_no_place_is_found_also_where_no_manifest_lists_it() {
+    let signed = signed();
+    let reserve = "journal.psdj.reserve";
+    for (bytes, sound) in [(Vec::new(), true), (b"smuggled".to_vec(), false), (vec![0; 1 << 20], false)] {
+        let found = judged(&with(&signed.folder, reserve, Some(bytes)), &signed);
+        assert_eq!(found.is_empty(), sound, "{found:?}");
+    }
+    // A run that came to its end has results.
+    let only = folder(&BTreeMap::from([(JOURNAL.to_owned(), run()[JOURNAL].clone())]));
+    assert_eq!(faults(&examine(&only, &Rebuilt::of(&only), &[])), ["results"]);
+}
+
+#[test]
 fn a_flipped_byte_of_any_file_is_found() {
     let signed = signed();
     let mut bytes = run().clone();
@@ -293,5 +316,6 @@ fn another_key_is_no_key() {
     // The stranger signs in another's place: sound only for who names no key.
     signed_as(&mut signed.folder, &signed.rebuilt, "Quality", &sk);
     assert_eq!(faults(&examine(&signed.folder, &signed.rebuilt, &[])), [""; 0]);
-    assert_eq!(faults(&examine(&signed.folder, &signed.rebuilt, &signed.keys)), ["signature", "signature"]);
+    // By none of the keys, none by hers, and so nobody has signed for quality.
+    assert_eq!(faults(&examine(&signed.folder, &signed.rebuilt, &signed.keys)), ["signature"; 3]);
 }

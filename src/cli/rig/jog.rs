@@ -77,7 +77,13 @@ fn on_a_virtual_rig(
     let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..Circumstances::default() };
     let mut rig = virtual_rig(plan);
     let device = record_file::device(rig.as_ref());
-    let header = record_file::header(plan, device, &arguments.plan_settings, &provenance::of(plan), circumstances);
+    let header = record_file::header(
+        plan,
+        device,
+        &arguments.plan_settings,
+        &provenance::of(plan, arguments.plan_settings.date.as_deref()),
+        circumstances,
+    );
     let journal = record_file::begin_nowhere(plan, &header)?;
     let mut hand = Hand { wanted, plan, person, settings, ended: None };
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
@@ -98,7 +104,7 @@ fn on_a_real_rig(
 ) -> Result<Exit, Failure> {
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..real_rig::circumstances(plan, attendance) };
-    let provenance = provenance::of_real_run(plan, &circumstances);
+    let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
     let header = record_file::header(plan, record_file::device(rig), &arguments.plan_settings, &provenance, circumstances);
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let mut hand = Hand { wanted, plan, person, settings, ended: None };

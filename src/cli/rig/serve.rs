@@ -42,7 +42,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
         Link::Virtual(_) => {
             let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, wish.clone()).map_err(Failure::Signals)?;
             let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..Circumstances::default() };
-            let provenance = provenance::of(plan);
+            let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
             let mut rig = virtual_rig(plan);
             let stage = Stage { plan, provenance, circumstances, wall: Box::new(|| None) };
             on_record(arguments, stage, rig.as_mut(), &mut watcher, &door, &protocol, &wish, settings)
@@ -52,7 +52,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
                 .map_err(|failure| failure.in_the_plan(|fault| plan_file::place_of_link(&checked, &arguments.plan, fault)))?;
             let circumstances = real_rig::circumstances(plan, &attendance);
             let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..circumstances };
-            let provenance = provenance::of_real_run(plan, &circumstances);
+            let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
             let stage = Stage { plan, provenance, circumstances, wall: real_rig::wall_clock() };
             on_record(arguments, stage, &mut opened.connected.rig, &mut opened.watcher, &door, &protocol, &wish, settings)
         }

@@ -12,6 +12,10 @@ use super::chart::{Colour, Line};
 const FINE: u32 = 8;
 /// Subpixels averaged into one of the picture, in each direction.
 const BOX: u32 = 4;
+const SIDE: usize = BOX as usize;
+/// Bytes of such a piece of a row, and of a stretch of rows that is looked at as a whole.
+const PIECE: usize = 3 * SIDE;
+const STRETCH: usize = 16 * PIECE;
 /// 192 dpi in pixels to the metre.
 const PIXELS_PER_METRE: u32 = 7559;
 
@@ -33,27 +37,42 @@ pub(super) fn png(width: u32, height: u32, paint: impl FnOnce(&dyn Canvas) -> Re
 }
 
 /// Each BOX × BOX square of subpixels becomes their mean. Most of a figure is white paper, which is told by comparing whole
-/// pieces of rows.
+/// stretches of rows.
 fn average(fine: &[u8], fine_width: usize) -> Vec<u8> {
-    const SIDE: usize = BOX as usize;
-    const WHITE: [u8; 3 * SIDE] = [255; 3 * SIDE];
-    let row = fine_width * 3;
-    let mut picture = Vec::with_capacity(fine.len() / (SIDE * SIDE));
-    for band in fine.chunks_exact(row * SIDE) {
-        for x in (0..row).step_by(3 * SIDE) {
-            let pieces = [0, 1, 2, 3].map(|y| &band[y * row + x..y * row + x + 3 * SIDE]);
-            if pieces == [&WHITE[..]; SIDE] {
-                picture.extend_from_slice(&[255; 3]);
+    let row = 3 * fine_width;
+    let white = vec![255_u8; row];
+    let mut picture = vec![255; fine.len() / (SIDE * SIDE)];
+    for (band, line) in fine.chunks_exact(row * SIDE).zip(picture.chunks_exact_mut(row / SIDE)) {
+        let rows = [0, 1, 2, 3].map(|y| &band[y * row..(y + 1) * row]);
+        for start in (0..row).step_by(STRETCH) {
+            let end = row.min(start + STRETCH);
+            if rows.iter().all(|row| row[start..end] == white[start..end]) {
                 continue;
             }
-            for channel in 0..3 {
-                let sum: u32 =
-                    pieces.iter().flat_map(|piece| piece.iter().skip(channel).step_by(3)).map(|byte| u32::from(*byte)).sum();
-                picture.push(u8::try_from((sum + BOX * BOX / 2) / (BOX * BOX)).unwrap_or(u8::MAX));
+            for x in (start..end).step_by(PIECE) {
+                let square = rows.map(|row| &row[x..x + PIECE]);
+                if square != [&white[..PIECE]; SIDE] {
+                    line[x / SIDE..x / SIDE + 3].copy_from_slice(&mean(square));
+                }
             }
         }
     }
     picture
+}
+
+/// Mean colour of one square, from its pieces of rows.
+fn mean(square: [&[u8]; SIDE]) -> [u8; 3] {
+    let mut sums = [0_u32; 3];
+    for piece in square {
+        let mut at = 0;
+        while at < PIECE {
+            sums[0] += u32::from(piece[at]);
+            sums[1] += u32::from(piece[at + 1]);
+            sums[2] += u32::from(piece[at + 2]);
+            at += 3;
+        }
+    }
+    sums.map(|sum| u8::try_from((sum + BOX * BOX / 2) / (BOX * BOX)).unwrap_or(u8::MAX))
 }
 
 fn encode(picture: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
@@ -179,5 +198,20 @@ mod tests {
         let row: Vec<u8> = [0_u8, 0, 255, 255].iter().flat_map(|grey| [*grey; 3]).collect();
         assert_eq!(average(&row.repeat(4), 4), [128, 128, 128]);
         assert_eq!(average(&[7; 4 * 4 * 3], 4), [7, 7, 7]);
+    }
+
+    /// A sheet of white with one dark subpixel, wherever it is: the mean of its square, and paper all around.
+    #[test]
+    fn no_mark_is_lost_in_the_paper() {
+        let (width, height) = (4 * 37, 8);
+        for place in 0..width * height {
+            let mut fine = vec![255_u8; 3 * width * height];
+            fine[3 * place..3 * place + 3].copy_from_slice(&[0, 95, 255]);
+            let picture = average(&fine, width);
+            let square = (place / width / 4) * (width / 4) + place % width / 4;
+            for (at, colour) in picture.chunks_exact(3).enumerate() {
+                assert_eq!(colour, if at == square { [239, 245, 255] } else { [255; 3] }, "subpixel {place}, square {at}");
+            }
+        }
     }
 }

@@ -14,6 +14,7 @@ use rustix::fs::OFlags;
 
 use super::Storage;
 use crate::rig::failpoint::{Guarding, on};
+pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
 
 /// The largest journal that is read back, bytes.

@@ -185,7 +185,7 @@ impl Device for GrblDevice {
         (self.known, self.unanswered, self.held) = (true, false, false);
         let (firmware, serial) = who.unwrap_or_default();
         let simulated = serial.starts_with(super::SIMULATED);
-        Ok(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot: None, simulated })
+        Ok(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot: None, simulated, raw: Vec::new() })
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {

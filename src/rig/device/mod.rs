@@ -28,7 +28,7 @@ pub use instron::Instron;
 pub use line::{Answer, LONGEST_LINE, Missed, SLICE, Talk};
 pub use mark10::{Mark10, Mark10Gauge};
 pub use modbus::Modbus;
-pub use native::{NativeDevice, SIMULATED};
+pub use native::{NativeDevice, SIMULATED, native_identity};
 pub use nees::Nees;
 pub use open::open;
 pub use scpi::ScpiDevice;
@@ -43,6 +43,8 @@ pub struct DeviceIdentity {
     pub boot: Option<String>,
     /// It says itself that it is a stand-in.
     pub simulated: bool,
+    /// The replies in which it said all this; empty where its dialect has none.
+    pub raw: Vec<Vec<u8>>,
 }
 
 /// A move in the device's own words.

@@ -21,6 +21,8 @@ pub struct NativeDevice {
     sequence: u32,
     boot: Option<String>,
     hello: Option<Hello>,
+    /// The reply that said it.
+    introduction: Vec<u8>,
     /// The limits of this run, as they were told.
     narrowed: Option<Bounds>,
     /// A request was not answered: rig and program may disagree on its number.
@@ -54,6 +56,7 @@ impl NativeDevice {
             sequence: 0,
             boot: None,
             hello: None,
+            introduction: Vec::new(),
             narrowed: None,
             out_of_step: false,
             held: false,
@@ -113,6 +116,7 @@ impl NativeDevice {
         }
         self.hello = Some(hello);
         self.boot = Some(reply.boot);
+        self.introduction = line;
         Ok(())
     }
 
@@ -159,6 +163,13 @@ fn framed(sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> 
     native::frame(sequence, request).ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be said in a frame")))
 }
 
+/// Who a rig is that says this of itself.
+pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
+    let Hello { model, serial, firmware, .. } = hello.clone();
+    let simulated = model.starts_with(SIMULATED);
+    DeviceIdentity { model, serial, firmware, boot, simulated, raw: Vec::new() }
+}
+
 /// What a line is to the request that is open.
 fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Answered> {
     let Ok(reply) = native::reply(line) else { return Answer::Ignore };
@@ -197,9 +208,7 @@ impl Device for NativeDevice {
         (self.held, self.proposed) = (false, None);
         let hello = self.hello()?.clone();
         self.next_id = hello.last.as_ref().map_or(0, |last| last.id) + 1;
-        let simulated = hello.model.starts_with(SIMULATED);
-        let Hello { model, serial, firmware, .. } = hello;
-        Ok(DeviceIdentity { model, serial, firmware, boot: self.boot.clone(), simulated })
+        Ok(DeviceIdentity { raw: vec![self.introduction.clone()], ..native_identity(&hello, self.boot.clone()) })
     }
 
     fn axes(&self) -> usize {

@@ -90,7 +90,14 @@ impl Device for ScpiDevice {
         let who = who.ok_or_else(|| DeviceFault::Unfit("it does not say who it is".to_owned()))?;
         let simulated = who.maker.starts_with(super::SIMULATED) || who.model.starts_with(super::SIMULATED);
         let model = format!("{} {}", who.maker, who.model);
-        Ok(DeviceIdentity { model, serial: who.serial, firmware: who.firmware, boot: None, simulated })
+        Ok(DeviceIdentity {
+            model,
+            serial: who.serial,
+            firmware: who.firmware,
+            boot: None,
+            simulated,
+            raw: vec![self.name.clone()],
+        })
     }
 
     fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {

@@ -8,6 +8,7 @@ pub mod instron;
 pub mod mark10;
 pub mod modbus;
 pub mod native;
+pub mod native_sent;
 pub mod nees;
 pub mod number;
 pub mod scpi;

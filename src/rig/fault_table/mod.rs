@@ -24,6 +24,7 @@
 //! | 18–22 | the same of one axis of two | `axes::*` |
 //! | 10, 14, 18, 25, 26 | the same of axes that do not stop | `gliding::*` |
 //! | 29 | panic, abort | `tests/system/ended.rs`, for this table is of one process |
+//! | 30 | a record that says two things | `forged::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
 
@@ -31,6 +32,7 @@ mod axes;
 mod control_points;
 mod device;
 mod drift;
+mod forged;
 mod gate;
 mod gliding;
 mod line;

@@ -7,7 +7,7 @@ use crate::plan::{
     Settle,
 };
 use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, EntryKind, Journal, Line, recover};
+use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered, recover};
 use crate::record::{EventKind, History, Outcome, Record};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::real::RealRig;
@@ -80,6 +80,7 @@ pub(super) const fn to(place: f64) -> ProcedureKind {
 pub(super) struct Ended {
     pub(super) record: Record,
     pub(super) lines: Vec<Line>,
+    pub(super) recovered: Recovered,
     /// Of the simulator.
     pub(super) log: String,
     pub(super) tally: Tally,
@@ -103,13 +104,15 @@ pub(super) fn run_watched(plan: &Plan, script: &str, observer: &mut dyn Observer
     assert!(recorded.mismatch.is_none() && recorded.fault.is_none());
     let recovered = recover(&disk.written()).unwrap();
     // Whatever went wrong: the record alone gives the run again.
-    let replayed = tape::replay(plan, Played::of(&recovered).unwrap());
+    let played = Played::of(&recovered).unwrap();
+    assert_eq!(tape::agrees(&recovered, &played, plan), Ok(()));
+    let replayed = tape::replay(plan, played);
     assert_eq!(replayed.mismatch, None);
     let same = format!("{:?}", replayed.record) == format!("{:?}", recorded.record);
     assert!(same, "{:?} became {:?}", recorded.record.outcome, replayed.record.outcome);
     let (tally, trusted) = (rig.tally(), rig.trusted());
     assert!(stand.stand().bench().violations().is_empty() || !crate::rig::failpoint::on(Guarding::TargetLimits));
-    Ok(Ended { record: recorded.record, lines: recovered.lines, log: text.text(), tally, trusted, stand })
+    Ok(Ended { record: recorded.record, lines: recovered.lines.clone(), recovered, log: text.text(), tally, trusted, stand })
 }
 
 pub(super) fn stand(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess {
@@ -182,6 +185,11 @@ impl Ended {
         let fault = self.lines.iter().position(|line| line.kind == EntryKind::Fault).expect("a FAULT record");
         let used = [EntryKind::Sample, EntryKind::Intent, EntryKind::Step, EntryKind::End];
         assert!(!self.lines[fault..].iter().any(|line| used.contains(&line.kind)));
+    }
+
+    /// What the `nth` record of a kind says.
+    pub(super) fn body(&self, kind: EntryKind, nth: usize) -> &serde_json::Value {
+        &self.lines.iter().filter(|line| line.kind == kind).nth(nth).unwrap().body
     }
 
     pub(super) fn count(&self, kind: EntryKind) -> usize {

@@ -17,6 +17,7 @@ use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
 use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+pub use poll::representative;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -29,6 +30,8 @@ pub struct RealRig {
     axes: Vec<Axis>,
     calibration: Calibration,
     identity: Identity,
+    /// The replies in which its devices said so.
+    introduction: Vec<Vec<u8>>,
     actuator: Box<dyn Device>,
     load_cell: Option<Box<dyn Device>>,
     clock: Box<dyn Clock>,
@@ -131,6 +134,10 @@ enum Part {
 impl Rig for RealRig {
     fn identity(&self) -> Identity {
         self.identity.clone()
+    }
+
+    fn introduction(&self) -> Vec<Vec<u8>> {
+        self.introduction.clone()
     }
 
     fn degrees_of_freedom(&self) -> usize {

@@ -28,6 +28,7 @@ impl RealRig {
             axes: axes(plan, &link, limits),
             calibration: plan.calibration.clone(),
             identity: nobody(&plan.name),
+            introduction: Vec::new(),
             actuator,
             load_cell,
             clock,
@@ -70,9 +71,10 @@ impl RealRig {
             model: all(|identity| &identity.model) + loop_open,
             serial: all(|identity| &identity.serial),
             firmware: all(|identity| &identity.firmware),
-            boot: actuator.boot,
+            boot: actuator.boot.clone(),
             simulated: said.iter().any(|identity| identity.simulated),
         };
+        self.introduction = said.into_iter().flat_map(|identity| identity.raw).collect();
         Ok(())
     }
 

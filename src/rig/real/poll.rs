@@ -200,7 +200,8 @@ const fn either(one: Flags, other: Flags) -> Flags {
 }
 
 /// The median, which a single spike does not move; of an even count the mean of the middle two.
-fn representative(mut values: Vec<f64>) -> f64 {
+#[must_use]
+pub fn representative(mut values: Vec<f64>) -> f64 {
     if !on(Guarding::Median) {
         return values[0];
     }

@@ -90,6 +90,9 @@ pub struct RigBody {
     pub own_speed: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_move: Option<LastMove>,
+    /// The replies in which it said who it is, escaped; empty where the dialect has none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub said: Vec<String>,
 }
 
 /// INTENT: a target about to leave.
@@ -253,6 +256,28 @@ pub struct ResumeBody {
     pub wall: Option<String>,
 }
 
+/// RECOVER: a torn end of the file was put aside.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecoverBody {
+    /// Rig time of the record before, s.
+    pub t: f64,
+    /// Name of the file that it was moved to.
+    pub put_aside: String,
+}
+
+/// END: what the run says of its own end; count and head are the journal's.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EndBody {
+    pub outcome: EndOutcome,
+}
+
+/// A record has an end only where its run came to its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EndOutcome {
+    Completed,
+}
+
 /// What became of a target that was recorded and perhaps sent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "target")]
@@ -280,4 +305,35 @@ pub enum Doubt {
 /// The bytes of a frame as text that any log can hold.
 pub fn escaped(bytes: &[u8]) -> String {
     bytes.escape_ascii().to_string()
+}
+
+/// The bytes that [`escaped`] makes this text of; None where it makes it of none.
+pub fn unescaped(text: &str) -> Option<Vec<u8>> {
+    let (mut bytes, mut rest) = (Vec::with_capacity(text.len()), text.as_bytes());
+    while let [first, after @ ..] = rest {
+        let (byte, after) = match (first, after) {
+            (b'\\', [b'n', after @ ..]) => (b'\n', after),
+            (b'\\', [b'r', after @ ..]) => (b'\r', after),
+            (b'\\', [b't', after @ ..]) => (b'\t', after),
+            (b'\\', [b'x', high, low, after @ ..]) => (u8::from_str_radix(str::from_utf8(&[*high, *low]).ok()?, 16).ok()?, after),
+            (b'\\', [own, after @ ..]) | (own, after) => (*own, after),
+        };
+        bytes.push(byte);
+        rest = after;
+    }
+    (escaped(&bytes) == text).then_some(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{escaped, unescaped};
+
+    #[test]
+    fn every_byte_comes_back_and_what_nobody_writes_is_none() {
+        let all: Vec<u8> = (0..=255).collect();
+        assert_eq!(unescaped(&escaped(&all)), Some(all));
+        for none in ["\\", "\\x4", "\\x41", "\\q", "a\nb", "\u{e9}", "\""] {
+            assert_eq!(unescaped(none), None, "{none:?}");
+        }
+    }
 }

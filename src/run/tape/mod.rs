@@ -8,6 +8,8 @@
 //!
 //! Order of a step on a real rig: INTENT durable → target sent → SAMPLE durable → integrated → STEP.
 
+mod agreement;
+mod bytes;
 mod decide;
 mod entry;
 #[cfg(test)]
@@ -22,8 +24,11 @@ mod state;
 pub(crate) mod tests;
 mod way;
 
+pub use agreement::{Contradiction, agrees};
 pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_resolution, same_rig};
-pub use entry::{AmendBody, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, ResumeBody, RigBody, SampleBody, StrokeBody};
+pub use entry::{
+    AmendBody, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody, RigBody, SampleBody, StrokeBody,
+};
 pub use observer::TapedObserver;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;

@@ -30,6 +30,16 @@ impl<'run> TapedObserver<'run> {
             let _ = state.append(kind, body);
         }
     }
+
+    /// A record that has an end has everything: what the run calls for after it was taken out.
+    fn beyond_the_end(&self, called: &str) -> bool {
+        let mut state = self.state.borrow_mut();
+        let beyond = state.played_out();
+        if beyond {
+            state.disagrees(called.to_owned());
+        }
+        beyond
+    }
 }
 
 impl Observer for TapedObserver<'_> {
@@ -51,7 +61,7 @@ impl Observer for TapedObserver<'_> {
                     state.disagrees(called);
                 }
             }
-        } else {
+        } else if !self.beyond_the_end("another step") {
             self.append(EntryKind::Step, &step);
         }
         self.inner.step_done(report);
@@ -76,7 +86,7 @@ impl Observer for TapedObserver<'_> {
                     state.disagrees(event.text.clone());
                 }
             }
-        } else {
+        } else if !self.beyond_the_end(&event.text) {
             self.append(EntryKind::Event, event);
         }
         self.inner.event(event);
@@ -93,7 +103,7 @@ impl Observer for TapedObserver<'_> {
                 }
                 Err(_) => {}
             }
-        } else {
+        } else if !self.beyond_the_end("a request of the client") {
             self.append(EntryKind::Operator, &OperatorBody::Asked { request: request.clone() });
         }
         self.inner.asked(request);

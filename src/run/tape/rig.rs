@@ -303,6 +303,7 @@ impl RigBody {
             noise: rig.declared_noise(),
             own_speed: rig.own_speed(),
             last_move: rig.last_move(),
+            said: rig.introduction().iter().map(|reply| escaped(reply)).collect(),
         }
     }
 }
@@ -312,7 +313,7 @@ fn nobody() -> RigBody {
     let unknown = String::new;
     let identity =
         Identity { name: unknown(), model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: true };
-    RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), own_speed: None, last_move: None }
+    RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), own_speed: None, last_move: None, said: Vec::new() }
 }
 
 pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<usize>) -> IntentBody {

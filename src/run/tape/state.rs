@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
-use super::entry::{Call, Doubt, FaultBody, IntentBody, OperatorBody, RigBody};
+use super::entry::{Call, Doubt, EndBody, EndOutcome, FaultBody, IntentBody, OperatorBody, RigBody};
 use super::played::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
@@ -267,7 +267,7 @@ impl State {
         if self.fault.is_none()
             && let Some(journal) = &mut self.journal
         {
-            let ended = journal.end(&serde_json::json!({ "outcome": "completed" }));
+            let ended = journal.end(&EndBody { outcome: EndOutcome::Completed });
             self.fault = ended.err();
         }
     }

@@ -295,7 +295,8 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
         assert_eq!(carried_out, once, "call {call}: no target twice, none left out");
     }
     // The record of both together is a run that can be played back.
-    let (_, whole) = played(&disk.written());
+    let (recovered, whole) = played(&disk.written());
+    assert_eq!(agrees(&recovered, &whole, plan), Ok(()), "call {call}");
     let replayed = replay(plan, whole);
     assert_eq!(replayed.mismatch, None, "call {call}");
     assert_eq!(format!("{:?}", replayed.record), format!("{:?}", resumed.record), "call {call}");

@@ -36,6 +36,11 @@ pub fn release(journal: &Path) {
     let _ = std::fs::remove_file(path(journal));
 }
 
+/// Whether these bytes are a reserve, or what is laid of one that was being laid.
+pub fn is_part_of_one(bytes: &[u8]) -> bool {
+    incompressible().starts_with(bytes)
+}
+
 /// Marsaglia's xorshift, 64 bits: noise enough that compression finds nothing.
 fn incompressible() -> Vec<u8> {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
