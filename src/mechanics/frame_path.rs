@@ -110,6 +110,12 @@ impl FramePath {
         rules
     }
 
+    /// Whether a storey swung through no shear and back after it flowed: what came then rests on more than one supposition.
+    #[must_use]
+    pub fn swung_back(&self) -> bool {
+        matches!(&self.bends, Bends::Storeys(paths) if paths.iter().any(RecordedPath::swung_back))
+    }
+
     /// The same record, if every storey of which it is possible is supposed to keep to a rule.
     #[must_use]
     pub fn supposing(&self, rule: Rule) -> Self {

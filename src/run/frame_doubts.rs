@@ -3,7 +3,7 @@
 //! The run itself is not touched, and no rig is moved.
 
 use super::inputs::Inputs;
-use super::propagation::reading_errors;
+use super::propagation::{LATE, reading_errors};
 use super::stepping::FrameSteps;
 use super::session::Session;
 use super::stop::Stop;
@@ -276,6 +276,18 @@ pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
         told.len() == found.len() && told.iter().zip(found).all(near)
     })
+}
+
+/// Results that wait for the end of the run, beside those of any impact.
+const LATE_OF_STOREYS: [&str; 2] = ["residual_drift", "storey_energy"];
+
+/// Says of what waits for the end of a run that swung back that it is not sure.
+pub(super) fn mark_late(layout: &[(&'static str, usize)], contributions: &mut [Vec<Contribution>]) {
+    let names = layout.iter().flat_map(|(name, count)| std::iter::repeat_n(*name, *count));
+    let late = names.zip(contributions).filter(|(name, _)| LATE.contains(name) || LATE_OF_STOREYS.contains(name));
+    for part in late.flat_map(|(_, parts)| parts) {
+        part.smooth = false;
+    }
 }
 
 /// Numbers of a study by the results that they are: a name with how many numbers it has, one of which may be no list.

@@ -18,6 +18,9 @@ use crate::uncertainty::{Contribution, Moved, Source, sources_of};
 /// Why no uncertainty is told of a run.
 pub(super) const LEADS_ELSEWHERE: &str = "the recorded way, taken again, does not lead to the recorded results";
 
+/// Results that wait for the end of the run.
+pub(super) const LATE: [&str; 4] = ["residual_displacement", "impulse", "restoring_energy", "damping_energy"];
+
 /// One run to take.
 struct Job {
     setting: Setting,
@@ -93,6 +96,12 @@ impl<'run> Doubts<'run> {
             study.contributions(&as_it_was.values, &take, tick)
         })
         .map_err(Unknown::Stop)?;
+        if path.swung_back() {
+            let late = OUTCOMES.iter().zip(&mut contributions).filter(|(name, _)| LATE.contains(name));
+            for part in late.flat_map(|(_, parts)| parts) {
+                part.smooth = false;
+            }
+        }
         round_times(self.procedure, input.time_step, &mut contributions);
         let names = OUTCOMES.iter().copied().chain(["critical_time_step"]);
         for (name, parts) in names.zip(contributions) {

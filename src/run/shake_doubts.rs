@@ -1,7 +1,7 @@
 //! What the uncertainty of the inputs makes of the results of a shake. In: what went into it, and the recorded steps. Out: for
 //! each number, what each source contributes. The recorded way is taken again, under the same ground.
 
-use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there};
+use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
 use super::propagation::LEADS_ELSEWHERE;
 use super::shake::Setting;
 use super::stepping::{self, FrameSteps};
@@ -84,9 +84,12 @@ pub(super) fn propagate(
         };
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
-    let parts = parts.map_err(Unknown::Stop)?;
+    let mut parts = parts.map_err(Unknown::Stop)?;
     let lists = ["max_displacement", "max_drift", "residual_drift", "periods"].map(|name| (name, floors));
     let layout: Vec<(&'static str, usize)> = lists.into_iter().chain([("max_base_shear", 1)]).collect();
+    if path.swung_back() {
+        mark_late(&layout, &mut parts);
+    }
     give_all(&layout, parts, results);
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! What the uncertainty of the inputs makes of the results of an impact on a storey. In: what went into it, and the recorded
 //! steps. Out: for each number, what each source contributes. The recorded way of all floors is taken again.
 
-use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there};
+use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
 use super::impact::law;
 use super::propagation::{LEADS_ELSEWHERE, contact_formulas, round_times, same};
 use super::stepping;
@@ -89,6 +89,9 @@ pub(super) fn propagate(
     let lists = ["floor_displacement", "max_drift", "residual_drift", "storey_energy", "periods"].map(|name| (name, floors));
     let layout: Vec<(&'static str, usize)> =
         OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1)).chain(lists).collect();
+    if path.swung_back() {
+        mark_late(&layout, &mut parts);
+    }
     give_all(&layout, parts, results);
     Ok(())
 }

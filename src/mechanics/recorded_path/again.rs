@@ -18,6 +18,8 @@ pub struct Again<'a> {
     piece: usize,
     /// Of the curve that begins with each branch; those to come as they were.
     maps: Vec<Map>,
+    /// Of those that go back to where the record went.
+    fading: Vec<Option<Fading>>,
     /// Where it turned at the end of each branch, m; those to come as they were.
     turns: Vec<f64>,
     /// The last place, in metres of the record.
@@ -39,12 +41,25 @@ struct Aside {
     direction: f64,
 }
 
+/// A curve goes to where the record went, as it would lie in `frame`.
+#[derive(Clone, Copy, Debug)]
+struct Fading {
+    frame: Map,
+    /// From where (m), and what place of the record that is.
+    from: f64,
+    recorded: f64,
+    /// Where the record ended, and where that is, m.
+    end: f64,
+    ended: f64,
+}
+
 impl<'a> Again<'a> {
     pub(super) fn new(path: &'a RecordedPath, distortion: Distortion) -> Self {
         let turns = path.branches.iter().map(|branch| path.readings[branch.end].target).collect();
         let place = path.readings[0].target;
         let maps = vec![Map::NONE; path.branches.len()];
-        Self { path, distortion, step: 0, piece: 0, maps, turns, place, aside: None, unseen: 0.0 }
+        let fading = vec![None; path.branches.len()];
+        Self { path, distortion, step: 0, piece: 0, maps, fading, turns, place, aside: None, unseen: 0.0 }
     }
 
     /// Where it begins (m), and what is read there: displacement (m) and force (N).
@@ -166,21 +181,21 @@ impl<'a> Again<'a> {
     fn turn(&mut self, place: f64) {
         let path = self.path;
         let branch = self.branch();
-        let piece = path.pieces[self.piece];
-        let map = self.maps[piece.curve];
         let next = branch + 1;
         let turn = path.readings[path.branches[branch].end];
-        let here = map.back(place);
-        let moved = here - turn.target;
-        let (_, force) = path.at(self.piece, self.nearest(), here);
+        let (frame, at) = self.stand(place);
+        let moved = frame.back(place) - turn.target;
         // Readings so near each other tell noise.
-        let rise = if moved.abs() <= path.least {
-            path.pieces[path.branches[branch].last_piece].end_tangent * moved
+        let off = at - turn.target;
+        let rise = if off.abs() <= path.least {
+            path.pieces[path.branches[branch].last_piece].end_tangent * off
         } else {
-            force - turn.force
+            path.at(self.piece, self.nearest(), at).1 - turn.force
         };
-        let own = if path.branches[next].retraces { Map::NONE } else { self.moved(next, moved, rise) };
-        self.maps[next] = map.after(own);
+        let retraces = path.branches[next].retraces;
+        let own = if retraces { Map::shifted(moved - off, 0.0) } else { self.moved(next, moved, rise) };
+        self.maps[next] = frame.after(own);
+        self.fading[next] = self.fade(next, frame, rise).filter(|_| path.rule == Rule::Anchored && !retraces);
         self.turns[branch] = place;
         self.piece = path.branches[next].first_piece;
     }
@@ -196,13 +211,39 @@ impl<'a> Again<'a> {
                 let stretched = |pivot| Map::about(pivot, [turn.target, turn.force], [turn.target + moved, turn.force + rise]);
                 path.pivot(branch).and_then(stretched).unwrap_or(shifted)
             }
-            Rule::Shifted if path.branches[branch].drifts => {
+            Rule::Shifted | Rule::Anchored if path.branches[branch].drifts => {
                 // Along its own last slope, on which it so comes to lie as it did, to where it begins on the new turn.
                 let (first, last) = (piece.start_tangent, piece.end_tangent);
                 let along = (first * moved - rise) / (first - last);
                 if last.abs() < SETTLED * first.abs() { Map::shifted(along, last * along) } else { shifted }
             }
-            Rule::Shifted | Rule::Kept => shifted,
+            Rule::Shifted | Rule::Anchored | Rule::Kept => shifted,
+        }
+    }
+
+    /// From where the force is gone to where the record went on the branch.
+    fn fade(&self, branch: usize, frame: Map, rise: f64) -> Option<Fading> {
+        let path = self.path;
+        let [recorded, slope] = path.branches[branch].gone?;
+        let piece = path.pieces[path.branches[branch].first_piece];
+        let from = self.maps[branch].place(recorded) - rise / slope;
+        let end = path.readings[piece.last].target;
+        let ended = frame.place(end);
+        let some_way = (ended - from) * path.branches[branch].direction > path.least && end != recorded;
+        some_way.then_some(Fading { frame, from, recorded, end, ended })
+    }
+
+    /// How the curve that it is on lies at a place (m), and what place of the record that is.
+    fn stand(&self, place: f64) -> (Map, f64) {
+        let curve = self.path.pieces[self.piece].curve;
+        let map = self.maps[curve];
+        match self.fading[curve] {
+            Some(fading) if (place - fading.from) * self.path.branches[curve].direction > 0.0 => {
+                let share = (place - fading.from) / (fading.ended - fading.from);
+                let between = fading.recorded + share * (fading.end - fading.recorded);
+                (fading.frame, if share < 1.0 { between } else { fading.frame.back(place) })
+            }
+            _ => (map, map.back(place)),
         }
     }
 
@@ -218,8 +259,7 @@ impl<'a> Again<'a> {
             let back = self.place - aside.from;
             return (aside.displacement + back, aside.force + path.pieces[0].start_tangent * back);
         }
-        let map = self.maps[path.pieces[self.piece].curve];
-        let at = map.back(self.place);
+        let (map, at) = self.stand(self.place);
         let (displacement, force) = path.at(self.piece, self.nearest(), at);
         (displacement + (self.place - at), map.force(force))
     }

@@ -41,6 +41,11 @@ impl Map {
         }
     }
 
+    /// Where a place of the record lies, m.
+    pub fn place(self, recorded: f64) -> f64 {
+        self.stretch * recorded + self.shift
+    }
+
     /// The place of the record, m.
     pub fn back(self, place: f64) -> f64 {
         (place - self.shift) / self.stretch

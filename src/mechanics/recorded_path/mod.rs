@@ -38,6 +38,9 @@ pub enum Rule {
     /// Its curve is stretched about where the one before it began, if it came back softer than it first was: exact of those
     /// that lose stiffness and come back to the origin.
     Pivoted,
+    /// As `Shifted` until the force is gone; from there it goes to where the record went, as far as that is known: of those
+    /// that come back to a place of their own on the far side (pinching, a gap that closes).
+    Anchored,
     /// As `Shifted`, and loops that did not close in the record keep their shape as well: of specimens that forget a turn
     /// only as they flow on (Bouc and Wen) neither is exact.
     Kept,
@@ -117,12 +120,24 @@ impl RecordedPath {
         &self.readings[step.min(self.readings.len() - 1)]
     }
 
+    /// Whether it swung through no force and back after it flowed: what came then rests on more than one supposition.
+    #[must_use]
+    pub fn swung_back(&self) -> bool {
+        self.swings().count() > 1
+    }
+
+    /// Branches that do not go back over the one before and on which the force changes its sign.
+    fn swings(&self) -> impl Iterator<Item = &Branch> {
+        self.branches.iter().skip(1).filter(|branch| branch.gone.is_some() && !branch.retraces)
+    }
+
     /// What the specimen may be supposed to do for all the record tells, the likeliest first.
     #[must_use]
     pub fn rules(&self) -> Vec<Rule> {
         let softer = (1..self.branches.len()).any(|branch| self.pivot(branch).is_some());
         let drifts = self.branches.iter().any(|branch| branch.drifts);
-        let possible = [(Rule::Shifted, true), (Rule::Pivoted, softer), (Rule::Kept, drifts)];
+        let swings = self.swings().next().is_some();
+        let possible = [(Rule::Shifted, true), (Rule::Pivoted, softer), (Rule::Anchored, swings), (Rule::Kept, drifts)];
         possible.into_iter().filter(|(_, possible)| *possible).map(|(rule, _)| rule).collect()
     }
 
@@ -211,93 +226,4 @@ fn drawn(draw: u16, step: u64) -> u64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
-        let reading = |target: &f64| Reading { target: *target, displacement: target + 1e-4, force: force(*target) };
-        RecordedPath::new(targets.iter().map(reading).collect(), 1000.0, 0.0, 0.0).unwrap()
-    }
-
-    /// Out, back and out again, with a pause at the start.
-    const TARGETS: [f64; 9] = [0.0, 0.0, 0.1, 0.3, 0.35, 0.2, 0.05, 0.1, 0.4];
-
-    #[test]
-    fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
-        let path = path(|x| 1000.0 * x + 5.0 * (1e3 * x).sin(), &TARGETS);
-        let mut again = path.again(Distortion::NONE);
-        assert_eq!(again.start(), (TARGETS[0], path.readings[0].displacement, path.readings[0].force));
-        for (target, reading) in TARGETS.iter().zip(&path.readings).skip(1) {
-            assert_eq!(again.move_to(*target), (reading.displacement, reading.force));
-        }
-    }
-
-    /// Wherever it is taken, and past its end, an elastic specimen stays elastic.
-    #[test]
-    fn an_elastic_way_taken_off_its_targets_is_elastic() {
-        let path = path(|x| 1000.0 * x, &TARGETS);
-        let mut again = path.again(Distortion { displacement_scale: 1.25, force_scale: 2.0, zero: 3.0, noise: None });
-        for (step, target) in (0..).zip(TARGETS.iter().chain(&[0.5, 0.6, -0.2])).skip(1) {
-            let off = target + 0.02 * f64::from(step).cos();
-            let (displacement, force) = again.move_to(off);
-            assert!((force - (1600.0 * off + 3.0)).abs() < 1e-9, "step {step}: {force}");
-            assert!((displacement - off - 1.25e-4).abs() < 1e-12);
-        }
-    }
-
-    /// Yield at 0.2 m, 100 N/m past it, back with 1000 N/m: turned elsewhere, it comes back along R = `R_m` − K(`X_m` − X) of
-    /// the new turning point.
-    #[test]
-    fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
-        let loading = |x: f64| if x < 0.2 { 1000.0 * x } else { 200.0 + 100.0 * (x - 0.2) };
-        let back = |x: f64| loading(0.5) - 1000.0 * (0.5 - x);
-        let readings = [
-            (0.0, loading(0.0)),
-            (0.2, loading(0.2)),
-            (0.4, loading(0.4)),
-            (0.5, loading(0.5)),
-            (0.45, back(0.45)),
-            (0.4, back(0.4)),
-        ];
-        let readings = readings.map(|(target, force)| Reading { target, displacement: target, force }).to_vec();
-        let path = RecordedPath::new(readings, 1000.0, 0.0, 0.0).unwrap();
-        for turned in [0.49, 0.5, 0.51, 0.53] {
-            let mut again = path.again(Distortion::NONE);
-            for target in [0.21, 0.41, turned] {
-                assert!((again.move_to(target).1 - loading(target)).abs() < 1e-9, "{turned}");
-            }
-            for target in [0.46, 0.39] {
-                let by_hand = loading(turned) - 1000.0 * (turned - target);
-                let (_, force) = again.move_to(target);
-                assert!((force - by_hand).abs() < 1e-9, "{turned}: {force} {by_hand}");
-            }
-        }
-    }
-
-    /// Noise on short pieces makes no stiffness: past the end it goes on with the slope of what spans enough.
-    #[test]
-    fn noise_makes_no_tangent() {
-        let readings = |step: u32| {
-            let target = 1e-3 * f64::from(step);
-            let noise = if step.is_multiple_of(2) { 1.0 } else { -1.0 };
-            Reading { target, displacement: target, force: 1000.0 * target + noise }
-        };
-        let path = RecordedPath::new((0..200).map(readings).collect(), 1000.0, 1.0, 0.0).unwrap();
-        let mut again = path.again(Distortion::NONE);
-        for step in 1..200 {
-            again.move_to(1e-3 * f64::from(step));
-        }
-        let (_, force) = again.move_to(0.3);
-        assert!((force - 300.0).abs() < 12.0, "{force}");
-    }
-
-    #[test]
-    fn draws_differ_and_have_both_signs_alike() {
-        let sum = |draw: u16| (0..1000).map(|step| if drawn(draw, step) & 1 == 0 { 1 } else { -1 }).sum::<i32>();
-        for draw in 0..8 {
-            assert!(sum(draw).abs() < 110, "draw {draw}: {}", sum(draw));
-        }
-        let both: i32 = (0..1000).map(|step| if (drawn(3, step) ^ drawn(4, step)) & 1 == 0 { 1 } else { -1 }).sum();
-        assert!(both.abs() < 110, "{both}");
-    }
-}
+mod tests;

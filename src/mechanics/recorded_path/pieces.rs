@@ -49,6 +49,8 @@ pub(super) struct Branch {
     pub retraces: bool,
     /// It passed the place of an earlier turn elsewhere than through it: no loop was closed.
     pub drifts: bool,
+    /// Where the force that its curve began with was gone: place (m) and slope (N/m).
+    pub gone: Option<[f64; 2]>,
 }
 
 /// Cuts a record; `least` (m) is how long a piece must be to tell a tangent, `stiffness` (N/m) what holds where none does.
@@ -115,7 +117,15 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
         if branch == 0 {
             elastic = pieces[0].start_tangent;
         }
-        branches.push(Branch { direction, end, first_piece, last_piece: pieces.len() - 1, retraces: false, drifts });
+        branches.push(Branch {
+            direction,
+            end,
+            first_piece,
+            last_piece: pieces.len() - 1,
+            retraces: false,
+            drifts,
+            gone: gone(readings, &pieces[first_piece]),
+        });
     }
     for branch in 1..branches.len() {
         branches[branch].retraces = retraces(readings, &pieces, &branches, branch, NOISE_BOUND * force_noise);
@@ -153,6 +163,15 @@ fn retraces(readings: &[Reading], pieces: &[Piece], branches: &[Branch], branch:
         span = span.max((reading.force - turn.force).abs());
     }
     thickness <= noise + THIN * span
+}
+
+/// Where the force is none, and how fast it changes there.
+fn gone(readings: &[Reading], piece: &Piece) -> Option<[f64; 2]> {
+    let begun = readings[piece.begin].force;
+    let step = (piece.first..=piece.last).find(|step| readings[*step].force * begun < 0.0)?;
+    let near = readings[if step == piece.first { piece.begin } else { step - 1 }];
+    let slope = (readings[step].force - near.force) / (readings[step].target - near.target);
+    (slope.is_finite() && slope != 0.0).then(|| [near.target - near.force / slope, slope])
 }
 
 /// Displacement and force at a place on the curve of a piece, where the record went there before.
