@@ -4,6 +4,7 @@
 mod axis;
 mod behaviour;
 mod cycle;
+mod devices;
 mod escalate;
 mod figure;
 mod frame;
@@ -22,6 +23,7 @@ use crate::quantity::Dimension;
 pub use axis::{AxisCalibration, AxisPlan};
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use devices::Behind;
 pub use escalate::{Between, BlowOn, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};

@@ -1,5 +1,5 @@
 //! Whether a specimen is stiffer than its integrator takes it for (physics, section 11): α-OS is stable for every step only while
-//! the specimen is not stiffer than its `K_I`. In: what is imposed and read, step by step. Out: one remark. It stops nothing.
+//! the specimen is not stiffer than its `K_I`, and explicit Newmark up to 2/ω of what it is at its stiffest. In: what is imposed and read, step by step. Out: one remark. It stops nothing.
 
 use super::session::Session;
 use crate::diagnostic::Code;
@@ -42,7 +42,7 @@ impl Stiffer {
         Self { judged, last: first, said: false }
     }
 
-    /// Takes a reading, m and N; says once that the specimen is stiffer than `K_I`. `what` names it.
+    /// Takes a reading, m and N; says once that the specimen is stiffer than the step is stable for. `what` names it.
     pub(super) fn take(&mut self, reading: (f64, f64), what: &str, session: &mut Session<'_>) {
         let text = self.judge(reading, what);
         if let Some(text) = text {
@@ -52,7 +52,7 @@ impl Stiffer {
 
     fn judge(&mut self, reading: (f64, f64), what: &str) -> Option<String> {
         let Judged { integrator, operator_stiffness, mobility, time_step, noise } = self.judged;
-        if !matches!(integrator, Integrator::AlphaOs { .. }) || self.said {
+        if integrator == Integrator::Tangent || self.said {
             return None;
         }
         let (moved, gained) = (reading.0 - self.last.0, reading.1 - self.last.1);
@@ -62,13 +62,28 @@ impl Stiffer {
         // Rounding makes a secant of a move too small to tell.
         let rounding = 1e-9 * operator_stiffness;
         let tells = measured.is_finite() && moved.abs() > SURE * noise.1;
+        let stiffness = |value| readable(value, Dimension::STIFFNESS);
+        let time = |value| readable(value, Dimension::TIME);
+        // Explicit Newmark is bound by what the specimen is, not by what it was taken for.
+        if integrator == Integrator::Explicit {
+            let sure = measured - SURE * spread - rounding;
+            if !tells || time_step <= longest_stable_step(integrator, sure * mobility, 0.0) {
+                return None;
+            }
+            self.said = true;
+            let limit = time(longest_stable_step(integrator, measured * mobility, 0.0));
+            return Some(format!(
+                "{}: {what} reached {}: explicit Newmark is stable up to {limit} there, and the time step is {}",
+                Code::StifferThanOperator,
+                stiffness(measured),
+                time(time_step),
+            ));
+        }
         if !tells || measured - operator_stiffness <= SURE * spread + rounding {
             return None;
         }
         self.said = true;
         let limit = longest_stable_step(integrator, 0.0, (measured - operator_stiffness) * mobility);
-        let stiffness = |value| readable(value, Dimension::STIFFNESS);
-        let time = |value| readable(value, Dimension::TIME);
         let so = if time_step > limit { "which it is beyond" } else { "which it is within" };
         Some(format!(
             "{}: {what} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
@@ -153,6 +168,18 @@ mod tests {
         assert_eq!(stiffer.judge((0.003, 1.5), "the specimen"), None, "once");
         let tangent = Judged { integrator: Integrator::Tangent, ..judged((0.0, 0.0)) };
         assert_eq!(Stiffer::new(tangent, (0.0, 0.0)).judge((0.001, 9.0), "the specimen"), None);
+    }
+
+    /// 800 N/m on 2 kg: ω = 20 rad/s, 2/ω = 0.1 s; of 500 N/m 0.126 s.
+    #[test]
+    fn explicit_newmark_is_bound_by_the_stiffness_that_is_measured() {
+        let explicit = Judged { integrator: Integrator::Explicit, ..judged((0.0, 0.0)) };
+        let mut stiffer = Stiffer::new(explicit, (0.0, 0.0));
+        assert_eq!(stiffer.judge((0.001, 0.5), "the specimen"), None, "beyond K_I, and stable");
+        assert_eq!(stiffer.judge((0.002, 1.3), "the specimen"), None, "at its limit");
+        let text = stiffer.judge((0.003, 2.2), "the specimen").expect("a remark");
+        assert!(text.starts_with("W718") && text.contains("900.0 N/m") && text.contains("up to 94.28 ms"), "{text}");
+        assert_eq!(stiffer.judge((0.004, 3.2), "the specimen"), None, "once");
     }
 
     /// 0.1 N and 1 µm over 1 mm: a secant of 360 N/m has a deviation of 142 N/m; five of them are not 60.

@@ -38,6 +38,15 @@ pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f6
         .help("take the high end of what the ramp finds: a `stiffness` above the specimen's is stable for every step")
 }
 
+/// The tangent form with a bound on its tangent (N/m) below the specimen's stiffness.
+pub fn stiffer_than_tangent(span: Span, specimen: f64, bound: f64) -> Diagnostic {
+    let (specimen, bound) = (shown(specimen, Dimension::STIFFNESS), shown(bound, Dimension::STIFFNESS));
+    let message = format!("the specimen reaches {specimen}, and the tangent is taken for no more than {bound}: it may be unstable");
+    Diagnostic::new(Code::StifferThanOperator, message)
+        .at(span, "`max_tangent_ratio` times this is the most that is believed")
+        .help("write the stiffness of the specimen where it is stiff, or a larger `max_tangent_ratio`")
+}
+
 pub fn continuous_on_a_real_rig(dialect: &str, span: Span) -> Diagnostic {
     let message = format!("continuous mode needs a rig that follows a path without stopping, and `{dialect}` cannot say one");
     Diagnostic::new(Code::NoPathToFollow, message)
