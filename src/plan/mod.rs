@@ -33,7 +33,7 @@ pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
     Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
-    SafeState, Settle, VirtualLink, ZeroAfter,
+    SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::{FrameUnload, Unload};

@@ -68,6 +68,9 @@ pub struct VirtualLink {
     pub seed: u64,
 }
 
+/// Speed at which a virtual rig moves where none is asked of it, m/s: that of a slow quasi-static test.
+pub const VIRTUAL_SPEED: f64 = 1e-3;
+
 /// When a reading counts. A zero band is "at once".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
