@@ -148,9 +148,9 @@ fn no_peak(condition: &Condition, outcome: ConditionOutcome, record: &Record) ->
     match growing {
         Some(name) if !decided => ConditionOutcome {
             verdict: Verdict::Inconclusive,
-            reason: outcome
-                .reason
-                .or_else(|| Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))),
+            reason: outcome.reason.or_else(|| {
+                Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))
+            }),
             ..outcome
         },
         _ => outcome,

@@ -8,6 +8,7 @@ pub mod cyclic;
 pub mod damping;
 pub mod energy;
 pub mod extremes;
+pub mod following;
 pub mod forecast;
 pub mod frame;
 pub mod frame_path;
@@ -36,6 +37,6 @@ pub mod structure;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use integrator::critical_time_step;

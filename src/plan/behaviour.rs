@@ -170,7 +170,9 @@ impl Behaviour {
     #[must_use]
     pub fn largest_stiffness(&self) -> f64 {
         match self {
-            Self::BoucWen { stiffness, hardening, beta, .. } => stiffness * (hardening + (1.0 - hardening) * (2.0 * beta).max(1.0)),
+            Self::BoucWen { stiffness, hardening, beta, .. } => {
+                stiffness * (hardening + (1.0 - hardening) * (2.0 * beta).max(1.0))
+            }
             Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Table(table) => table.steepest(|_| true),
             Self::Fracture { of, .. } | Self::Rate { of, .. } => of.largest_stiffness(),

