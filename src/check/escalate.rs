@@ -3,7 +3,7 @@
 use super::checker::{Checker, Place, Reads};
 use super::faults::{cyclic as fault, names, values};
 use super::striker::STANDARD_GRAVITY;
-use super::{impact, storey_impact, striker};
+use super::{impact, storey_impact};
 use crate::formula::{Formula, Function, Operator};
 use crate::plan::{Between, BlowOn, Condition, Escalate, MOST_BLOWS, ProcedureKind};
 use crate::schema::Kind;
@@ -81,7 +81,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         "drop_heights" => (levels.into_iter().map(|height| root(2.0 * STANDARD_GRAVITY, height)).collect(), None),
         _ => {
             let hammer = checker.reference(block, "striker", Kind::Striker)?;
-            let mass = striker::export(checker, hammer, "mass", head)?;
+            let mass = checker.constant(hammer, "mass")?;
             (levels.iter().cloned().map(|energy| root(2.0 / mass, energy)).collect(), Some(levels))
         }
     })
