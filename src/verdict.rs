@@ -4,7 +4,7 @@
 use crate::formula::{Formula, FormulaError, Operator, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
-use crate::record::{Beyond, Outcome, Record};
+use crate::record::{Beyond, History, Outcome, Record};
 use crate::rig::failpoint::{self, Guarding};
 
 /// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
@@ -103,7 +103,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
 fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
     let assess = |condition: &Condition| {
         let outcome = assess_condition(condition, rule, record);
-        drifted(condition, cut_short(condition, outcome, record), record)
+        drifted(condition, no_peak(condition, cut_short(condition, outcome, record), record), record)
     };
     let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
@@ -122,6 +122,38 @@ fn cut_short(condition: &Condition, outcome: ConditionOutcome, record: &Record) 
             ..outcome
         },
         None => outcome,
+    }
+}
+
+/// Results of an impact that would be larger had it gone on.
+const GROWING: [&str; 3] = ["max_displacement", "time_of_max_displacement", "absorbed_energy"];
+
+/// A largest displacement that was still growing as the run ended is no peak: that it keeps below a bound proves nothing, that it
+/// is past one does.
+fn no_peak(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
+    let decided = match (outcome.bound, outcome.verdict) {
+        (Some(Bound::Compare { comparison: Comparison::Greater | Comparison::GreaterEqual, .. }), verdict) => {
+            verdict == Verdict::Pass
+        }
+        (Some(Bound::Compare { comparison: Comparison::Less | Comparison::LessEqual, .. }), verdict) => verdict == Verdict::Fail,
+        _ => false,
+    };
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    let mut read = references.iter().filter(|reference| GROWING.contains(&reference.name));
+    let growing = read.find_map(|reference| {
+        let procedure = record.procedures.get(reference.procedure.0)?;
+        matches!(&procedure.history, History::Impact(history) if history.still_rising()).then_some(&procedure.name)
+    });
+    match growing {
+        Some(name) if !decided => ConditionOutcome {
+            verdict: Verdict::Inconclusive,
+            reason: outcome.reason.or_else(|| {
+                Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))
+            }),
+            ..outcome
+        },
+        _ => outcome,
     }
 }
 
@@ -222,20 +254,33 @@ fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaErr
     })
 }
 
+/// Numbers that differ by no more than this share of the larger are one number: 0.3 mm read in quanta of 0.1 mm, or an energy
+/// that went through a square root and back, is off by some 1e-16 of itself, and no measurement tells such a difference.
+const ROUNDING: f64 = 1e-12;
+
+/// What rounding may make of numbers such as these.
+fn rounding(a: f64, b: f64) -> f64 {
+    ROUNDING * a.abs().max(b.abs()).min(f64::MAX)
+}
+
+fn equal(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= rounding(a, b)
+}
+
 impl Bound {
-    /// Whether `value` (SI) meets it.
+    /// Whether `value` (SI) meets it. What is equal but for rounding is equal.
     #[must_use]
     pub fn holds(self, value: f64) -> bool {
         match self {
             Self::Compare { comparison, limit } => match comparison {
-                Comparison::Less => value < limit,
-                Comparison::LessEqual => value <= limit,
-                Comparison::Greater => value > limit,
-                Comparison::GreaterEqual => value >= limit,
-                Comparison::Equal => value == limit,
-                Comparison::NotEqual => value != limit,
+                Comparison::Less => value < limit && !equal(value, limit),
+                Comparison::LessEqual => value <= limit || equal(value, limit),
+                Comparison::Greater => value > limit && !equal(value, limit),
+                Comparison::GreaterEqual => value >= limit || equal(value, limit),
+                Comparison::Equal => equal(value, limit),
+                Comparison::NotEqual => !equal(value, limit),
             },
-            Self::Within { target, tolerance } => (value - target).abs() <= tolerance,
+            Self::Within { .. } => self.margin(value) >= 0.0,
         }
     }
 
@@ -263,14 +308,17 @@ impl Bound {
     #[must_use]
     pub fn margin(self, value: f64) -> f64 {
         match self {
+            Self::Compare { limit, .. } if equal(value, limit) => 0.0,
             Self::Compare { comparison, limit } => match comparison {
                 Comparison::Less | Comparison::LessEqual => limit - value,
                 Comparison::Greater | Comparison::GreaterEqual => value - limit,
-                // 0 − |…|, not −|…|: a report should not show −0.
-                Comparison::Equal => 0.0 - (value - limit).abs(),
+                Comparison::Equal => -(value - limit).abs(),
                 Comparison::NotEqual => (value - limit).abs(),
             },
-            Self::Within { target, tolerance } => tolerance - (value - target).abs(),
+            Self::Within { target, tolerance } => {
+                let margin = tolerance - (value - target).abs();
+                if margin.abs() <= rounding(value, target) { 0.0 } else { margin }
+            }
         }
     }
 }

@@ -3,25 +3,33 @@
 
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
+use super::device::{Device, device};
 use super::faults::{axes as fault, rigs, values};
 use super::rig::{CheckedRig, place_of};
 use super::{calendar, real_rig};
-use crate::plan::{AxisCalibration, AxisPlan, Dialect, Specimen};
+use crate::plan::{AxisCalibration, AxisPlan, Specimen};
 use crate::source::Span;
 
+/// One axis, and where its own devices were written.
+pub struct CheckedAxis {
+    pub plan: AxisPlan,
+    pub actuator: Option<Device>,
+    pub load_cell: Option<Device>,
+}
+
 /// The axes that a rig lists; none where it says nothing of them.
-pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<AxisPlan>> {
+pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
     let Some((_, written)) = checker.given(block, "axes") else { return Some(Vec::new()) };
     let (at, place) = (written.value.span, place_of(checker, block, "axes")?);
     let chosen = checker.choices(block, "axes")?;
     if chosen.is_empty() {
         return checker.fail(values::empty_list(at));
     }
-    let axes: Vec<Option<AxisPlan>> = chosen.iter().map(|chosen| axis(checker, block, chosen, place)).collect();
+    let axes: Vec<Option<CheckedAxis>> = chosen.iter().map(|chosen| axis(checker, block, chosen, place)).collect();
     axes.into_iter().collect()
 }
 
-fn axis<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>, place: Place) -> Option<AxisPlan> {
+fn axis<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>, place: Place) -> Option<CheckedAxis> {
     let sign = match chosen.span("sign") {
         Some(_) => {
             checker.chosen_argument(chosen, "sign").map(|word| Some(if word.variant.name == "negative" { -1.0 } else { 1.0 }))
@@ -38,7 +46,10 @@ fn axis<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>, place:
         (checker.optional_argument(chosen, "resolution", place), checker.optional_argument(chosen, "noise", place));
     let force_range = checker.bounds_argument(chosen, "force_range", place);
     let calibration = calibration(checker, block, chosen, place);
-    Some(AxisPlan {
+    let (actuator, load_cell) = (own_device(checker, chosen, "actuator", place), own_device(checker, chosen, "load_cell", place));
+    let (actuator, load_cell) = (actuator?, load_cell?);
+    let link = |device: &Option<Device>| device.as_ref().map(|device| device.link.clone());
+    let plan = AxisPlan {
         sign: sign?,
         gate: gate?,
         displacement: displacement?,
@@ -47,7 +58,18 @@ fn axis<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>, place:
         noise: noise?,
         force_range: force_range?,
         calibration: calibration?,
-    })
+        actuator: link(&actuator),
+        load_cell: link(&load_cell),
+    };
+    Some(CheckedAxis { plan, actuator, load_cell })
+}
+
+/// A device of its own: `Some(None)` where it has none.
+#[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+fn own_device<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, role: &str, place: Place) -> Option<Option<Device>> {
+    let Some(at) = chosen.span(role) else { return Some(None) };
+    let link = checker.chosen_argument(chosen, role)?;
+    device(checker, &link, at, place).map(Some)
 }
 
 /// Where the numbers of one axis are traced to.
@@ -63,6 +85,7 @@ fn calibration<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>,
     let mut number = |name: &str| checker.optional_argument(chosen, name, place);
     let (force, length) = (number("force_uncertainty"), number("displacement_uncertainty"));
     let zero = number("zero_uncertainty");
+    let (newtons_per_count, zero_count) = (number("force_per_count"), number("zero_count"));
     let (displacement, displacement_due) = (displacement?, displacement_due?);
     if let (None, None, Some((_, at))) = (&displacement, checker.given(block, "displacement_calibration"), &displacement_due) {
         return checker.fail(rigs::day_of_no_calibration("displacement_calibration_due", *at));
@@ -75,27 +98,12 @@ fn calibration<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>,
         displacement,
         displacement_due: text(displacement_due),
         displacement_class: displacement_class?,
+        newtons_per_count: newtons_per_count?,
+        zero_count: zero_count?,
         force_uncertainty: force?,
         displacement_uncertainty: length?,
         zero_uncertainty: zero?,
     })
-}
-
-/// No more axes than the device behind the line drives; two devices of one axis each are none of several.
-pub fn hold_device(checker: &mut Checker, block: usize, axes: usize, dialect: &Dialect, alone: bool) -> Option<()> {
-    let most = if alone { dialect.most_axes() } else { 1 };
-    let (_, written) = checker.given(block, "axes")?;
-    if axes <= most { Some(()) } else { checker.fail(fault::too_many(axes, most, dialect, alone, written.value.span)) }
-}
-
-/// A control point for every axis, and no axis without one.
-pub fn hold_control_points(checker: &mut Checker, axes: usize, dialect: &Dialect, at: Span) -> Option<()> {
-    match dialect {
-        Dialect::Nees { control_points } if control_points.len() != axes => {
-            checker.fail(fault::control_points(control_points.len(), axes, at))
-        }
-        _ => Some(()),
-    }
 }
 
 /// A rig of as many axes as its specimen has storeys: no storey without an actuator, and no actuator without a storey.

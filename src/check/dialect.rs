@@ -12,8 +12,10 @@ pub fn dialect<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place)
         "hx711" => Dialect::Hx711,
         "indicator" => Dialect::Indicator,
         "scpi" => {
-            let newtons_per_unit = checker.constant_argument(chosen, "newtons_per_unit", place)?;
-            not_zero(checker, chosen, "newtons_per_unit", newtons_per_unit)?;
+            let newtons_per_unit = checker.list_argument(chosen, "newtons_per_unit", place)?;
+            for newtons in &newtons_per_unit {
+                not_zero(checker, chosen, "newtons_per_unit", *newtons)?;
+            }
             Dialect::Scpi { newtons_per_unit }
         }
         "instron" => Dialect::Instron,

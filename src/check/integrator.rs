@@ -47,7 +47,7 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Op
     let (Some(step), Some(mass)) = (time_step_before_the_run(impact), impact.mass.constant()) else { return };
     let virtual_rig = checker.real_rig.is_none();
     let specimen = specimen.filter(|_| virtual_rig).and_then(|specimen| specimen.behaviour.as_ref());
-    let behaves = specimen.map_or(0.0, Behaviour::initial_stiffness);
+    let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);
     let assumed = impact.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
     let shortfall = assumed.map_or(0.0, |assumed| behaves - assumed);
@@ -59,6 +59,14 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Op
         let head = checker.scope.blocks[block].block.head;
         let at = checker.given(block, "stiffness").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::stiffer_than_operator(at, behaves, assumed, limit));
+    }
+    if let (Integrator::Tangent, Some(assumed), Some(ratio)) =
+        (impact.stepping.integrator, assumed, impact.stepping.max_tangent_ratio.constant())
+        && behaves > assumed * ratio * (1.0 + 1e-9)
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker.given(block, "stiffness").map_or(head, |(_, entry)| entry.value.span);
+        checker.faults.push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
     }
     if step <= limit || impact.stepping.allow_unstable {
         return;

@@ -2,6 +2,7 @@
 //! Out: a [`Checked`].
 
 mod axes;
+mod axis_devices;
 mod behaviour;
 mod calendar;
 mod call;

@@ -1,12 +1,16 @@
 //! `plan "Title" { … }`: the title, the edition and the data of the certificate.
 
+use super::calendar;
 use super::checker::Checker;
-use super::faults::values;
+use super::faults::{rigs, values};
 use crate::plan::DecisionRule;
 use crate::schema::{FieldType, Kind};
 
 /// The edition this version reads.
 const EDITION: f64 = 1.0;
+
+/// What a certificate shows as a day is one.
+const DAYS: [&str; 2] = ["date", "issued"];
 
 /// Title, where one is given, and the data of the certificate in the schema's order.
 pub fn plan_block(checker: &mut Checker, date: Option<&str>) -> (Option<String>, Vec<(&'static str, String)>) {
@@ -18,6 +22,12 @@ pub fn plan_block(checker: &mut Checker, date: Option<&str>) -> (Option<String>,
             FieldType::Choice(_) => checker.choice(block, field.name).map(|chosen| chosen.variant.name.to_owned()),
             _ => None,
         });
+        if let (true, Some(day), Some(block)) = (DAYS.contains(&field.name), &given, block)
+            && !calendar::is_day(day)
+            && let Some((_, written)) = checker.given(block, field.name)
+        {
+            checker.faults.push(rigs::not_a_day(day, written.value.span));
+        }
         let text = if field.name == "date" { date.map(str::to_owned).or(given) } else { given };
         particulars.extend(text.map(|text| (field.name, text)));
     }

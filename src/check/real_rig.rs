@@ -1,7 +1,8 @@
 //! A rig that moves a real specimen: its devices fit together, and nothing is missing that keeps a specimen safe. In: the
 //! block of a rig, the limits of the run. Out: a [`RealLink`]. It opens no port.
 
-use super::axes;
+use super::axes::{self, CheckedAxis};
+use super::axis_devices;
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::device::{Device, device};
@@ -10,7 +11,7 @@ use super::faults::{values, whole};
 use super::fields::whole as whole_number;
 use super::limits::CheckedLimits;
 use super::rig::{CheckedRig, kind, place_of};
-use crate::plan::{AxisPlan, Calibration, DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
+use crate::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
 use crate::quantity::Dimension;
 use crate::schema::{Field, Kind, Need, RigKind};
 use crate::syntax::ast::{Argument, Expr, ExprKind};
@@ -30,22 +31,20 @@ pub fn attended(checker: &mut Checker, particulars: &[(&'static str, String)]) {
 
 /// What a real rig says; None where something of it is faulty or missing, which [`complete`] says.
 pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
-    let devices = devices(checker, block);
     let safe_state = checker.choice(block, "safe_state").map(|chosen| chosen.variant.name);
     let axes = axes::axes(checker, block);
+    let devices = devices(checker, block, axes.as_deref().unwrap_or_default());
     let gate = gate(checker, block, axes.as_deref().unwrap_or_default());
     let readings = readings(checker, block);
     let watchdog = checker.constant(block, "watchdog");
     let own_speed = checker.constant(block, "speed");
     let (actuator, load_cell) = devices?;
     if let Some(watchdog) = watchdog {
-        hold_watchdog(checker, block, watchdog, [Some(&actuator), load_cell.as_ref()].into_iter().flatten())?;
+        let own = axes.iter().flatten().flat_map(|axis| [axis.actuator.as_ref(), axis.load_cell.as_ref()]);
+        hold_watchdog(checker, block, watchdog, [Some(&actuator), load_cell.as_ref()].into_iter().chain(own).flatten())?;
     }
     let axes = axes?;
-    if !axes.is_empty() {
-        axes::hold_device(checker, block, axes.len(), &actuator.link.dialect, load_cell.is_none())?;
-    }
-    axes::hold_control_points(checker, axes.len().max(1), &actuator.link.dialect, actuator.at)?;
+    axis_devices::hold(checker, block, &actuator, load_cell.as_ref(), &axes)?;
     Some(RealLink {
         actuator: actuator.link,
         load_cell: load_cell.map(|device| device.link),
@@ -54,12 +53,12 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         readings: readings?,
         watchdog: watchdog?,
         own_speed: own_speed?,
-        axes,
+        axes: axes.into_iter().map(|axis| axis.plan).collect(),
     })
 }
 
 /// The device that moves, and the one that weighs where it is another.
-fn devices(checker: &mut Checker, block: usize) -> Option<(Device, Option<Device>)> {
+fn devices(checker: &mut Checker, block: usize, axes: &[CheckedAxis]) -> Option<(Device, Option<Device>)> {
     let key = |checker: &Checker, field: &str| checker.given(block, field).map(|(_, entry)| entry.key.span);
     let (link, actuator, load_cell) = (key(checker, "link"), key(checker, "actuator"), key(checker, "load_cell"));
     if let (Some(link), Some((field, other))) =
@@ -79,7 +78,7 @@ fn devices(checker: &mut Checker, block: usize) -> Option<(Device, Option<Device
         None => Some(None),
     };
     let (moving, weighing) = (moving?, weighing?);
-    fit(checker, block, field, &moving, weighing.as_ref())?;
+    fit(checker, block, field, &moving, weighing.as_ref(), axes)?;
     Some((moving, weighing))
 }
 
@@ -90,22 +89,38 @@ fn device_of(checker: &mut Checker, block: usize, field: &str) -> Option<Device>
     device(checker, &chosen, at, place)
 }
 
-/// One moves, one weighs, each on a port of its own, and counts have a worth.
-fn fit(checker: &mut Checker, block: usize, field: &str, moving: &Device, weighing: Option<&Device>) -> Option<()> {
+/// One moves, one weighs, and counts have a worth.
+fn fit(
+    checker: &mut Checker,
+    block: usize,
+    field: &str,
+    moving: &Device,
+    weighing: Option<&Device>,
+    axes: &[CheckedAxis],
+) -> Option<()> {
     if !moving.link.dialect.moves() {
         return checker.fail(fault::cannot_move(field, &moving.link.dialect, moving.dialect_at));
     }
     let cell = weighing.unwrap_or(moving);
-    if !cell.link.dialect.weighs() {
+    let all_apart = !axes.is_empty() && axes.iter().all(|axis| axis.load_cell.is_some());
+    if !cell.link.dialect.weighs() && !all_apart {
         let own = weighing.is_some();
         return checker.fail(fault::cannot_weigh(own, field, &cell.link.dialect, cell.dialect_at));
     }
-    if let Some(weighing) = weighing
-        && weighing.link.port.to_string() == moving.link.port.to_string()
-    {
-        return checker.fail(fault::port_twice(&moving.link.port, weighing.port_at, moving.port_at));
+    let unsaid = axes.iter().find(|axis| {
+        let counts = axis.load_cell.as_ref().unwrap_or(cell).link.dialect.counts();
+        counts && axis.plan.calibration.newtons_per_count.is_none()
+    });
+    match axes.iter().filter_map(|axis| axis.load_cell.as_ref()).find(|own| own.link.dialect.counts()) {
+        // What each axis says of its counts the rig need not say.
+        Some(_) if unsaid.is_none() => Some(()),
+        Some(own) => {
+            let own = unsaid.and_then(|axis| axis.load_cell.as_ref()).unwrap_or(own);
+            counts(checker, block, &own.link.dialect, own)
+        }
+        None if unsaid.is_none() && !axes.is_empty() && cell.link.dialect.counts() => Some(()),
+        None => counts(checker, block, &cell.link.dialect, cell),
     }
-    counts(checker, block, &cell.link.dialect, cell)
 }
 
 /// Raw counts need to be told in newtons; a force in newtons is not told twice.
@@ -145,9 +160,9 @@ fn hold_watchdog<'d>(
 }
 
 /// The rig's gate; where each axis has its own, the rig needs none.
-fn gate(checker: &mut Checker, block: usize, axes: &[AxisPlan]) -> Option<Gate> {
-    if checker.given(block, "gate").is_none() && axes.iter().all(|axis| axis.gate.is_some()) {
-        return axes.first()?.gate;
+fn gate(checker: &mut Checker, block: usize, axes: &[CheckedAxis]) -> Option<Gate> {
+    if checker.given(block, "gate").is_none() && axes.iter().all(|axis| axis.plan.gate.is_some()) {
+        return axes.first()?.plan.gate;
     }
     let place = place_of(checker, block, "gate")?;
     let chosen = checker.choice(block, "gate")?;

@@ -1,7 +1,7 @@
 //! `require "label" condition`: comparisons and `within`, one condition for each part joined with `and`.
 
 use super::checker::{Checker, Place, Reads, Typed};
-use super::faults::types as fault;
+use super::faults::{types as fault, values};
 use crate::formula::Formula;
 use crate::plan::{Comparison, Condition, Requirement, Test};
 use crate::quantity::Dimension;
@@ -60,6 +60,9 @@ impl<'a> Checker<'a> {
                 let relative = width.percent
                     || (width.dimension == Dimension::NUMBER && value.dimension != Dimension::NUMBER && !width.bare);
                 let width = if relative { width } else { self.expect(width, value.dimension, "within", tolerance)? };
+                if width.formula.constant().is_some_and(|width| width < 0.0) {
+                    return self.fail(values::negative_tolerance(tolerance.span, self.text(tolerance.span)));
+                }
                 let test = Test::Within { target: target.formula, tolerance: width.formula, relative };
                 Some(Condition { text, value: value.formula, test, dimension: value.dimension })
             }

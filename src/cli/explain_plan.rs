@@ -118,13 +118,18 @@ impl<'a> DryRun<'a> {
                 let energy = explain_tracking::energy(self.plan, index);
                 section(&format!("{}, impact", procedure.name), [impact(history), foretold, energy].concat());
             }
-            if let History::StoreyImpact(history) = &procedure.history
+            if let (History::StoreyImpact(history), ProcedureKind::StoreyImpact(blow)) = (&procedure.history, &planned.kind)
                 && !history.floors.is_empty()
             {
                 let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
                 section(&format!("{}, modes", procedure.name), modes);
                 let heading = format!("{}, impact on storey {}", procedure.name, history.struck + 1);
-                section(&heading, [impact(&history.blow), explain_shake::floors(history)].concat());
+                let foretold = explain_tracking::storey_rows(self.plan, blow, history);
+                let energy = explain_tracking::energy(self.plan, index);
+                section(&heading, [impact(&history.blow), explain_shake::floors(history), foretold, energy].concat());
+            }
+            if matches!(procedure.history, History::Escalate(_)) {
+                section(&format!("{}, worst blow", procedure.name), explain_tracking::energy(self.plan, index));
             }
             if let (History::Shake(history), ProcedureKind::Shake(shake)) = (&procedure.history, &planned.kind) {
                 let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);

@@ -10,10 +10,10 @@
 //! steps: 10 % short ×1.55, δ = 2 % of A ×1.79.)
 
 use crate::check::tracking;
-use crate::plan::{Impact, Link, Mode, Plan, Shake};
+use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, StoreyImpact};
 use crate::quantity::Dimension;
 use crate::quantity::display::{minus, readable, significant};
-use crate::record::{ImpactHistory, ProcedureRecord, ShakeHistory};
+use crate::record::{Floors, ImpactHistory, Modes, ProcedureRecord, ShakeHistory, StoreyImpactHistory};
 
 /// What is foretold of one impact; nothing where the rig declares nothing that it misses.
 pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, history: &ImpactHistory) -> Vec<Vec<String>> {
@@ -72,32 +72,50 @@ impl Growth {
     }
 }
 
-/// The same of a frame: what a delay is to each mode, and how the largest displacement may grow in it. Beside it stands the damping
-/// of the mode, which works the other way.
+/// The same of a frame on moving ground.
 pub(super) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> Vec<Vec<String>> {
-    let pause = shake.stepping.pause.constant().unwrap_or(0.0);
     let ends = history.steps.first().zip(history.steps.last());
-    let wall = ends.map_or(0.0, |(first, last)| last.wall_time - first.wall_time);
-    let run = Ran {
-        mode: shake.stepping.mode,
-        pause,
-        time_step: history.time_step,
-        wall,
-        steps: ends.map_or(0, |(_, last)| last.step),
-    };
-    let (late, unsettled) = (delay(plan, &run), uncertain(plan, shake.stepping.mode));
-    let sizes = history.steps.iter().flat_map(|step| &step.computed).map(|place| place.abs());
-    let amplitude = sizes.fold(0.0, f64::max);
-    let Some(modes) = history.modes.as_ref().filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
+    let ends = ends.map(|(first, last)| (last.wall_time - first.wall_time, last.step));
+    let moved = Moved { ends, time_step: history.time_step, modes: history.modes.as_ref(), ratios: &history.damping_ratios };
+    frame_rows(plan, &shake.stepping, &moved, &history.steps)
+}
+
+/// The same of a frame that is struck.
+pub(super) fn storey_rows(plan: &Plan, impact: &StoreyImpact, history: &StoreyImpactHistory) -> Vec<Vec<String>> {
+    let ends = history.blow.steps.first().zip(history.blow.steps.last());
+    let ends = ends.map(|(first, last)| (last.wall_time - first.wall_time, last.step));
+    let moved = Moved { ends, time_step: history.blow.time_step, modes: history.modes.as_ref(), ratios: &history.damping_ratios };
+    frame_rows(plan, &impact.stepping, &moved, &history.floors)
+}
+
+/// What a dry run of a frame tells.
+struct Moved<'a> {
+    /// Rig time of all steps, s, and their number.
+    ends: Option<(f64, u64)>,
+    /// s
+    time_step: f64,
+    modes: Option<&'a Modes>,
+    ratios: &'a [f64],
+}
+
+/// What a delay is to each mode, and how the largest displacement may grow in it. Beside it stands the damping of the mode, which
+/// works the other way.
+fn frame_rows<S: Floors>(plan: &Plan, stepping: &Stepping, moved: &Moved<'_>, steps: &[S]) -> Vec<Vec<String>> {
+    let pause = stepping.pause.constant().unwrap_or(0.0);
+    let (wall, count) = moved.ends.unwrap_or_default();
+    let run = Ran { mode: stepping.mode, pause, time_step: moved.time_step, wall, steps: count };
+    let (late, unsettled) = (delay(plan, &run), uncertain(plan, stepping.mode));
+    let amplitude = steps.iter().flat_map(S::computed).map(|place| place.abs()).fold(0.0, f64::max);
+    let Some(modes) = moved.modes.filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
         return Vec::new();
     };
-    if shake.stepping.i_modification {
+    if stepping.i_modification {
         return vec![vec!["growth by tracking".to_owned(), CORRECTED.to_owned()]];
     }
     let mut rows = vec![late_by(late, unsettled)];
     for (mode, period) in modes.periods.iter().enumerate() {
         let omega = modes.angular_frequency(mode);
-        let damping = history.damping_ratios.get(mode).copied().unwrap_or(0.0);
+        let damping = moved.ratios.get(mode).copied().unwrap_or(0.0);
         let growth = Growth { omega, late, relative: unsettled / amplitude };
         let percent = |ratio: f64| format!("{} %", minus(&significant(100.0 * ratio, 3)));
         rows.push(vec![
@@ -117,7 +135,7 @@ pub(super) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> 
 
 /// What tracking is to make of the energy of a run, from the share that the rig misses of its increments.
 pub(super) fn energy(plan: &Plan, procedure: usize) -> Vec<Vec<String>> {
-    let Some((foretold, _)) = tracking::foretold(plan, procedure) else { return Vec::new() };
+    let Some(tracking::Forecast { foretold, .. }) = tracking::foretold(plan, procedure) else { return Vec::new() };
     let share = significant(100.0 * foretold.share.abs(), 2);
     let does = if foretold.share < 0.0 { "put in" } else { "taken out" };
     let held = foretold.passed.map_or_else(String::new, |time| format!("; held at about {}", readable(time, Dimension::TIME)));

@@ -115,6 +115,8 @@ codes! {
     E633 UnfitInside Error;
     E634 NoSuchProperty Error;
     E635 TooUncertain Error;
+    E636 ChannelsDiffer Error;
+    E637 NotAsked Error;
     E640 WhichStorey Error;
     E641 NoUseOnAFrame Error;
     E642 LawNeedsTangent Error;

@@ -6,6 +6,8 @@ use nalgebra::{Matrix4, Vector4};
 /// R = `intercept` + K·X up to the knee, and on from there with `K_p`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BilinearFit {
+    /// +1 or −1: the way the ramp went. Knee and force there are on that side.
+    pub way: f64,
     /// N
     pub intercept: f64,
     pub intercept_error: f64,
@@ -38,8 +40,23 @@ impl BilinearFit {
     /// Force of the two lines at `displacement` (m), N.
     #[must_use]
     pub fn force(&self, displacement: f64) -> f64 {
-        let beyond = (displacement - self.yield_displacement).max(0.0);
+        let beyond = self.way * (self.way * (displacement - self.yield_displacement)).max(0.0);
         self.intercept + self.stiffness * (displacement - beyond) + self.hardened * beyond
+    }
+
+    /// Of the same lines through the origin's other side: places and forces change their signs, and what they share with the
+    /// stiffnesses, which do not.
+    fn mirrored(self) -> Self {
+        let [stiffness, intercept, hardened, knee, force, hardening] = self.shares;
+        let other = |shares: [f64; 4]| shares.map(|share| -share);
+        Self {
+            way: -self.way,
+            intercept: -self.intercept,
+            yield_displacement: -self.yield_displacement,
+            yield_force: -self.yield_force,
+            shares: [stiffness, other(intercept), hardened, other(knee), other(force), hardening],
+            ..self
+        }
     }
 }
 
@@ -49,13 +66,14 @@ const FEWEST: usize = 2;
 /// Least squares over both lines and the knee together (Hudson 1966): between two neighbouring points the best knee is
 /// where the lines through either side meet, if they meet there, else one of the two points; the best of all is taken.
 /// Standard errors are those of the linearised model at the optimum. None of fewer than six points, or where the force
-/// shows no knee that softens.
+/// shows no knee that softens. A ramp that pulls is fitted as the one it mirrors.
 #[must_use]
 pub fn fit_bilinear(x: &[f64], y: &[f64]) -> Option<BilinearFit> {
     if x.len() != y.len() || x.len() < 6 {
         return None;
     }
-    let mut points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
+    let way = if x.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+    let mut points: Vec<(f64, f64)> = x.iter().zip(y).map(|(x, y)| (way * x, way * y)).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best: Option<(f64, f64)> = None;
     let mut consider = |knee: f64| {
@@ -78,7 +96,8 @@ pub fn fit_bilinear(x: &[f64], y: &[f64]) -> Option<BilinearFit> {
     }
     let (knee, squares) = best?;
     let (found, _) = at_knee(&points, knee)?;
-    fitted(&points, knee, found, squares).filter(|fit| fit.stiffness > 0.0 && fit.hardened < fit.stiffness)
+    let fit = fitted(&points, knee, found, squares).filter(|fit| fit.stiffness > 0.0 && fit.hardened < fit.stiffness)?;
+    Some(if way < 0.0 { fit.mirrored() } else { fit })
 }
 
 /// Intercept and slope through points of which two differ in x.
@@ -139,6 +158,7 @@ fn fitted(points: &[(f64, f64)], knee: f64, [intercept, stiffness, hardened]: [f
     let mean = points.iter().map(|point| point.1).sum::<f64>() / count;
     let total: f64 = points.iter().map(|point| (point.1 - mean).powi(2)).sum();
     Some(BilinearFit {
+        way: 1.0,
         intercept,
         intercept_error: error(Vector4::new(1.0, 0.0, 0.0, 0.0)),
         stiffness,
@@ -161,6 +181,8 @@ mod tests {
     use super::*;
     use crate::mechanics::testing::normal;
 
+    type Read = fn(&BilinearFit) -> f64;
+
     /// K 400 kN/m, knee at 10.3 mm and 4.12 kN, `K_p` 32 kN/m.
     fn ramp(noise: &mut dyn FnMut() -> f64) -> (Vec<f64>, Vec<f64>) {
         (1..=40)
@@ -179,6 +201,42 @@ mod tests {
         assert!((fit.yield_displacement - 0.0103).abs() < 1e-11 && (fit.yield_force - 4120.0).abs() < 1e-5);
         assert!((fit.hardening - 0.08).abs() < 1e-9 && fit.r_squared > 1.0 - 1e-12 && fit.intercept.abs() < 1e-5);
         assert!((fit.force(0.02) - y[39]).abs() < 1e-5);
+    }
+
+    /// A ramp that pulls finds the knee of the ramp it mirrors, to the last bit: places and forces on the other side, the same
+    /// stiffnesses and errors, and what they share as the mirrored lines have it.
+    #[test]
+    fn a_pulling_ramp_is_the_mirrored_one() {
+        let mut state = 11;
+        let (x, y) = ramp(&mut || 40.0 + 15.0 * normal(&mut state));
+        let minus = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<f64>>();
+        let (push, pull) = (fit_bilinear(&x, &y).unwrap(), fit_bilinear(&minus(&x), &minus(&y)).unwrap());
+        assert_eq!((push.way, pull.way), (1.0, -1.0));
+        assert!((push.yield_displacement - 0.0103).abs() < 1e-3 && (push.intercept - 40.0).abs() < 30.0, "{push:?}");
+        let same: [Read; 8] = [
+            |fit| fit.stiffness,
+            |fit| fit.hardened,
+            |fit| fit.hardening,
+            |fit| fit.intercept_error,
+            |fit| fit.yield_displacement_error,
+            |fit| fit.yield_force_error,
+            |fit| fit.hardening_error,
+            |fit| fit.r_squared,
+        ];
+        let opposite: [Read; 3] = [|fit| fit.intercept, |fit| fit.yield_displacement, |fit| fit.yield_force];
+        assert!(same.iter().all(|read| read(&push) == read(&pull)));
+        assert!(opposite.iter().all(|read| read(&push) == -read(&pull)));
+        for x in &x {
+            assert_eq!(push.force(*x), -pull.force(-x));
+        }
+        let [stiffness, intercept, _, knee, force, _] = pull.shares;
+        for column in 0..4 {
+            let by_hand = intercept[column] + pull.yield_displacement * stiffness[column] + pull.stiffness * knee[column];
+            assert!((force[column] - by_hand).abs() < 1e-9 * pull.yield_force_error);
+        }
+        // The share that the stiffness has in the force at no displacement has the other sign.
+        assert_eq!(stiffness, push.shares[0]);
+        assert_eq!(intercept[0], -push.shares[1][0]);
     }
 
     /// Errors that share: their sums of squares are the errors themselves, and `F_y` = R₀ + K·`X_y` makes its row of the others.
@@ -209,8 +267,6 @@ mod tests {
         }
         assert_eq!(stiffness[1..], [0.0; 3], "the stiffness has its own error alone");
     }
-
-    type Read = fn(&BilinearFit) -> f64;
 
     /// The spread of a thousand fits is the standard error that each of them states.
     #[test]

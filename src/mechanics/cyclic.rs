@@ -1,6 +1,17 @@
 //! Loops of force and displacement: energy, secant stiffness and equivalent damping of one cycle. In: the points of a
 //! cycle in order. Out: a [`Loop`]. It knows no rig and no plan.
 
+/// One reading of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopPoint {
+    /// Where the actuator was sent, m.
+    pub command: f64,
+    /// m
+    pub displacement: f64,
+    /// N
+    pub force: f64,
+}
+
 /// What one cycle comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loop {
@@ -13,7 +24,11 @@ pub struct Loop {
     pub max_force: f64,
     /// N
     pub min_force: f64,
-    /// From the leftmost point to the rightmost, `K_sec`, N/m; None without motion.
+    /// Displacement (m) and force (N) where the leftmost and where the rightmost command was read. A place that is
+    /// commanded twice, as the start of a one-sided cycle, counts as it is left last: that reading closes the loop, and no
+    /// error of a reading chooses between the two.
+    pub ends: [(f64, f64); 2],
+    /// From the left end to the right, `K_sec`, N/m; None without motion.
     pub stiffness: Option<f64>,
     /// Equivalent viscous damping, `E_D / (4π E_S0)` with `E_S0 = ½ K_sec a²` (Jacobsen 1930; Chopra, Dynamics of
     /// Structures, sec. 3.9). About the middle of the loop, so that it means the same of one-sided cycles. None where
@@ -21,27 +36,33 @@ pub struct Loop {
     pub damping_ratio: Option<f64>,
 }
 
-/// The loop through `points` (m, N); None of fewer than two.
+/// The loop through `points`; None of fewer than two.
 #[must_use]
-pub fn loop_of(points: &[(f64, f64)]) -> Option<Loop> {
+pub fn loop_of(points: &[LoopPoint]) -> Option<Loop> {
     let (first, rest) = points.split_first().filter(|(_, rest)| !rest.is_empty())?;
-    let (mut left, mut right) = (*first, *first);
-    let (mut max_force, mut min_force) = (first.1, first.1);
+    let (mut left, mut right) = (first, first);
+    let (mut max_force, mut min_force) = (first.force, first.force);
     for point in rest {
-        left = if point.0 < left.0 { *point } else { left };
-        right = if point.0 > right.0 { *point } else { right };
-        max_force = max_force.max(point.1);
-        min_force = min_force.min(point.1);
+        left = if point.command <= left.command { point } else { left };
+        right = if point.command >= right.command { point } else { right };
+        max_force = max_force.max(point.force);
+        min_force = min_force.min(point.force);
     }
-    let energy = points.windows(2).map(|pair| work(pair[0], pair[1])).sum();
-    let width = right.0 - left.0;
+    let energy = points.windows(2).map(|pair| work(pair[0].place(), pair[1].place())).sum();
+    let width = right.displacement - left.displacement;
     let amplitude = 0.5 * width;
-    let stiffness = (width > 0.0).then(|| (right.1 - left.1) / width);
+    let stiffness = (width > 0.0).then(|| (right.force - left.force) / width);
     let damping_ratio = stiffness.filter(|stiffness| *stiffness > 0.0).map(|stiffness| {
         let stored = 0.5 * stiffness * amplitude * amplitude;
         energy / (4.0 * std::f64::consts::PI * stored)
     });
-    Some(Loop { amplitude, energy, max_force, min_force, stiffness, damping_ratio })
+    Some(Loop { amplitude, energy, max_force, min_force, ends: [left.place(), right.place()], stiffness, damping_ratio })
+}
+
+impl LoopPoint {
+    fn place(&self) -> (f64, f64) {
+        (self.displacement, self.force)
+    }
 }
 
 /// ∫R dX between two points by the trapezoid, J.
@@ -55,15 +76,19 @@ mod tests {
     use super::*;
     use crate::mechanics::specimen::{Bilinear, Elastic, RestoringForce};
 
+    fn read(place: f64, model: &mut dyn RestoringForce) -> LoopPoint {
+        LoopPoint { command: place, displacement: place, force: model.move_to(place) }
+    }
+
     /// Points of one cycle to +a, −a and back, `points` to the quarter.
-    fn cycle(model: &mut dyn RestoringForce, amplitude: f64, points: u32) -> Vec<(f64, f64)> {
-        let mut path = vec![(0.0, model.move_to(0.0))];
+    fn cycle(model: &mut dyn RestoringForce, amplitude: f64, points: u32) -> Vec<LoopPoint> {
+        let mut path = vec![read(0.0, model)];
         let (mut from, ends) = (0.0, [(amplitude, 1), (-amplitude, 2), (0.0, 1)]);
         for (to, quarters) in ends {
             let count = points * quarters;
             for point in 1..=count {
                 let x = if point == count { to } else { from + (to - from) * f64::from(point) / f64::from(count) };
-                path.push((x, model.move_to(x)));
+                path.push(read(x, model));
             }
             from = to;
         }
@@ -110,8 +135,27 @@ mod tests {
 
     #[test]
     fn nothing_has_no_loop_and_rest_no_stiffness() {
-        assert_eq!(loop_of(&[(0.0, 1.0)]), None);
-        let rest = loop_of(&[(0.1, 1.0), (0.1, 2.0)]).unwrap();
+        let still = |force| LoopPoint { command: 0.1, displacement: 0.1, force };
+        assert_eq!(loop_of(&[still(1.0)]), None);
+        let rest = loop_of(&[still(1.0), still(2.0)]).unwrap();
         assert_eq!((rest.stiffness, rest.damping_ratio, rest.max_force), (None, None, 2.0));
+    }
+    /// Pushed to `a` and back from the virgin state: the place of the start is read twice, at no force and at the force that
+    /// holds it there. Whatever the errors of the two readings, the loop goes from the second.
+    #[test]
+    fn a_one_sided_loop_is_closed_by_its_last_reading() {
+        for error in [-1e-6, 0.0, 1e-6] {
+            let mut model = Bilinear::new(1000.0, 10.0, 0.0);
+            let mut points = vec![read(0.0, &mut model), read(0.03, &mut model), read(0.0, &mut model)];
+            points[2].displacement += error;
+            let found = loop_of(&points).unwrap();
+            assert_eq!(found.ends, [(error, -10.0), (0.03, 10.0)]);
+            assert!((found.stiffness.unwrap() - 20.0 / (0.03 - error)).abs() < 1e-9);
+            for point in &mut points {
+                *point = LoopPoint { command: -point.command, displacement: -point.displacement, force: -point.force };
+            }
+            let pulled = loop_of(&points).unwrap();
+            assert_eq!((pulled.stiffness, pulled.damping_ratio), (found.stiffness, found.damping_ratio));
+        }
     }
 }

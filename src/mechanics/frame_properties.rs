@@ -125,7 +125,7 @@ impl FrameProperties {
         let mut highest = self.highest(&self.matrices.stiffness);
         let mut shortfall = 0.0;
         if let Some(frame) = virtual_specimen.filter(|frame| !frame.storeys.is_empty()) {
-            let behaves: Vec<f64> = frame.storeys.iter().map(|storey| storey.behaviour.initial_stiffness()).collect();
+            let behaves: Vec<f64> = frame.storeys.iter().map(|storey| storey.behaviour.largest_stiffness()).collect();
             highest = highest.max(self.highest(&storey_stiffness(&behaves)));
             if frame.storeys.iter().zip(&behaves).any(|(storey, behaves)| *behaves > storey.stiffness) {
                 // Storeys that are softer count as a trifle: the bound is then a little low, never high.

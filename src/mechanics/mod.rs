@@ -7,6 +7,7 @@ pub mod contact;
 pub mod cyclic;
 pub mod damping;
 pub mod energy;
+pub mod following;
 pub mod forecast;
 pub mod frame;
 pub mod frame_properties;
@@ -33,6 +34,6 @@ pub mod structure;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use integrator::critical_time_step;

@@ -7,6 +7,6 @@ pub(super) fn uniform(state: &mut u64) -> f64 {
 }
 
 /// The sum of twelve of them less six: unit variance.
-pub(super) fn normal(state: &mut u64) -> f64 {
+pub(crate) fn normal(state: &mut u64) -> f64 {
     (0..12).map(|_| uniform(state)).sum::<f64>() - 6.0
 }

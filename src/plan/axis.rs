@@ -1,7 +1,7 @@
 //! The axes of a checked rig: what each actuator with its load cell says of itself, and what holds for it where it says
 //! nothing. In: the rig of a plan, the place of an axis. Out: its sign, its limits, its gate, its readings, its calibration.
 
-use super::{Calibration, Gate, Interval, Limits, ReadingRules, RealLink, RigPlan};
+use super::{Calibration, DeviceLink, Gate, Interval, Limits, ReadingRules, RealLink, RigPlan};
 
 /// What one axis of a real rig says of itself. None: as the rig says of all.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -19,6 +19,9 @@ pub struct AxisPlan {
     pub force: Option<Interval>,
     pub gate: Option<Gate>,
     pub calibration: AxisCalibration,
+    /// Of its own, in place of the rig's.
+    pub actuator: Option<DeviceLink>,
+    pub load_cell: Option<DeviceLink>,
 }
 
 /// Where the numbers of one axis are traced to. None: as the rig says of all.
@@ -33,6 +36,10 @@ pub struct AxisCalibration {
     /// `YYYY-MM-DD`
     pub displacement_due: Option<String>,
     pub displacement_class: Option<String>,
+    /// Of a cell that gives raw counts: N per count.
+    pub newtons_per_count: Option<f64>,
+    /// Count at no force.
+    pub zero_count: Option<f64>,
     /// Standard, a share of the force.
     pub force_uncertainty: Option<f64>,
     /// Standard, a share of the displacement.
@@ -57,7 +64,9 @@ impl AxisCalibration {
             force_uncertainty: self.force_uncertainty.unwrap_or(all.force_uncertainty),
             displacement_uncertainty: self.displacement_uncertainty.unwrap_or(all.displacement_uncertainty),
             zero_uncertainty: self.zero_uncertainty.unwrap_or(all.zero_uncertainty),
-            ..*all
+            zero_drift: all.zero_drift,
+            newtons_per_count: self.newtons_per_count.or(all.newtons_per_count),
+            zero_count: self.zero_count.unwrap_or(all.zero_count),
         }
     }
 }

@@ -164,6 +164,32 @@ impl Behaviour {
         }
     }
 
+    /// Largest slope dR/dX on any way, N/m: what stability is judged by. Most behaviours are stiffest at first; a joint that
+    /// bears while its faces still hold is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and
+    /// measured points are as steep as their steepest stretch.
+    #[must_use]
+    pub fn largest_stiffness(&self) -> f64 {
+        match self {
+            Self::BoucWen { stiffness, hardening, beta, .. } => {
+                stiffness * (hardening + (1.0 - hardening) * (2.0 * beta).max(1.0))
+            }
+            Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
+            Self::Table(table) => table.steepest(|_| true),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.largest_stiffness(),
+            Self::Maxwell { of, stiffness, .. } => of.largest_stiffness() + stiffness,
+            Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.largest_stiffness()).sum::<f64>(),
+            Self::Parallel(parts) => parts.iter().map(Self::largest_stiffness).sum(),
+            Self::Elastic { .. }
+            | Self::Bilinear { .. }
+            | Self::Beam(_)
+            | Self::Multilinear { .. }
+            | Self::Pinching(_)
+            | Self::Degrading { .. }
+            | Self::Bolted(_)
+            | Self::Portal(_) => self.initial_stiffness(),
+        }
+    }
+
     /// Stiffness at no displacement when all that relaxes has, N/m: what a slow test measures.
     #[must_use]
     pub fn relaxed_stiffness(&self) -> f64 {
@@ -269,12 +295,16 @@ impl Table {
     /// steepest stretch, that one.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {
+        match self.unloading {
+            Unloading::InitialStiffness => self.steepest(|_| true),
+            Unloading::AlongTheCurve => self.steepest(|pair| pair[0][0] <= 0.0 && 0.0 <= pair[1][0]),
+        }
+    }
+
+    /// Slope of the steepest of the stretches that count, N/m.
+    fn steepest(&self, counts: impl Fn(&[[f64; 2]]) -> bool) -> f64 {
         let slope = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]);
-        let counts = |pair: &&[[f64; 2]]| match self.unloading {
-            Unloading::InitialStiffness => true,
-            Unloading::AlongTheCurve => pair[0][0] <= 0.0 && 0.0 <= pair[1][0],
-        };
-        self.scale * self.points.windows(2).filter(counts).map(slope).fold(0.0, f64::max)
+        self.scale * self.points.windows(2).filter(|pair| counts(pair)).map(slope).fold(0.0, f64::max)
     }
 
     /// Force of the curve at `displacement`, N; beyond its ends the last force holds.

@@ -68,6 +68,9 @@ pub struct VirtualLink {
     pub seed: u64,
 }
 
+/// Speed at which a virtual rig moves where none is asked of it, m/s: that of a slow quasi-static test.
+pub const VIRTUAL_SPEED: f64 = 1e-3;
+
 /// When a reading counts. A zero band is "at once".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
@@ -200,8 +203,8 @@ pub enum Dialect {
     Hx711,
     /// Load cell: weighing indicator, `ST,GS,+0001234,kg`; the unit is in the line.
     Indicator,
-    /// Load cell or transducer: SCPI `READ?`; N per reading unit.
-    Scpi { newtons_per_unit: f64 },
+    /// Load cells or transducers: SCPI `READ?`; N per reading unit, one a channel.
+    Scpi { newtons_per_unit: Vec<f64> },
     /// Instron 8800-style console: moves, reads both.
     Instron,
     /// Mark-10 stand with its gauge: moves, reads both.
@@ -242,6 +245,21 @@ impl Dialect {
             Self::Native | Self::Nees { .. } => 6,
             _ => 1,
         }
+    }
+
+    /// Axes that one device of this dialect weighs, at most.
+    #[must_use]
+    pub const fn most_channels(&self) -> usize {
+        match self {
+            Self::Scpi { newtons_per_unit } => newtons_per_unit.len(),
+            _ => self.most_axes(),
+        }
+    }
+
+    /// Whether it is asked if it would move before it is told to.
+    #[must_use]
+    pub const fn proposes(&self) -> bool {
+        matches!(self, Self::Nees { .. })
     }
 
     /// Whether it follows smooth paths without a stop.

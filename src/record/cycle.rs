@@ -1,6 +1,6 @@
 //! What a `cycle` records: every reading, and what each cycle came to.
 
-use crate::mechanics::cyclic::Loop;
+use crate::mechanics::cyclic::{Loop, LoopPoint};
 use crate::mechanics::multilinear_fit::MultilinearFit;
 
 /// One reading of a cycle: the mean of the samples at a target, or one on the way.
@@ -27,6 +27,14 @@ pub struct CycleStep {
     pub energy: f64,
 }
 
+impl CycleStep {
+    /// As a point of its loop.
+    #[must_use]
+    pub fn point(&self) -> LoopPoint {
+        LoopPoint { command: self.command, displacement: self.displacement, force: self.restoring_force }
+    }
+}
+
 /// One whole cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WholeCycle {
@@ -38,8 +46,6 @@ pub struct WholeCycle {
     pub repeat: u32,
     /// As measured.
     pub found: Loop,
-    /// The points at the ends of the loop, (m, N): the leftmost and the rightmost.
-    pub ends: [(f64, f64); 2],
 }
 
 #[derive(Clone, Debug, Default)]
@@ -68,7 +74,8 @@ impl CycleHistory {
         // One-sided cycles have an end in the middle, where they come back to: that is no backbone.
         let far = |(x, _): &(f64, f64), amplitude: f64| (x - middle).abs() > 0.5 * amplitude;
         let first_cycles = self.cycles.iter().filter(|cycle| cycle.repeat == 1);
-        let ends = first_cycles.flat_map(|cycle| cycle.ends.into_iter().filter(|end| far(end, cycle.amplitude)).map(folded));
+        let ends =
+            first_cycles.flat_map(|cycle| cycle.found.ends.into_iter().filter(|end| far(end, cycle.amplitude)).map(folded));
         first.into_iter().chain(ends).collect()
     }
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plan::{Dialect, Interval, Limits, Link, Plan, RealLink, RigPlan};
+use crate::plan::{Dialect, Interval, Limits, Link, Plan, RigPlan};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
 use crate::rig::{DeclaredNoise, Identity};
@@ -196,21 +196,23 @@ impl HeldLimit {
 /// The two channels of an axis, by its place.
 fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
     let link = rig.link.as_real();
-    let weighs = |link: &RealLink| link.load_cell.as_ref().unwrap_or(&link.actuator).dialect.clone();
-    let moves = link.map(|link| &link.actuator.dialect);
+    let moves = link.map(|link| &link.moved_by(axis).dialect);
     let (length_given, length) = match moves {
         Some(Dialect::Modbus(map)) => (GivenIn::Counts, map.length_unit),
         _ => (GivenIn::Units, 1.0),
     };
-    let (force_given, force, zero) = match link.map(weighs) {
-        Some(Dialect::Modbus(map)) => (GivenIn::Counts, map.force_unit, 0.0),
-        Some(Dialect::Scpi { newtons_per_unit }) => (GivenIn::Counts, newtons_per_unit, 0.0),
-        Some(dialect) if dialect.counts() => {
-            (GivenIn::Counts, rig.calibration.newtons_per_count.unwrap_or(1.0), rig.calibration.zero_count)
+    let (sign, calibration) = (rig.sign_of(axis), rig.calibration_of(axis));
+    let (force_given, force, zero) = match link.map(|link| link.weighed_by(axis)).map(|(cell, channel)| (&cell.dialect, channel))
+    {
+        Some((Dialect::Modbus(map), _)) => (GivenIn::Counts, map.force_unit, 0.0),
+        Some((Dialect::Scpi { newtons_per_unit }, channel)) => {
+            (GivenIn::Counts, newtons_per_unit.get(channel).copied().unwrap_or(1.0), 0.0)
+        }
+        Some((dialect, _)) if dialect.counts() => {
+            (GivenIn::Counts, calibration.newtons_per_count.unwrap_or(1.0), calibration.zero_count)
         }
         _ => (GivenIn::Units, 1.0, 0.0),
     };
-    let (sign, calibration) = (rig.sign_of(axis), rig.calibration_of(axis));
     let (resolution, noise) = match &rig.link {
         Link::Virtual(link) => (link.resolution, link.noise),
         Link::Real(link) => (link.readings_of(axis).resolution, link.readings_of(axis).noise),

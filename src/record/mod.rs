@@ -225,6 +225,15 @@ pub struct ImpactHistory {
     pub critical_time_step: f64,
 }
 
+impl ImpactHistory {
+    /// Whether the structure still moved on past its largest displacement as the record ends: that is no peak then.
+    #[must_use]
+    pub fn still_rising(&self) -> bool {
+        let largest = self.steps.iter().map(|step| step.computed).fold(f64::NEG_INFINITY, f64::max);
+        self.steps.last().is_some_and(|last| last.velocity > 0.0 && last.computed >= largest)
+    }
+}
+
 /// One row of a shake for all floors; step 0 is the start. Displacements are relative to the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShakeStep {

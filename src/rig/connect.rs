@@ -3,12 +3,12 @@
 
 use std::time::Duration;
 
-use super::device::{self, Device};
+use super::device::{self, Device, Member, together};
 use super::port::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
 use super::real::RealRig;
 use super::safety::{self, Armed};
 use super::{RigFault, Wish};
-use crate::plan::{DeviceLink, Limits, PortPlan, RigPlan};
+use crate::plan::{Behind, DeviceLink, Limits, PortPlan, RigPlan};
 
 /// Longest wait for a network rig to take the connection.
 const CONNECTING: Duration = Duration::from_secs(5);
@@ -25,22 +25,31 @@ pub struct Connected {
 /// A port cannot be opened, or a device is not the plan's or not fit.
 pub fn connect(plan: &RigPlan, limits: &Limits, wish: &Wish) -> Result<Connected, RigFault> {
     let link = plan.link.as_real().ok_or_else(|| RigFault::Device(format!("{} is a virtual rig", plan.name)))?;
-    let (actuator, mut lines) = attach(&link.actuator, plan, wish)?;
-    let load_cell = match &link.load_cell {
-        None => None,
-        Some(cell) => {
-            let (device, more) = attach(cell, plan, wish)?;
-            lines.extend(more);
-            Some(device)
-        }
-    };
+    let (actuator, mut lines) = attach_all(link.actuators(), plan, wish)?;
+    let (load_cell, more) = attach_all(link.load_cells(), plan, wish)?;
+    lines.extend(more);
+    let actuator = actuator.ok_or_else(|| RigFault::Device(format!("nothing moves the rig {}", plan.name)))?;
     // Armed before the first word: whatever becomes of the conversation, the rig holds.
     let armed = safety::arm(lines).watched(link.watchdog);
     let rig = RealRig::open(plan, limits, actuator, load_cell, Box::new(MonotonicClock::start()), wish.clone())?;
     Ok(Connected { rig, _armed: armed })
 }
 
-type Attached = (Box<dyn Device>, Vec<(Box<dyn Emergency>, Vec<u8>)>);
+/// Lines, each with the bytes that stop what is behind it.
+type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
+
+/// The devices of one role as one, None where there are none, with their lines.
+fn attach_all(behind: Vec<Behind<'_>>, plan: &RigPlan, wish: &Wish) -> Result<(Option<Box<dyn Device>>, Lines), RigFault> {
+    let (mut members, mut lines) = (Vec::new(), Lines::new());
+    for Behind { link, axes, .. } in behind {
+        let (device, line) = attach(link, plan, wish)?;
+        lines.push(line);
+        members.push(Member { device, axes, serial_number: link.serial_number.clone() });
+    }
+    Ok((together(members, plan.axes().unwrap_or(1)), lines))
+}
+
+type Attached = (Box<dyn Device>, (Box<dyn Emergency>, Vec<u8>));
 
 /// One device on its port, with the line and the bytes that stop it.
 fn attach(link: &DeviceLink, plan: &RigPlan, wish: &Wish) -> Result<Attached, RigFault> {
@@ -53,5 +62,5 @@ fn attach(link: &DeviceLink, plan: &RigPlan, wish: &Wish) -> Result<Attached, Ri
     let clock: Box<dyn Clock> = Box::new(MonotonicClock::start());
     let device = device::open(link, port, clock, wish.clone(), plan.settle.timeout);
     let bytes = device.emergency();
-    Ok((device, vec![(emergency, bytes)]))
+    Ok((device, (emergency, bytes)))
 }

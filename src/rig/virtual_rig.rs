@@ -14,8 +14,7 @@ use crate::mechanics::path::Path;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Plan, Settle, Specimen, VirtualLink};
 
-/// Speed of a move for which none is asked, m/s: that of a slow quasi-static test.
-pub const OWN_SPEED: f64 = 1e-3;
+pub use crate::plan::VIRTUAL_SPEED as OWN_SPEED;
 
 /// One degree of freedom: one actuator, one load cell.
 pub struct VirtualRig {

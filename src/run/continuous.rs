@@ -24,6 +24,7 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
     let mut monitor = Monitor::new(start, measured, restoring_force);
     strike.take(&ImpactState { measured_displacement: measured, ..*solver.state() }, monitor.tracking(), session);
     let mut gliding = Gliding::from_rest(&[start], time_scale, input.time_step);
+    let mut stiffer = strike.stiffer(&plan.stepping, (measured, restoring_force), session);
     for _ in 0..steps {
         let mut foretell = || {
             let place = solver.predict();
@@ -33,7 +34,10 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
         let (measured, force) = first(&gliding.step(|| vec![foretell()], session)?);
         let (target, taken) = (solver.predict(), solver.taken(measured, force));
         let tracking = monitor.take_as(target, measured, force, taken);
+        let before = solver.state().contact_force > 0.0;
         let state = *solver.complete(measured, force);
+        let struck = before || state.contact_force > 0.0;
+        stiffer.take((measured, force), struck, "the specimen", session);
         strike.step(&state, tracking, session)?;
         if solver.over(plan.until) {
             break;

@@ -11,7 +11,7 @@ use super::samples::{mean, scatter};
 use super::session::{Session, first};
 use super::stop::Stop;
 use crate::formula::ResultValue;
-use crate::mechanics::cyclic::{loop_of, work};
+use crate::mechanics::cyclic::{LoopPoint, loop_of, work};
 use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
@@ -181,13 +181,9 @@ impl Cycling {
 
     /// The cycle whose first point is step `from`, now that it is whole.
     fn whole(&mut self, from: usize, repeat: u32) {
-        let points: Vec<(f64, f64)> =
-            self.history.steps[from..].iter().map(|step| (step.displacement, step.restoring_force)).collect();
+        let points: Vec<LoopPoint> = self.history.steps[from..].iter().map(CycleStep::point).collect();
         let Some(found) = loop_of(&points) else { return };
-        let ends = points.iter().fold([points[0]; 2], |[left, right], point| {
-            [if point.0 < left.0 { *point } else { left }, if point.0 > right.0 { *point } else { right }]
-        });
-        self.history.cycles.push(WholeCycle { cycle: self.cycle, amplitude: self.amplitude, repeat, found, ends });
+        self.history.cycles.push(WholeCycle { cycle: self.cycle, amplitude: self.amplitude, repeat, found });
     }
 }
 

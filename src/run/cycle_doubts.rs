@@ -6,10 +6,10 @@ use super::cycle::results;
 use super::inputs::Inputs;
 use super::propagation::draws_of;
 use crate::formula::ResultValue;
-use crate::mechanics::cyclic::loop_of;
+use crate::mechanics::cyclic::{LoopPoint, loop_of};
 use crate::mechanics::recorded_path::{Distortion, Noise};
 use crate::plan::Calibration;
-use crate::record::{CycleHistory, NamedResult};
+use crate::record::{CycleHistory, CycleStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Source, combined};
 
@@ -93,8 +93,7 @@ fn distorted(history: &CycleHistory, distortion: Distortion) -> CycleHistory {
         // A cycle begins with the last reading of the one before it.
         let first = other.steps.partition_point(|step| step.cycle < cycle.cycle);
         let after = other.steps.partition_point(|step| step.cycle <= cycle.cycle);
-        let points: Vec<(f64, f64)> =
-            other.steps[first.saturating_sub(1)..after].iter().map(|step| (step.displacement, step.restoring_force)).collect();
+        let points: Vec<LoopPoint> = other.steps[first.saturating_sub(1)..after].iter().map(CycleStep::point).collect();
         if let Some(found) = loop_of(&points) {
             cycle.found = found;
         }

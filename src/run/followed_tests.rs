@@ -72,6 +72,10 @@ impl Stepped for &mut Sine {
         Balance { error: 0.0, input: 1.0 }
     }
 
+    fn is_struck(&self) -> bool {
+        false
+    }
+
     fn over(&self) -> bool {
         false
     }

@@ -78,6 +78,9 @@ pub(super) trait Stepped {
     /// Ends the step with what was read.
     fn complete(&mut self, reading: &Reading);
 
+    /// Whether a contact force acted in the last step.
+    fn is_struck(&self) -> bool;
+
     /// Keeps the end of a step, with how each axis was followed so far.
     fn keep(&mut self, state: &FrameState, axes: &[Tracking], session: &Session<'_>) -> Balance;
 
@@ -103,7 +106,7 @@ pub(super) fn run<S: Stepped>(
     let mut stepped = begin(&start)?;
     let Start { commanded, reading, noise } = start;
     let mut monitors = Monitors::new(&commanded, &reading);
-    let mut stiffer = StifferStoreys::new(&frame.properties.matrices, plan.integrator, frame.time_step, noise, &reading);
+    let mut stiffer = StifferStoreys::new(&frame.properties.matrices, plan, frame.time_step, noise, &reading);
     let mut gliding = match plan.mode {
         Mode::Continuous { time_scale } => Some(Gliding::from_rest(&commanded, time_scale, frame.time_step)),
         Mode::StepAndPause => None,
@@ -111,6 +114,7 @@ pub(super) fn run<S: Stepped>(
     let mut at_rest = stepped.frame().clone();
     at_rest.measured_displacement.clone_from(&reading.displacement);
     stepped.keep(&at_rest, &vec![Tracking::default(); commanded.len()], session);
+    let mut struck = false;
     for _ in 1..=frame.steps {
         let reading = if let Some(gliding) = &mut gliding {
             gliding.step(|| foretold(&mut stepped), session)?
@@ -119,10 +123,10 @@ pub(super) fn run<S: Stepped>(
             session.guard.pause(frame.pause)?;
             session.guard.read()?
         };
-        if gliding.is_none() {
-            stiffer.take(&reading, session);
-        }
         stepped.complete(&reading);
+        let (before, now) = (struck, stepped.is_struck());
+        stiffer.take(&reading, before || now, session);
+        struck = now;
         let state = stepped.frame().clone();
         let axes = monitors.take(&state.target, &reading, stepped.taken(&reading.force));
         let Balance { error, input } = stepped.keep(&state, &axes, session);

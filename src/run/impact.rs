@@ -19,6 +19,7 @@ use crate::mechanics::structure::Structure;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until, step_count, steps_in};
 use crate::quantity::Dimension;
+use crate::quantity::display::significant;
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 
@@ -161,6 +162,9 @@ const SECONDS_PER_METRE: Dimension = Dimension {
     time: crate::quantity::Exponent::whole(1),
 };
 
+/// Share of the striker's energy that the scheme may make or lose before a reader is told: an unstable run is off by far more.
+const UNBALANCED: f64 = 0.1;
+
 /// What a reader of the results must know of how the run ended.
 pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
     if until == Until::StrikerStop && summary.stop_time.is_none() {
@@ -169,6 +173,11 @@ pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Sessio
     if summary.still_rising {
         let text = "the structure was still moving on at the end: its largest displacement is not a peak";
         session.event(EventKind::Remark, text.to_owned());
+    }
+    if summary.energy_error.abs() > UNBALANCED {
+        let off = significant(100.0 * summary.energy_error, 3);
+        let text = format!("the energy balance is off by {off} % of the striker's energy: a shorter time step is needed");
+        session.event(EventKind::Remark, text);
     }
     if summary.last_blow_cut {
         let text = "the striker stopped with a contact force in its last step: the last blow is cut";

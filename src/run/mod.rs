@@ -19,6 +19,8 @@ mod escalate_tests;
 mod followed;
 #[cfg(test)]
 mod followed_tests;
+#[cfg(test)]
+mod forecast_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
@@ -51,6 +53,9 @@ mod shake_results;
 mod shaking;
 mod stepping;
 mod stiffer;
+#[cfg(test)]
+mod stiffer_tests;
+mod stiffness_on_the_way;
 mod stiffness_ramp;
 mod stop;
 mod storey_impact;

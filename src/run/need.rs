@@ -145,10 +145,11 @@ fn raw(link: &RealLink, axes: f64) -> f64 {
         Dialect::Native => 180.0 + AXIS * (axes - 1.0),
         Dialect::Grbl | Dialect::Nees { .. } => 180.0,
         Dialect::Instron | Dialect::Mark10 => 120.0,
-        Dialect::Hx711 | Dialect::Indicator | Dialect::Scpi { .. } | Dialect::Mark10Gauge => 60.0,
+        Dialect::Scpi { newtons_per_unit } => newtons_per_unit.iter().map(|_| 60.0).sum(),
+        Dialect::Hx711 | Dialect::Indicator | Dialect::Mark10Gauge => 60.0,
     };
-    let devices = std::iter::once(&link.actuator).chain(&link.load_cell);
-    f64::from(link.readings.samples.max(1)) * devices.map(|device| reply(&device.dialect)).sum::<f64>()
+    let devices = link.devices().into_iter().map(|(_, device)| reply(&device.dialect));
+    f64::from(link.readings.samples.max(1)) * devices.sum::<f64>()
 }
 
 /// What results are taken to be before they are measured: only stiffnesses, the highest that can come.

@@ -103,6 +103,10 @@ impl Stepped for Shaken<'_> {
         Balance { error: state.energies.error, input }
     }
 
+    fn is_struck(&self) -> bool {
+        false
+    }
+
     fn over(&self) -> bool {
         false
     }

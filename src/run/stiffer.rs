@@ -1,11 +1,13 @@
 //! Whether a specimen is stiffer than its integrator takes it for (physics, section 11): α-OS is stable for every step only while
-//! the specimen is not stiffer than its `K_I`. In: what is imposed and read, step by step. Out: one remark. It stops nothing.
+//! the specimen is not stiffer than its `K_I`, and explicit Newmark up to 2/ω of what it is at its stiffest. In: what is imposed and
+//! read, step by step. Out: one remark. It stops nothing.
 
 use super::session::Session;
+use super::stiffness_on_the_way::OnTheWay;
 use crate::diagnostic::Code;
 use crate::mechanics::frame::{FrameMatrices, drifts, shears, storeys_of};
 use crate::mechanics::method::longest_stable_step;
-use crate::plan::Integrator;
+use crate::plan::{Integrator, Mode, Stepping};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::EventKind;
@@ -27,23 +29,32 @@ pub(super) struct Judged {
     pub time_step: f64,
     /// Standard deviation of a force, N, and of a displacement, m.
     pub noise: (f64, f64),
+    /// Whether it is read on the way: dampers are in the force then.
+    pub moving: bool,
 }
 
 #[derive(Debug)]
 pub(super) struct Stiffer {
     judged: Judged,
     last: (f64, f64),
+    /// m, the last step's; 0 before the first.
+    moved: f64,
+    way: OnTheWay,
     said: bool,
 }
 
 impl Stiffer {
     /// `first` is what was read before the first step, m and N.
-    pub(super) const fn new(judged: Judged, first: (f64, f64)) -> Self {
-        Self { judged, last: first, said: false }
+    pub(super) fn new(judged: Judged, first: (f64, f64)) -> Self {
+        Self { judged, last: first, moved: 0.0, way: OnTheWay::default(), said: false }
     }
 
-    /// Takes a reading, m and N; says once that the specimen is stiffer than `K_I`. `what` names it.
-    pub(super) fn take(&mut self, reading: (f64, f64), what: &str, session: &mut Session<'_>) {
+    /// Takes a reading, m and N; says once that the specimen is stiffer than the step is stable for. `what` names it.
+    /// Where a blow fell in the step (`struck`) the velocity is none that readings tell.
+    pub(super) fn take(&mut self, reading: (f64, f64), struck: bool, what: &str, session: &mut Session<'_>) {
+        if struck {
+            self.way.struck();
+        }
         let text = self.judge(reading, what);
         if let Some(text) = text {
             session.event(EventKind::Remark, text);
@@ -51,24 +62,36 @@ impl Stiffer {
     }
 
     fn judge(&mut self, reading: (f64, f64), what: &str) -> Option<String> {
-        let Judged { integrator, operator_stiffness, mobility, time_step, noise } = self.judged;
-        if !matches!(integrator, Integrator::AlphaOs { .. }) || self.said {
+        let Judged { integrator, operator_stiffness, mobility, time_step, .. } = self.judged;
+        if integrator == Integrator::Tangent || self.said {
             return None;
         }
-        let (moved, gained) = (reading.0 - self.last.0, reading.1 - self.last.1);
-        self.last = reading;
-        let measured = gained / moved;
-        let spread = std::f64::consts::SQRT_2 * noise.0.hypot(measured * noise.1) / moved.abs();
-        // Rounding makes a secant of a move too small to tell.
-        let rounding = 1e-9 * operator_stiffness;
-        let tells = measured.is_finite() && moved.abs() > SURE * noise.1;
-        if !tells || measured - operator_stiffness <= SURE * spread + rounding {
+        let (measured, spread) =
+            if self.judged.moving { self.way.take(reading, self.judged.noise) } else { self.secant(reading) }?;
+        // Rounding makes a secant of a move too small to tell; on the way velocities are differences too.
+        let rounding = if self.judged.moving { 1e-4 } else { 1e-9 } * operator_stiffness;
+        let stiffness = |value| readable(value, Dimension::STIFFNESS);
+        let time = |value| readable(value, Dimension::TIME);
+        // Explicit Newmark is bound by what the specimen is, not by what it was taken for.
+        if integrator == Integrator::Explicit {
+            let sure = measured - SURE * spread - rounding;
+            if sure <= 0.0 || time_step <= longest_stable_step(integrator, sure * mobility, 0.0) {
+                return None;
+            }
+            self.said = true;
+            let limit = time(longest_stable_step(integrator, measured * mobility, 0.0));
+            return Some(format!(
+                "{}: {what} reached {}: explicit Newmark is stable up to {limit} there, and the time step is {}",
+                Code::StifferThanOperator,
+                stiffness(measured),
+                time(time_step),
+            ));
+        }
+        if measured - operator_stiffness <= SURE * spread + rounding {
             return None;
         }
         self.said = true;
         let limit = longest_stable_step(integrator, 0.0, (measured - operator_stiffness) * mobility);
-        let stiffness = |value| readable(value, Dimension::STIFFNESS);
-        let time = |value| readable(value, Dimension::TIME);
         let so = if time_step > limit { "which it is beyond" } else { "which it is within" };
         Some(format!(
             "{}: {what} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
@@ -81,18 +104,27 @@ impl Stiffer {
     }
 }
 
+impl Stiffer {
+    /// Stiffness of the last step with its standard deviation, N/m; None where it moved too little to tell, or turned: friction
+    /// turns with it.
+    fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {
+        let noise = self.judged.noise;
+        let (moved, gained) = (reading.0 - self.last.0, reading.1 - self.last.1);
+        self.last = reading;
+        let turned = moved * self.moved <= 0.0;
+        self.moved = moved;
+        let measured = gained / moved;
+        let spread = std::f64::consts::SQRT_2 * noise.0.hypot(measured * noise.1) / moved.abs();
+        (!turned && measured.is_finite() && moved.abs() > SURE * noise.1).then_some((measured, spread))
+    }
+}
+
 /// Every storey of a frame, by its shear and drift; none of a frame that has no storeys. A storey alone that is stiffer by ΔK makes
 /// M⁻¹(K − `K_I`) a matrix of rank one, whose frequency is ΔK over the masses it joins.
 pub(super) struct StifferStoreys(Vec<(String, Stiffer)>);
 
 impl StifferStoreys {
-    pub(super) fn new(
-        matrices: &FrameMatrices,
-        integrator: Integrator,
-        time_step: f64,
-        noise: DeclaredNoise,
-        first: &Reading,
-    ) -> Self {
+    pub(super) fn new(matrices: &FrameMatrices, plan: &Stepping, time_step: f64, noise: DeclaredNoise, first: &Reading) -> Self {
         let storeys = storeys_of(&matrices.stiffness).unwrap_or_default();
         let (drift, shear) = drifts_and_shears(first);
         let floor = |floor: usize| 1.0 / matrices.mass.entry(floor, floor);
@@ -103,8 +135,9 @@ impl StifferStoreys {
             // A shear is the sum of the cells above; a drift the difference of two places. A quantum q is spread over ±q/2.
             let place = noise.resolution / 12_f64.sqrt() * if storey == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
             let judged = Judged {
-                integrator,
+                integrator: plan.integrator,
                 operator_stiffness,
+                moving: plan.mode != Mode::StepAndPause,
                 mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
                 time_step,
                 noise: (noise.force * above.sqrt(), place),
@@ -114,13 +147,13 @@ impl StifferStoreys {
         Self(storeys.into_iter().enumerate().map(judged).collect())
     }
 
-    pub(super) fn take(&mut self, reading: &Reading, session: &mut Session<'_>) {
+    pub(super) fn take(&mut self, reading: &Reading, struck: bool, session: &mut Session<'_>) {
         if self.0.is_empty() {
             return;
         }
         let (drift, shear) = drifts_and_shears(reading);
         for ((name, storey), reading) in self.0.iter_mut().zip(drift.into_iter().zip(shear)) {
-            storey.take(reading, name, session);
+            storey.take(reading, struck, name, session);
         }
     }
 }
@@ -138,15 +171,17 @@ mod tests {
 
     fn judged(noise: (f64, f64)) -> Judged {
         let integrator = Integrator::AlphaOs { alpha: 0.0 };
-        Judged { integrator, operator_stiffness: 300.0, mobility: 0.5, time_step: 0.1, noise }
+        Judged { integrator, operator_stiffness: 300.0, mobility: 0.5, time_step: 0.1, noise, moving: false }
     }
 
     /// 500 N/m on 2 kg: 2√(2/200) s = 0.2 s.
     #[test]
     fn a_stiffer_specimen_is_said_once_with_the_limit_that_is_left() {
         let mut stiffer = Stiffer::new(judged((0.0, 0.0)), (0.0, 0.0));
+        assert_eq!(stiffer.judge((0.000_5, 0.15), "the specimen"), None, "as stiff as K_I");
         assert_eq!(stiffer.judge((0.001, 0.3), "the specimen"), None, "as stiff as K_I");
-        assert_eq!(stiffer.judge((0.001, 0.3), "the specimen"), None, "no move");
+        assert_eq!(stiffer.judge((0.000_5, 0.0), "the specimen"), None, "a turn, where friction turns too");
+        assert_eq!(stiffer.judge((0.001, 0.3), "the specimen"), None, "and back");
         let text = stiffer.judge((0.002, 0.8), "the specimen").expect("a remark");
         assert!(text.contains("500.0 N/m measured against K_I = 300.0 N/m") && text.contains("up to 0.2000 s"), "{text}");
         assert!(text.starts_with("W718") && text.contains("within (0.1000 s)"), "{text}");
@@ -155,10 +190,23 @@ mod tests {
         assert_eq!(Stiffer::new(tangent, (0.0, 0.0)).judge((0.001, 9.0), "the specimen"), None);
     }
 
+    /// 800 N/m on 2 kg: ω = 20 rad/s, 2/ω = 0.1 s; of 500 N/m 0.126 s.
+    #[test]
+    fn explicit_newmark_is_bound_by_the_stiffness_that_is_measured() {
+        let explicit = Judged { integrator: Integrator::Explicit, ..judged((0.0, 0.0)) };
+        let mut stiffer = Stiffer::new(explicit, (0.0, 0.0));
+        assert_eq!(stiffer.judge((0.001, 0.5), "the specimen"), None, "beyond K_I, and stable");
+        assert_eq!(stiffer.judge((0.002, 1.3), "the specimen"), None, "at its limit");
+        let text = stiffer.judge((0.003, 2.2), "the specimen").expect("a remark");
+        assert!(text.starts_with("W718") && text.contains("900.0 N/m") && text.contains("up to 94.28 ms"), "{text}");
+        assert_eq!(stiffer.judge((0.004, 3.2), "the specimen"), None, "once");
+    }
+
     /// 0.1 N and 1 µm over 1 mm: a secant of 360 N/m has a deviation of 142 N/m; five of them are not 60.
     #[test]
     fn noise_is_no_stiffness() {
-        let mut stiffer = Stiffer::new(judged((0.1, 1e-6)), (0.0, 0.0));
+        let mut stiffer = Stiffer::new(judged((0.1, 1e-6)), (-0.001, -0.3));
+        assert_eq!(stiffer.judge((0.0, 0.0), "the specimen"), None, "the first move has no direction before it");
         assert_eq!(stiffer.judge((0.001, 0.36), "the specimen"), None);
         assert_eq!(stiffer.judge((0.001_004, 0.5), "the specimen"), None, "a move of four quanta tells nothing");
         assert!(stiffer.judge((0.02, 8.0), "the specimen").is_some(), "395 N/m over 19 mm");

@@ -12,7 +12,7 @@ use super::watch::Watch;
 use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::mechanics::summary::SummaryBuilder;
-use crate::plan::{Impact, Mode};
+use crate::plan::{Impact, Mode, Stepping};
 use crate::record::ImpactStep;
 use crate::rig::DeclaredNoise;
 
@@ -50,16 +50,7 @@ impl Strike {
         let mut monitor = Monitor::new(start, measured, restoring_force);
         let first = ImpactState { measured_displacement: measured, ..*solver.state() };
         self.take(&first, monitor.tracking(), session);
-        let DeclaredNoise { force, resolution } = session.guard.declared_noise();
-        let judged = Judged {
-            integrator: plan.stepping.integrator,
-            operator_stiffness: input.operator_stiffness,
-            mobility: 1.0 / input.mass,
-            time_step: input.time_step,
-            // A quantum q is spread evenly over ±q/2.
-            noise: (force, resolution / 12_f64.sqrt()),
-        };
-        let mut stiffer = Stiffer::new(judged, (measured, restoring_force));
+        let mut stiffer = self.stiffer(&plan.stepping, (measured, restoring_force), session);
         for _ in 0..steps {
             let target = solver.predict();
             session.guard.move_to(&[target], None)?;
@@ -67,7 +58,7 @@ impl Strike {
             let (measured, restoring_force) = session.read()?;
             let taken = solver.taken(measured, restoring_force);
             let tracking = monitor.take_as(target, measured, restoring_force, taken);
-            stiffer.take((measured, restoring_force), "the specimen", session);
+            stiffer.take((measured, restoring_force), false, "the specimen", session);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;
             if solver.over(plan.until) {
@@ -78,6 +69,22 @@ impl Strike {
             }
         }
         Ok(())
+    }
+
+    /// Watches whether the specimen is stiffer than the integrator takes it for; `first` is what was read before the first step.
+    pub(super) fn stiffer(&self, plan: &Stepping, first: (f64, f64), session: &Session<'_>) -> Stiffer {
+        let Setting { input, .. } = self.setting;
+        let DeclaredNoise { force, resolution } = session.guard.declared_noise();
+        let judged = Judged {
+            integrator: plan.integrator,
+            operator_stiffness: input.operator_stiffness,
+            mobility: 1.0 / input.mass,
+            time_step: input.time_step,
+            // A quantum q is spread evenly over ±q/2.
+            noise: (force, resolution / 12_f64.sqrt()),
+            moving: plan.mode != Mode::StepAndPause,
+        };
+        Stiffer::new(judged, first)
     }
 
     /// A step has ended: it is kept, judged and told.

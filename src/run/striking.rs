@@ -113,6 +113,10 @@ impl Stepped for Struck<'_> {
         Balance { error: floor.energies.error, input: self.setting.body.striker_energy() }
     }
 
+    fn is_struck(&self) -> bool {
+        self.solver.striker().contact_force > 0.0
+    }
+
     fn before(&self) -> u64 {
         self.before
     }

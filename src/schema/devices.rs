@@ -50,8 +50,13 @@ const DIALECTS: &[Variant] = &[
     Variant::word("indicator", "load cell: weighing indicator, `ST,GS,+0001234,kg`"),
     Variant::with(
         "scpi",
-        &[Field::quantity("newtons_per_unit", Dimension::FORCE, "force of one unit of its reading; not 0").required("1 N")],
-        "load cell: a meter that answers `READ?`",
+        &[Field::quantities(
+            "newtons_per_unit",
+            Dimension::FORCE,
+            "force of one unit of its reading, not 0; of a meter of several channels a list, one an axis",
+        )
+        .required("1 N")],
+        "load cell: a meter that answers `READ?`, of several channels with numbers between commas",
     ),
     Variant::word("instron", "Instron 8800-style console: moves, reads both"),
     Variant::word("mark10", "Mark-10 stand with its gauge: moves, reads both"),

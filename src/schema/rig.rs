@@ -82,6 +82,12 @@ const AXIS: &[Variant] = &[Variant::with(
     &[
         Field::choice("sign", SIGN, "direction of its displacement and force").or_said("the rig's"),
         Field::choice("gate", GATE, "what its tiny move must show").or_said("the rig's"),
+        Field::choice("actuator", &[SERIAL, TCP], "the device that moves it, where it is another than the rig's")
+            .or_said("the rig's"),
+        Field::choice("load_cell", &[SERIAL, TCP], "the device that reads its force, where it is another than the rig's")
+            .or_said("the rig's"),
+        Field::quantity("force_per_count", Dimension::FORCE, "of a load cell that gives raw counts; not 0").or_said("the rig's"),
+        Field::quantity("zero_count", Dimension::NUMBER, "count at no force").or_said("the rig's"),
         Field::bounds("displacement", Dimension::LENGTH, true, "limit of its targets and readings, beside those of the run"),
         Field::bounds("force", Dimension::FORCE, true, "limit of its readings, beside those of the run"),
         Field::quantity("resolution", Dimension::LENGTH, "quantum of its displacement reading")

@@ -193,7 +193,7 @@ mod tests {
         let (bench, script) = (bench(), Script::parse(script).expect("a script"));
         let settings = NativeSettings { boot: Some(0x7f3a), ..NativeSettings::default() };
         let firmware = Native::new(settings, &bench);
-        InProcess::new(Stand::of(bench, log, &script, vec![("actuator", Box::new(firmware))]))
+        InProcess::new(Stand::of(bench, log, &script, vec![("actuator".to_owned(), Box::new(firmware))]))
     }
 
     /// One line from the port.

@@ -9,6 +9,7 @@ pub mod firmware;
 mod in_process;
 mod log;
 mod of_plan;
+mod of_ram;
 mod pseudo_terminal;
 mod ram;
 pub mod script;

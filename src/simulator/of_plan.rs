@@ -2,9 +2,10 @@
 //! controllers speak what the plan's rig speaks, on a bench with the plan's specimen, limits and noise. It opens no line.
 
 use super::firmware::{Grbl, Hx711, Indicator, Instron, Mark10, Mark10Gauge, Modbus, Native, NativeSettings, Nees, Scpi};
+use super::of_ram::OfRam;
 use super::script::Script;
 use super::{Bench, BenchSettings, Firmware, Log, RamSettings, Stand};
-use crate::plan::{Behaviour, DeviceLink, Dialect, Interval, Plan, RealLink, Specimen};
+use crate::plan::{Behaviour, Behind, Dialect, Interval, Plan, RealLink, Specimen};
 
 /// How a simulated controller says that it is one.
 const SIMULATED: &str = "PSD-SIM";
@@ -26,6 +27,8 @@ pub enum NoStandIn {
     NoBehaviour,
     #[error("the script names axis {named}, and the rig has {axes}")]
     NoSuchAxis { named: usize, axes: usize },
+    #[error("the script names a device of axis {axis} alone, and that has none of this role")]
+    NoOwnDevice { axis: usize },
 }
 
 /// The stand in place of the plan's rig; its lines are the actuator's and, where it has one of its own, the load cell's.
@@ -40,9 +43,16 @@ pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u
     if let Some(named) = script.faults.iter().map(|fault| fault.ram + 1).find(|named| *named > axes) {
         return Err(NoStandIn::NoSuchAxis { named, axes });
     }
-    let mut controllers = vec![("actuator", controller(plan, link, &link.actuator, &bench, boot))];
-    if let Some(load_cell) = &link.load_cell {
-        controllers.push(("load cell", controller(plan, link, load_cell, &bench, boot)));
+    let of_role = |role: &str, behind: Vec<Behind<'_>>| -> Vec<(String, Box<dyn Firmware>)> {
+        let one = |behind: Behind<'_>| (behind.name(role), controller(plan, link, &behind, &bench, boot));
+        behind.into_iter().map(one).collect()
+    };
+    let mut controllers = of_role("actuator", link.actuators());
+    controllers.extend(of_role("load cell", link.load_cells()));
+    let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
+    let nobody = |fault: &&super::script::Fault| fault.own_of.is_some() && fault.place_among(&names).is_none();
+    if let Some(axis) = script.faults.iter().find(nobody).and_then(|fault| fault.own_of) {
+        return Err(NoStandIn::NoOwnDevice { axis: axis + 1 });
     }
     Ok(Stand::of(bench, log, script, controllers))
 }
@@ -64,7 +74,12 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
         // The storeys stand in place of it.
         let nothing = Behaviour::Elastic { stiffness: 0.0 };
         let rams: Vec<RamSettings> = (0..frame.degrees_of_freedom()).map(|axis| ram(plan, link, axis)).collect();
-        return Ok(Bench::of_frame(settings(nothing), frame, &rams));
+        let converter = |axis| {
+            let own = plan.rig.calibration_of(axis);
+            (own.newtons_per_count.unwrap_or_else(|| capacity(link) / COUNTS), own.zero_count)
+        };
+        let converters = (0..rams.len()).map(converter).collect();
+        return Ok(Bench::of_frame(settings(nothing), frame, &rams).with_converters(converters));
     }
     let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
     Ok(Bench::new(settings(behaviour)).with_friction(specimen.coulomb))
@@ -97,7 +112,17 @@ fn at_rig(sign: f64, interval: Interval) -> Interval {
     if sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
 }
 
-fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench, boot: Option<u16>) -> Box<dyn Firmware> {
+fn controller(plan: &Plan, link: &RealLink, behind: &Behind<'_>, bench: &Bench, boot: Option<u16>) -> Box<dyn Firmware> {
+    let firmware = firmware(plan, link, behind, bench, boot);
+    match behind.axes.first() {
+        // What has one channel knows one ram.
+        Some(axis) if *axis > 0 && behind.link.dialect.most_channels() == 1 => Box::new(OfRam { ram: *axis, firmware }),
+        _ => firmware,
+    }
+}
+
+fn firmware(plan: &Plan, link: &RealLink, behind: &Behind<'_>, bench: &Bench, boot: Option<u16>) -> Box<dyn Firmware> {
+    let (device, rams) = (behind.link, behind.axes.clone());
     let serial_number = device.serial_number.clone().unwrap_or_else(|| "0042".to_owned());
     match &device.dialect {
         Dialect::Native => {
@@ -109,12 +134,14 @@ fn controller(plan: &Plan, link: &RealLink, device: &DeviceLink, bench: &Bench, 
         Dialect::Grbl => Box::new(Grbl::new(SIMULATED)),
         Dialect::Hx711 => Box::new(Hx711::new(HX711_RATE)),
         Dialect::Indicator => Box::new(Indicator::default()),
-        Dialect::Scpi { newtons_per_unit } => Box::new(Scpi::new(serial_number, *newtons_per_unit)),
+        Dialect::Scpi { newtons_per_unit } => {
+            Box::new(Scpi::new(serial_number, rams.into_iter().zip(newtons_per_unit.iter().copied()).collect()))
+        }
         Dialect::Instron => Box::new(Instron::new(STROKE, capacity(link))),
         Dialect::Mark10 => Box::new(Mark10::new(1.0)),
         Dialect::Mark10Gauge => Box::new(Mark10Gauge::new(1.0)),
         Dialect::Modbus(map) => Box::new(Modbus::new(*map)),
-        Dialect::Nees { control_points } => Box::new(Nees::new(control_points.clone(), link.own_speed)),
+        Dialect::Nees { control_points } => Box::new(Nees::new(control_points.clone(), rams, link.own_speed)),
     }
 }
 
@@ -124,7 +151,7 @@ mod tests {
     use super::super::firmware::sealed;
     use super::*;
     use crate::check::{LoadFault, Loader, Options, check};
-    use crate::plan::{Calibration, Gate, Link, PortPlan, ReadingRules, SafeState};
+    use crate::plan::{Calibration, DeviceLink, Gate, Link, PortPlan, ReadingRules, SafeState};
     use crate::rig::port::{Clock as _, Port as _};
     use std::time::Duration;
 
@@ -241,7 +268,7 @@ move to_half {
         let asked: [(Dialect, &[u8], &str); 8] = [
             (Dialect::Grbl, b"?", "<Idle|MPos:0.000,"),
             (Dialect::Indicator, b"", "ST,GS,+0000.00,kg\r\n"),
-            (Dialect::Scpi { newtons_per_unit: 1.0 }, b"READ?\n", "E+00\n"),
+            (Dialect::Scpi { newtons_per_unit: vec![1.0] }, b"READ?\n", "E+00\n"),
             (Dialect::Instron, b"Q1\r\n", "0"),
             (Dialect::Mark10, b"p", "S"),
             (Dialect::Mark10Gauge, b"?\r\n", "N"),

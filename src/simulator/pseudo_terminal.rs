@@ -142,7 +142,12 @@ mod tests {
         let bench = bench();
         let settings = NativeSettings { boot: Some(0x7f3a), watchdog: 1e9, ..NativeSettings::default() };
         let firmware = Native::new(settings, &bench);
-        Stand::of(bench, Log::none(), &Script::parse(script).expect("a script"), vec![("actuator", Box::new(firmware))])
+        Stand::of(
+            bench,
+            Log::none(),
+            &Script::parse(script).expect("a script"),
+            vec![("actuator".to_owned(), Box::new(firmware))],
+        )
     }
 
     /// One line from the port; nothing where it hung up.

@@ -3,8 +3,8 @@
 //!
 //! A line is `WHEN: WHAT`; `#` begins a comment. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3
 //! replies`, `each reply` or `each reading`; the last two may end with a probability, `with 0.01`. WHAT may begin with
-//! `load cell`, which is then the line it befalls, or with `axis 2`, which is then the ram, of what befalls one. WHAT is
-//! one of
+//! `load cell`, which is then the line it befalls, and that or `actuator` with `of axis 2` where an axis has one of its own; or
+//! with `axis 2`, which is then the ram, of what befalls one. WHAT is one of
 //!
 //! ```text
 //! drop REPLIES                     split REPLIES at 5 bytes        split REPLIES every 1 bytes
@@ -36,6 +36,8 @@ pub struct Script {
 pub struct Fault {
     /// On the line of the load cell rather than of the actuator.
     pub on_load_cell: bool,
+    /// On the line of the device that this axis, by its place, has of its own.
+    pub own_of: Option<usize>,
     /// Place of the ram it befalls, where it befalls one; 0: the first.
     pub ram: usize,
     pub when: When,
@@ -138,6 +140,8 @@ fn fault(line: &str) -> Result<Fault, String> {
     let probability = words.probability()?;
     let when = self::when(when, probability)?;
     let on_load_cell = words.take(&["load", "cell"]);
+    let on_a_line = on_load_cell || words.take(&["actuator"]);
+    let own_of = if on_a_line && words.take(&["of", "axis"]) { Some(words.axis()?) } else { None };
     let ram = if words.take(&["axis"]) { words.axis()? } else { 0 };
     let what = self::what(&mut words)?;
     words.end()?;
@@ -151,7 +155,19 @@ fn fault(line: &str) -> Result<Fault, String> {
         (When::EachReply(_), _) => return Err("each reply can have only what befalls a reply".to_owned()),
         _ => {}
     }
-    Ok(Fault { on_load_cell, ram, when, what })
+    Ok(Fault { on_load_cell, own_of, ram, when, what })
+}
+
+impl Fault {
+    /// The one of these controllers that it befalls: None where there is no such one.
+    #[must_use]
+    pub fn place_among(&self, names: &[String]) -> Option<usize> {
+        let role = if self.on_load_cell { "load cell" } else { "actuator" };
+        match self.own_of {
+            Some(axis) => names.iter().position(|name| *name == format!("{role} of axis {}", axis + 1)),
+            None => names.iter().position(|name| name.starts_with(role)),
+        }
+    }
 }
 
 fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
@@ -407,13 +423,27 @@ mod tests {
         let fault = one("after 12 moves: drop replies 3  # and why");
         assert_eq!(
             fault,
-            Fault { on_load_cell: false, ram: 0, when: When::AfterMoves(12), what: What::Replies(ReplyFault::Drop, Some(3)) }
+            Fault {
+                on_load_cell: false,
+                own_of: None,
+                ram: 0,
+                when: When::AfterMoves(12),
+                what: What::Replies(ReplyFault::Drop, Some(3))
+            }
         );
         assert_eq!(one("at 4.5 s: hang up").when, When::At(4.5));
         assert_eq!(one("after 20 readings: spike 500 N").what, What::Bench(BenchFault::Spike(500.0)));
         assert_eq!(one("each reply: flip a bit with 0.01").when, When::EachReply(0.01));
         assert_eq!((one("at 0 s: axis 2 stick").ram, one("at 0 s: stick").ram), (1, 0));
         assert!(one("at 0 s: load cell split replies for ever every 1 bytes").on_load_cell);
+        let names = ["actuator", "actuator of axis 2", "load cell of axis 1", "load cell of axis 2"].map(str::to_owned);
+        let place = |text: &str| one(text).place_among(&names);
+        assert_eq!((place("at 0 s: hang up"), place("at 0 s: load cell hang up")), (Some(0), Some(2)));
+        assert_eq!(
+            (place("at 0 s: actuator of axis 2 hang up"), place("at 0 s: load cell of axis 2 hang up")),
+            (Some(1), Some(3))
+        );
+        assert_eq!(place("at 0 s: load cell of axis 3 hang up"), None);
         assert_eq!(one("at 1 s: number \"\"").what, What::Bench(BenchFault::Number(String::new())));
         let fill = ReplyFault::Garbage { count: 3, byte: Some(255), place: Place::Inside };
         assert_eq!(one("after 1 reply: fill 3 bytes of ff inside").what, What::Replies(fill, Some(1)));

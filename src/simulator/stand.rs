@@ -12,7 +12,7 @@ pub struct Stand {
 }
 
 struct Line {
-    name: &'static str,
+    name: String,
     controller: Faulty,
     /// Whether its hang-up is in the log.
     told: bool,
@@ -25,13 +25,14 @@ impl Stand {
         Self { bench, lines: Vec::new(), log }
     }
 
-    /// A stand with its controllers, the actuator first. Faults of the load cell befall the last one, all others the first.
+    /// A stand with its controllers, each with its name, the actuators first. A fault befalls the one that its line names, of a load
+    /// cell that says no axis the first of them, and else the first.
     #[must_use]
-    pub fn of(bench: Bench, log: Log, script: &Script, controllers: Vec<(&'static str, Box<dyn Firmware>)>) -> Self {
+    pub fn of(bench: Bench, log: Log, script: &Script, controllers: Vec<(String, Box<dyn Firmware>)>) -> Self {
         let mut stand = Self::new(bench, log);
-        let last = controllers.len().saturating_sub(1);
+        let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
         for (at, (name, firmware)) in controllers.into_iter().enumerate() {
-            let befalls = |fault: &&Fault| at == if fault.on_load_cell { last } else { 0 };
+            let befalls = |fault: &&Fault| at == fault.place_among(&names).unwrap_or(0);
             let faults = script.faults.iter().filter(befalls).cloned().collect();
             let controller = Faulty::new(firmware, faults, stand.bench.settings().seed.wrapping_add(at as u64));
             stand.lines.push(Line { name, controller, told: false });
@@ -70,7 +71,7 @@ impl Stand {
         if line.controller.hung_up() || bytes.is_empty() {
             return;
         }
-        self.log.from_host(self.bench.time(), line.name, bytes);
+        self.log.from_host(self.bench.time(), &line.name, bytes);
         line.controller.receive(bytes, &mut self.bench);
         self.follow();
     }
@@ -80,7 +81,7 @@ impl Stand {
         let time = self.bench.time();
         let piece = self.lines[line].controller.take(time);
         if let Some(bytes) = &piece {
-            self.log.to_host(time, self.lines[line].name, bytes);
+            self.log.to_host(time, &self.lines[line].name, bytes);
         }
         self.follow();
         piece
@@ -102,12 +103,12 @@ impl Stand {
         let line = &mut self.lines[line];
         line.controller.reconnect();
         line.told = false;
-        self.log.happened(self.bench.time(), line.name, "opened");
+        self.log.happened(self.bench.time(), &line.name, "opened");
     }
 
     /// The host of a line went away.
     pub fn host_left(&mut self, line: usize) {
-        self.log.happened(self.bench.time(), self.lines[line].name, "host left");
+        self.log.happened(self.bench.time(), &self.lines[line].name, "host left");
     }
 
     /// The log's end, and whether every target lay within the limits.
@@ -125,7 +126,7 @@ impl Stand {
         for line in &mut self.lines {
             if line.controller.hung_up() && !line.told {
                 line.told = true;
-                self.log.happened(self.bench.time(), line.name, "hung up");
+                self.log.happened(self.bench.time(), &line.name, "hung up");
             }
         }
     }

@@ -99,7 +99,7 @@ mod tests {
     fn it_serves_until_its_only_host_leaves() {
         let bench = bench();
         let firmware = Native::new(NativeSettings::default(), &bench);
-        let mut stand = Stand::of(bench, Log::none(), &Script::default(), vec![("actuator", Box::new(firmware))]);
+        let mut stand = Stand::of(bench, Log::none(), &Script::default(), vec![("actuator".to_owned(), Box::new(firmware))]);
         let line = TcpLine::at("127.0.0.1:0").expect("a free port");
         let address = line.address().expect("an address");
         let mut carriers: Vec<Box<dyn Carrier>> = vec![Box::new(line)];

@@ -74,6 +74,28 @@ fn a_relative_tolerance_is_of_the_size_of_the_target() {
     assert_eq!(within(-10.0, 1.9, true).verdict, Verdict::Pass);
 }
 
+/// Three quanta of 0.1 mm are 0.30000000000000003 mm, and 15 J of a striker are 14.999999999999998 J after their root.
+#[test]
+fn what_is_equal_but_for_rounding_is_equal() {
+    use Comparison::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
+    for (value, limit) in [(3.0 * 1e-4, 3e-4), (14.999_999_999_999_998, 15.0), (0.1 + 0.2, 0.3)] {
+        for (value, limit) in [(value, limit), (limit, value), (-value, -limit)] {
+            let holds = |comparison| Bound::Compare { comparison, limit }.holds(value);
+            let held = [LessEqual, GreaterEqual, Equal, Less, Greater, NotEqual].map(holds);
+            assert_eq!(held, [true, true, true, false, false, false], "{value} against {limit}");
+            assert_eq!(Bound::Compare { comparison: LessEqual, limit }.margin(value), 0.0);
+        }
+    }
+    assert!(Bound::Within { target: 1.0, tolerance: 0.1 }.holds(1.1), "1.1 − 1 is more than 0.1 by its rounding");
+    for comparison in [LessEqual, Equal] {
+        for limit in [1.0 - 2e-12, f64::NEG_INFINITY] {
+            assert!(!Bound::Compare { comparison, limit }.holds(1.0), "what differs is told apart");
+        }
+    }
+    assert!(!Bound::Within { target: 1.0, tolerance: 0.1 }.holds(1.1 + 1e-11));
+    assert!(!Bound::Within { target: f64::INFINITY, tolerance: 0.1 }.holds(1.1));
+}
+
 #[test]
 fn a_missing_result_is_inconclusive_and_says_so() {
     let outcome = assess_condition(

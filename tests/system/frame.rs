@@ -105,6 +105,46 @@ fn gliding() -> Stage {
     Stage::of(plan, "")
 }
 
+/// The same plan with a meter of two channels on a port of its own.
+fn metered() -> Stage {
+    let plan = |text: &str| {
+        let port = text.split("port: \"").nth(1).and_then(|rest| rest.split('"').next()).expect("the port of the stage");
+        let ground = Path::new(port).with_file_name("ground.csv");
+        fs::write(ground, "time_s,acceleration_m_per_s2\n0,0\n0.1,2\n0.2,-3\n0.3,2\n0.4,0\n").expect("ground");
+        let link = "  link        = serial(port: \"PORT\", dialect: native, reply_timeout: 2 s)\n";
+        assert!(PLAN.contains(link));
+        let meter = "  load_cell   = serial(port: \"PORT-meter\", dialect: scpi([25 kN, -12.5 kN]), reply_timeout: 2 s)\n";
+        let devices = link.replace("link     ", "actuator ") + meter;
+        PLAN.replace(link, &devices).replace("0.4 s\n}", "0.1 s\n}").replace("PORT", port)
+    };
+    Stage::of(plan, "")
+}
+
+#[test]
+fn a_meter_apart_gives_the_virtual_runs_results_and_killed_it_goes_on() {
+    let whole = metered();
+    succeeded(&wait(&mut whole.run_with(&["--yes"])));
+    let certificate = fs::read_to_string(whole.path("run").join("certificate.html")).unwrap();
+    assert!(certificate.contains("scpi") && certificate.contains("25 kN a count") && certificate.contains("12.5 kN a count"));
+    let mut virtual_run = std::process::Command::new(PSD);
+    virtual_run.arg("run").arg(whole.path("plan.psd")).args(["--rig", "ideal", "--out"]).arg(whole.path("ideal"));
+    succeeded(&wait(&mut virtual_run));
+    // Nine digits of 25 kN are 0.1 mN.
+    for ((name, real), (_, ideal)) in results(&whole.path("run")).iter().zip(&results(&whole.path("ideal"))) {
+        let near = if name.contains("energy") || name.contains("error") { 1e-5 } else { 2e-8 + 1e-6 * ideal.abs() };
+        assert!((real - ideal).abs() <= near, "{name}: {real} is not {ideal}");
+    }
+    let cut_off = metered();
+    let mut running = start(&mut cut_off.run_with(&["--yes"]));
+    cut_off.after_moves(9);
+    signal(&running, Signal::KILL);
+    assert_eq!(code(&mut running), None);
+    finish(running);
+    cut_off.goes_on(&[]);
+    assert_eq!(cut_off.moves(), whole.moves(), "each of all targets once, in order");
+    assert_eq!(results(&cut_off.path("run")), results(&whole.path("run")));
+}
+
 /// Continuous in real time over a pseudo-terminal: a reading comes a little behind its target, and the force of an elastic frame
 /// is corrected to it, so that the motion is that of the virtual run as near as the wire tells forces and places.
 #[test]

@@ -1,4 +1,4 @@
-//! Faults of the axes of a real rig: E615, E616, E626. In: what was found and where. Out: diagnostics.
+//! Faults of the axes of a real rig: E615, E616, E626, E636, E637. In: what was found and where. Out: diagnostics.
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Dialect;
@@ -35,13 +35,32 @@ pub fn control_points(points: usize, axes: usize, at: Span) -> Diagnostic {
         .help(help)
 }
 
-pub fn too_many(axes: usize, most: usize, dialect: &Dialect, alone: bool, at: Span) -> Diagnostic {
-    let name = dialect.name();
-    let text = if alone {
-        format!("a device that speaks `{name}` drives at most {}, not {axes}", axes_of(most))
-    } else {
-        format!("an `actuator` and a `load_cell` of their own are one axis, not {axes}")
+pub fn no_axis_left(at: Span) -> Diagnostic {
+    Diagnostic::new(Code::ChannelsDiffer, "no axis is left for this device: each has one of its own")
+        .at(at, "for which axis?")
+        .help("leave it to one axis, which then names none of its own; or remove it, where it is the `load_cell`")
+}
+
+pub fn channels(channels: usize, axes: usize, dialect: &Dialect, at: Span) -> Diagnostic {
+    let has = if channels == 1 { "one channel".to_owned() } else { format!("{channels} channels") };
+    let help = match dialect {
+        Dialect::Scpi { .. } => "write the force of a unit of each channel, the lowest axis first: `scpi([2.5 kN, 1.2 kN])`",
+        Dialect::Native => "make it the `load_cell` of the rig, for all axes; a single axis wants a device of one channel",
+        _ => "give each axis a `load_cell` of its own, on its own port; or use a device of several channels: `scpi` or `native`",
     };
+    let text = format!("a load cell that speaks `{}` has {has} here, and cannot weigh {}", dialect.name(), axes_of(axes));
+    Diagnostic::new(Code::ChannelsDiffer, text).at(at, has).help(help)
+}
+
+pub fn not_asked(dialect: &Dialect, at: Span) -> Diagnostic {
+    let text = format!("several devices move the axes, and `{}` cannot be asked before it is told to", dialect.name());
+    Diagnostic::new(Code::NotAsked, text).at(at, "would move while another refuses").help(
+        "let one controller move them all behind one line, as `native` does; or `nees` sites, which propose before they execute",
+    )
+}
+
+pub fn too_many(axes: usize, most: usize, dialect: &Dialect, at: Span) -> Diagnostic {
+    let text = format!("a device that speaks `{}` drives at most {}, not {axes}", dialect.name(), axes_of(most));
     Diagnostic::new(Code::TooManyAxes, text)
         .at(at, axes_of(axes))
         .help("several axes need one controller behind one `link`, which moves them together: `native` and `nees` do")

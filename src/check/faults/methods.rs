@@ -4,7 +4,7 @@ use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Integrator;
 use crate::quantity::Dimension;
-use crate::quantity::display::significant;
+use crate::quantity::display::{minus, significant};
 use crate::source::Span;
 
 pub fn law_needs_the_tangent(integrator: &str, named: Span, law: &str, struck: Span) -> Diagnostic {
@@ -38,6 +38,16 @@ pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f6
         .help("take the high end of what the ramp finds: a `stiffness` above the specimen's is stable for every step")
 }
 
+/// The tangent form with a bound on its tangent (N/m) below the specimen's stiffness.
+pub fn stiffer_than_tangent(span: Span, specimen: f64, bound: f64) -> Diagnostic {
+    let (specimen, bound) = (shown(specimen, Dimension::STIFFNESS), shown(bound, Dimension::STIFFNESS));
+    let message =
+        format!("the specimen reaches {specimen}, and the tangent is taken for no more than {bound}: it may be unstable");
+    Diagnostic::new(Code::StifferThanOperator, message)
+        .at(span, "`max_tangent_ratio` times this is the most that is believed")
+        .help("write the stiffness of the specimen where it is stiff, or a larger `max_tangent_ratio`")
+}
+
 pub fn continuous_on_a_real_rig(dialect: &str, span: Span) -> Diagnostic {
     let message = format!("continuous mode needs a rig that follows a path without stopping, and `{dialect}` cannot say one");
     Diagnostic::new(Code::NoPathToFollow, message)
@@ -68,32 +78,63 @@ pub struct Stops<'a> {
     /// At which a run is held.
     pub bound: f64,
     /// Of each increment.
-    pub missed: f64,
+    pub short: f64,
+    /// s of rig time
+    pub lag: f64,
+    /// s of virtual time
+    pub late: f64,
+    /// What being late amounts to.
+    pub damping_ratio: f64,
     /// Virtual time at which the bound is passed, s.
     pub time: f64,
-    /// A step that is short enough, s; none where the force is corrected already.
-    pub shorter: Option<f64>,
+    pub remedy: Remedy,
+}
+
+/// What would keep a run below its bound.
+pub enum Remedy {
+    /// The force is corrected already.
+    Corrected,
+    /// A time step of at most this, s.
+    Shorter(f64),
+    /// A time scale of at least this.
+    Slower(f64),
+    /// A pause that is longer by this, s.
+    Longer(f64),
 }
 
 pub fn tracking_stops(stops: &Stops, head: Span, link: Span) -> Diagnostic {
-    let percent = |share: f64| format!("{} %", significant(100.0 * share.abs(), 2));
+    let percent = |share: f64| format!("{} %", significant(100.0 * share, 2));
+    let time = |seconds: f64| shown(seconds, Dimension::TIME);
     let does = if stops.share < 0.0 { "into" } else { "out of" };
-    let Stops { name, share, bound, missed, time, shorter } = stops;
+    let Stops { name, share, bound, short, lag, late, damping_ratio, .. } = stops;
     let message = format!(
         "tracking would stop `{name}`: what the actuator misses would bring {} of its energy {does} the test, and a run is held at {}",
-        percent(*share),
+        percent(share.abs()),
         percent(*bound)
     );
-    let wider = format!("bear it: `tracking_energy_error = {}` in `limits`", percent(1.25 * share));
-    let help = match shorter {
-        Some(step) => format!(
-            "write `i_modification = true`, which corrects the force to the target; or take a `time_step` of at most {}; or {wider}",
-            shown(*step, Dimension::TIME)
-        ),
-        None => format!("take a `time_step` that is shorter, an actuator that misses less, or {wider}"),
+    let wider = format!("bear it: `tracking_energy_error = {}` in `limits`", percent(1.25 * share.abs()));
+    let correct = "write `i_modification = true`, which corrects the force to the target";
+    let help = match stops.remedy {
+        Remedy::Shorter(step) => format!("{correct}; or take a `time_step` of at most {}; or {wider}", time(step)),
+        Remedy::Slower(scale) => format!("{correct}; or take a `time_scale` of at least {}; or {wider}", significant(scale, 3)),
+        Remedy::Longer(pause) => {
+            format!("{correct}; or let it arrive, by a `pause` that is {} longer or a band in `settle`; or {wider}", time(pause))
+        }
+        Remedy::Corrected => format!("take a `time_step` that is shorter, an actuator that misses less, or {wider}"),
     };
+    let misses = [
+        (*short != 0.0).then(|| format!("misses {} of each increment", percent(short.abs()))),
+        (*lag > 0.0).then(|| format!("lags by {}", time(*lag))),
+    ];
+    let misses: Vec<String> = misses.into_iter().flatten().collect();
+    let amounts = format!(
+        "{}: late by {} of virtual time, as a damping ratio of {}",
+        misses.join(" and "),
+        minus(&time(*late)),
+        minus(&percent(*damping_ratio))
+    );
     Diagnostic::new(Code::TrackingStops, message)
-        .at(head, format!("held at about {}", shown(*time, Dimension::TIME)))
-        .at(link, format!("misses {} of each increment", percent(*missed)))
+        .at(head, format!("held at about {}", time(stops.time)))
+        .at(link, amounts)
         .help(help)
 }

@@ -74,6 +74,13 @@ pub fn negative_bound(field: &str, span: Span, text: &str, symmetric: bool) -> D
         .help(help)
 }
 
+/// Of `A within TOLERANCE of B`: nothing is nearer than not at all.
+pub fn negative_tolerance(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, "the tolerance of `within` must be at least 0")
+        .at(span, format!("`{text}` is negative: no value is so near"))
+        .help("write the size, without a sign")
+}
+
 pub fn bounds_reversed(span: Span, low: &str, high: &str) -> Diagnostic {
     Diagnostic::new(Code::OutOfRange, format!("the range runs backwards: `{low}` is more than `{high}`"))
         .at(span, "the lower end stands first")

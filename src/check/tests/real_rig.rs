@@ -95,7 +95,7 @@ fn dialects_with_arguments() {
         load_cell = serial(\"/dev/ttyUSB1\", scpi(newtons_per_unit: 2 kN))";
     let link = real(&text(scpi));
     assert_eq!(link.actuator.dialect, Dialect::Nees { control_points: vec!["MDL-00-01".to_owned()] });
-    assert_eq!(link.load_cell.map(|cell| cell.dialect), Some(Dialect::Scpi { newtons_per_unit: 2000.0 }));
+    assert_eq!(link.load_cell.map(|cell| cell.dialect), Some(Dialect::Scpi { newtons_per_unit: vec![2000.0] }));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::cli::output::tell;
 use crate::cli::plan_file;
 use crate::cli::settings::Settings;
 use crate::diagnostic::excerpt::escape;
-use crate::plan::{DeviceLink, Plan, PortPlan};
+use crate::plan::{DeviceLink, Plan, PortPlan, RealLink};
 use crate::simulator::serve::{Carrier, Until, serve};
 use crate::simulator::{Log, PseudoTerminal, Script, Stand, TcpLine, of_plan};
 
@@ -43,10 +43,8 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
 }
 
 /// The devices of the plan's rig, each with its line.
-fn devices(plan: &Plan) -> impl Iterator<Item = (&'static str, &DeviceLink)> {
-    let link = plan.rig.link.as_real();
-    let actuator = link.map(|link| ("actuator", &link.actuator));
-    actuator.into_iter().chain(link.and_then(|link| link.load_cell.as_ref()).map(|cell| ("load cell", cell)))
+fn devices(plan: &Plan) -> impl Iterator<Item = (String, &DeviceLink)> {
+    plan.rig.link.as_real().map(RealLink::devices).into_iter().flatten()
 }
 
 fn carrier(device: &DeviceLink) -> Result<Box<dyn Carrier>, Failure> {

@@ -5,7 +5,7 @@ use super::super::document::{Block, Column, Style, Table, Text};
 use super::super::{Run, number, standing};
 use super::conditions::{range, settling};
 use super::{drift, pairs, particulars};
-use crate::plan::{Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
+use crate::plan::{Behind, Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
 use crate::record::EventKind;
@@ -96,8 +96,12 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
     if let Some(boot) = &identity.boot {
         rows.push(("Power-up of the controller", Text::new().id(boot)));
     }
-    rows.push(("Actuator", device(&link.actuator)));
-    rows.push(("Load cell", link.load_cell.as_ref().map_or_else(|| "read by the actuator's controller".into(), device)));
+    rows.extend(devices("Actuator", &link.actuators(), link));
+    let cells = link.load_cells();
+    if cells.is_empty() {
+        rows.push(("Load cell", "read by the actuator's controller".into()));
+    }
+    rows.extend(devices("Load cell", &cells, link));
     for channel in equipment.channels.iter().filter(|channel| channel.zero != 0.0) {
         rows.push(("Count at no force", number::stated(channel.zero, Dimension::NUMBER).into()));
     }
@@ -203,6 +207,18 @@ fn errors(link: &VirtualLink) -> String {
     let stated: Vec<String> =
         terms.map(|(name, value, dimension)| format!("{name} {}", number::stated(value, dimension))).collect();
     if stated.is_empty() { "none: an ideal rig".to_owned() } else { stated.join("; ") }
+}
+
+/// A row a device of a role; of several it is said which axes are behind it.
+fn devices(role: &'static str, behind: &[Behind<'_>], link: &RealLink) -> Vec<(&'static str, Text)> {
+    let all = link.axes.len().max(1);
+    let row = |behind: &Behind<'_>| {
+        let text = device(behind.link);
+        let axes: Vec<String> = behind.axes.iter().map(|axis| (axis + 1).to_string()).collect();
+        let of = if axes.len() == 1 { "of axis" } else { "of axes" };
+        (role, if axes.len() == all { text } else { text.and(format!(", {of} {}", axes.join(", "))) })
+    };
+    behind.iter().map(row).collect()
 }
 
 /// How a device is reached and what it speaks.

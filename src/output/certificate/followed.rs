@@ -1,19 +1,24 @@
 //! How the actuators of a frame followed, as a report tells it: a sentence on all of them, a row for each. In: results of a
-//! procedure, the energy of the test. Out: a sentence, a table where anything was missed.
+//! procedure. Out: a sentence, a table where anything was missed.
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::number;
 use super::method;
-use super::results::percent;
+use super::results::{percent, scalar};
 use crate::formula::ResultValue;
 use crate::mechanics::monitor::Tracking;
 use crate::quantity::Dimension;
 use crate::record::ProcedureRecord;
 
-/// All actuators at the end of a run, over an input of so much, J; the axes are those of the last step.
-pub(super) fn sentence(axes: &[Tracking], input: f64) -> Option<String> {
-    let all = (!axes.is_empty()).then(|| Tracking::together(axes))?;
-    Some(method::followed(all, input, "The actuators"))
+/// All actuators over a run; the energy is the largest share, as the results have it.
+pub(super) fn sentence(procedure: &ProcedureRecord) -> Option<String> {
+    let all = Tracking {
+        energy_error: 0.0,
+        indicator: 0.0,
+        nrms_error: scalar(procedure, "nrms_error")?,
+        peak_error: scalar(procedure, "peak_error")?,
+    };
+    Some(method::followed(all, scalar(procedure, "tracking_energy_error"), "The actuators"))
 }
 
 /// One row an actuator, from the ground up; none where every one stood at its targets.

@@ -83,7 +83,7 @@ fn rounded(spacing: f64) -> f64 {
 pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, history: &ShakeHistory, body: &mut Vec<Block>) {
     let Some(ProcedureKind::Shake(shake)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
     let Some(modes) = &history.modes else { return };
-    body.push(Block::paragraph(told(run, shake, history)));
+    body.push(Block::paragraph(told(run, shake, procedure, history)));
     body.push(mode_table(modes, &history.damping_ratios));
     if !history.steps.is_empty() {
         let frame = run.plan.specimens.get(shake.specimen).and_then(|specimen| specimen.frame.as_ref());
@@ -93,16 +93,14 @@ pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, h
     }
 }
 
-fn told(run: &Run<'_>, shake: &Shake, history: &ShakeHistory) -> String {
+fn told(run: &Run<'_>, shake: &Shake, procedure: &ProcedureRecord, history: &ShakeHistory) -> String {
     let time = |value| number::text(value, Dimension::TIME);
     let mut sentences = vec![
         integrated(shake.stepping.integrator, &shake.damping, &history.damping_ratios),
         format!("Time step {}; a tenth of the shortest period is {}.", time(history.time_step), time(history.critical_time_step)),
     ];
     sentences.extend(method::driven(shake.stepping.i_modification, shake.stepping.mode));
-    if let Some(last) = history.steps.last() {
-        sentences.extend(followed::sentence(&last.tracking, last.energies.input));
-    }
+    sentences.extend(followed::sentence(procedure));
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
         sentences.push(format!(
             "The record is linear between its samples, and each step reads it at its end: {}.",

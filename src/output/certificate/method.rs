@@ -58,16 +58,16 @@ fn integrator(impact: &Impact) -> String {
 
 fn tracking(history: &ImpactHistory) -> Option<String> {
     let (first, last) = (history.steps.first()?, history.steps.last()?);
-    Some(followed(last.tracking, first.energies.striker, "The actuator"))
+    Some(followed(last.tracking, last.tracking.share_of(first.energies.striker), "The actuator"))
 }
 
-/// What following wrongly did, where it did anything that can be told from rounding, of an input of so much, J.
-pub(super) fn followed(found: Tracking, input: f64, who: &str) -> String {
+/// What following wrongly did, where it did anything that can be told from rounding; `share` is that of the input energy, signed.
+pub(super) fn followed(found: Tracking, share: Option<f64>, who: &str) -> String {
     if found.peak_error < NOTHING {
         return format!("{who} stood at every target.");
     }
-    let does = if found.energy_error < 0.0 { "put into the test" } else { "taken out of it" };
-    let energy = found.share_of(input).map_or_else(String::new, |share| {
+    let energy = share.map_or_else(String::new, |share| {
+        let does = if share < 0.0 { "put into the test" } else { "taken out of it" };
         format!(
             ", energy {does} by following wrongly {}\u{a0}% of the input",
             number::text(100.0 * share.abs(), Dimension::NUMBER)

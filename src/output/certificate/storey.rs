@@ -77,9 +77,7 @@ fn told(run: &Run<'_>, impact: &StoreyImpact, procedure: &ProcedureRecord, histo
         );
     }
     sentences.extend(met(run, impact));
-    if let (Some(last), Some(striker)) = (history.floors.last(), scalar(procedure, "striker_energy")) {
-        sentences.extend(followed::sentence(&last.tracking, striker));
-    }
+    sentences.extend(followed::sentence(procedure));
     sentences.join(" ")
 }
 

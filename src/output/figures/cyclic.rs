@@ -30,7 +30,7 @@ pub(super) fn backbone(history: &CycleHistory) -> Chart {
         history.cycles.chunk_by(|a, b| b.repeat > a.repeat).filter_map(|level| level.last()).collect();
     let repeated = last.iter().any(|cycle| cycle.repeat > 1);
     let envelope = |cycles: &mut Vec<&WholeCycle>| {
-        let mut points: Vec<(f64, f64)> = cycles.iter().flat_map(|cycle| cycle.ends).collect();
+        let mut points: Vec<(f64, f64)> = cycles.iter().flat_map(|cycle| cycle.found.ends).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
     };
@@ -61,7 +61,7 @@ fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
     let middle = history.middle();
     let reach = history.backbone_points().iter().map(|(x, _)| *x).fold(0.0, f64::max);
     let places: Vec<f64> = [0.0].into_iter().chain(fit.breaks.iter().map(|(place, _)| *place)).chain([reach]).collect();
-    let went = |way: f64| history.cycles.iter().flat_map(|cycle| cycle.ends).any(|(x, _)| way * (x - middle) > 0.5 * reach);
+    let went = |way: f64| history.cycles.iter().flat_map(|cycle| cycle.found.ends).any(|(x, _)| way * (x - middle) > 0.5 * reach);
     let mut label = format!("fit of {} stretches", fit.stiffnesses.len());
     let side = |way: f64| Series {
         label: std::mem::take(&mut label),

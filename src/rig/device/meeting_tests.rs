@@ -194,7 +194,7 @@ fn modbus_drives_of_every_kind_of_number() {
 
 #[test]
 fn a_nees_rig() {
-    let controller = Controller::new(Box::new(firmware::Nees::new(vec!["MDL-00-01".to_owned()], 0.001)));
+    let controller = Controller::new(Box::new(firmware::Nees::new(vec!["MDL-00-01".to_owned()], vec![0], 0.001)));
     let mut device = Nees::new(controller.talk(), vec!["MDL-00-01".to_owned()], 5.0);
     goes_there_and_back(&mut device, &controller, 1e-12);
     let beyond = device.encode(&[0.07], 0.001).unwrap();

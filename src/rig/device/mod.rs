@@ -13,6 +13,7 @@ mod native;
 mod nees;
 mod open;
 mod scpi;
+mod several;
 mod stream;
 mod unnumbered;
 
@@ -32,6 +33,7 @@ pub use native::{NativeDevice, SIMULATED, native_identity};
 pub use nees::Nees;
 pub use open::open;
 pub use scpi::ScpiDevice;
+pub use several::{Member, together};
 
 /// Who a device says it is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -173,6 +175,43 @@ pub trait Device: Send {
     /// # Errors
     /// It was refused or not heard.
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault>;
+
+    /// Asks whether it would carry out this move, where it can be asked: nothing moves yet.
+    ///
+    /// # Errors
+    /// It refuses, or was not heard.
+    fn offer(&mut self, _going: &Move) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    /// Takes back what was offered and not begun.
+    ///
+    /// # Errors
+    /// It was not heard.
+    fn withdraw(&mut self, _going: &Move) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    /// Begins what was offered, without waiting for its end.
+    ///
+    /// # Errors
+    /// As `start`.
+    fn begin(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        self.start(going)
+    }
+
+    /// Waits for the end of what was begun, where the device tells it.
+    ///
+    /// # Errors
+    /// As `start`.
+    fn finish(&mut self, _going: &Move) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+
+    /// Of a device that is several: which of them the last fault is of.
+    fn culprit(&self) -> Option<usize> {
+        None
+    }
 
     /// The bytes of a way along smooth paths, one an axis and equally long, whose ends are passed and not stopped at; what
     /// they say of the ends when read back, with the fastest of the speeds. Sends nothing.

@@ -63,6 +63,11 @@ impl Nees {
     /// Sends a request once and waits for the reply to it. A reply to another transaction is counted and left.
     fn request(&mut self, line: &[u8], transaction: Option<&str>, wait: f64) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
         self.talk.send(line)?;
+        self.answered(transaction, wait)
+    }
+
+    /// Waits for the reply to what was sent.
+    fn answered(&mut self, transaction: Option<&str>, wait: f64) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
         let deadline = self.talk.now() + wait;
         let executing = self.executing.clone();
         let mut ended = false;
@@ -148,18 +153,35 @@ impl Device for Nees {
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
-        let ours = |frame: &[u8]| nees::transaction(frame).map(str::to_owned);
-        let ([proposal, execution], Some(transaction)) =
-            (going.frames.as_slice(), going.frames.first().and_then(|frame| ours(frame)))
-        else {
-            return Err(DeviceFault::Unfit("this is no proposal".to_owned()));
-        };
+        self.offer(going)?;
+        self.begin(going)?;
+        self.finish(going)
+    }
+
+    fn offer(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (proposal, _, transaction) = proposed(going)?;
         let wait = self.talk.reply_timeout();
-        self.request(proposal, Some(&transaction), wait)?;
+        self.request(proposal, Some(&transaction), wait).map(drop)
+    }
+
+    fn withdraw(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (.., transaction) = proposed(going)?;
+        let wait = self.talk.reply_timeout();
+        self.request(&nees::cancel(&transaction), Some(&transaction), wait).map(drop)
+    }
+
+    fn begin(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (_, execution, transaction) = proposed(going)?;
+        self.executing = Some(transaction);
+        self.talk.send(execution)
+    }
+
+    fn finish(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (.., transaction) = proposed(going)?;
+        let wait = self.talk.reply_timeout();
         let way = going.targets.iter().zip(&self.last).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
         let motion = 2.0 * way / going.speed + self.settling.max(wait);
-        self.executing = Some(transaction.clone());
-        self.request(execution, Some(&transaction), motion)?;
+        self.answered(Some(&transaction), motion)?;
         self.executing = None;
         Ok(())
     }
@@ -194,6 +216,15 @@ impl Device for Nees {
 
     fn tally(&self) -> Tally {
         self.talk.tally()
+    }
+}
+
+/// Proposal, execution and name of a transaction.
+fn proposed(going: &Move) -> Result<(&[u8], &[u8], String), DeviceFault> {
+    let ours = |frame: &[u8]| nees::transaction(frame).map(str::to_owned);
+    match (going.frames.as_slice(), going.frames.first().and_then(|frame| ours(frame))) {
+        ([proposal, execution], Some(transaction)) => Ok((proposal, execution, transaction)),
+        _ => Err(DeviceFault::Unfit("this is no proposal".to_owned())),
     }
 }
 

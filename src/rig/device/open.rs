@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn what_the_plan_says_moves_can_be_told_to_and_nothing_is_sent_by_opening() {
         let clock = VirtualClock::default();
-        let dialects = [Dialect::Grbl, Dialect::Hx711, Dialect::Indicator, Dialect::Scpi { newtons_per_unit: 1.0 }];
+        let dialects = [Dialect::Grbl, Dialect::Hx711, Dialect::Indicator, Dialect::Scpi { newtons_per_unit: vec![1.0] }];
         for dialect in dialects {
             let moves = dialect.moves();
             let link = DeviceLink {

@@ -1,7 +1,7 @@
 //! A transducer that is asked `READ?`. In: nothing. Out: a force, by the plan's N per reading unit. After a silence it is
 //! asked who it is until it says so: whatever was late has then come before. It moves nothing.
 
-use super::{Answer, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
+use super::{Answer, Channel, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
 use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::scpi;
@@ -11,7 +11,8 @@ const ATTEMPTS: u32 = 3;
 
 pub struct ScpiDevice {
     talk: Talk,
-    newtons_per_unit: f64,
+    /// One a channel.
+    newtons_per_unit: Vec<f64>,
     /// As it says who it is.
     name: Vec<u8>,
     /// An earlier answer may still come.
@@ -20,7 +21,7 @@ pub struct ScpiDevice {
 
 impl ScpiDevice {
     #[must_use]
-    pub const fn new(talk: Talk, newtons_per_unit: f64) -> Self {
+    pub const fn new(talk: Talk, newtons_per_unit: Vec<f64>) -> Self {
         Self { talk, newtons_per_unit, name: Vec::new(), doubtful: false }
     }
 
@@ -100,6 +101,10 @@ impl Device for ScpiDevice {
         })
     }
 
+    fn axes(&self) -> usize {
+        self.newtons_per_unit.len()
+    }
+
     fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
         Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
     }
@@ -110,14 +115,28 @@ impl Device for ScpiDevice {
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         let line = self.read()?;
-        let (value, saturated) = match scpi::answer(&line) {
-            Ok(scpi::Answer::Number(value)) => (value, false),
-            // Past every limit.
-            Ok(scpi::Answer::Overload { negative }) => (if negative { f64::NEG_INFINITY } else { f64::INFINITY }, true),
-            Err(reason) => return Err(DeviceFault::NoReading { raw: line, reason: reason.to_owned() }),
-        };
-        let force = Some(Force::Newtons(value * self.newtons_per_unit));
-        Ok(Sample { force, flags: Flags { saturated, ..Flags::default() }, raw: vec![line], ..Sample::default() })
+        let words: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
+        if words.len() != self.newtons_per_unit.len() {
+            let reason = format!("it has {} numbers, and the meter {} channels", words.len(), self.newtons_per_unit.len());
+            return Err(DeviceFault::NoReading { raw: line, reason });
+        }
+        let mut channels = Vec::with_capacity(words.len());
+        for (place, (word, newtons)) in words.iter().zip(&self.newtons_per_unit).enumerate() {
+            let (value, saturated) = match scpi::answer(if words.len() > 1 { word.trim_ascii() } else { word }) {
+                Ok(scpi::Answer::Number(value)) => (value, false),
+                // Past every limit.
+                Ok(scpi::Answer::Overload { negative }) => (if negative { f64::NEG_INFINITY } else { f64::INFINITY }, true),
+                Err(reason) => {
+                    let of = if words.len() > 1 { format!("channel {}: {reason}", place + 1) } else { reason.to_owned() };
+                    return Err(DeviceFault::NoReading { raw: line.clone(), reason: of });
+                }
+            };
+            let force = Some(Force::Newtons(value * newtons));
+            channels.push(Channel { displacement: None, force, flags: Flags { saturated, ..Flags::default() } });
+        }
+        let others = channels.split_off(1.min(channels.len()));
+        let Channel { force, flags, .. } = channels.pop().unwrap_or_default();
+        Ok(Sample { force, flags, others, raw: vec![line], ..Sample::default() })
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
@@ -147,7 +166,7 @@ mod tests {
     fn device() -> (ScpiDevice, ScriptedPort) {
         let clock = VirtualClock::default();
         let port = ScriptedPort::new(&clock);
-        (ScpiDevice::new(Talk::new(Box::new(port.clone()), Box::new(clock), 0.5), -100.0), port)
+        (ScpiDevice::new(Talk::new(Box::new(port.clone()), Box::new(clock), 0.5), vec![-100.0]), port)
     }
 
     fn reply(port: &ScriptedPort, seconds: f64, line: &str) {
@@ -201,6 +220,26 @@ mod tests {
         assert_eq!(device.sample().unwrap().force, Some(Force::Newtons(-150.0)));
         assert_eq!(sent(&port)[1..], [&b"READ?\n"[..], b"*IDN?\n", b"READ?\n"]);
         assert_eq!(device.tally(), Tally { resent: 1, ignored: 1, reread: 0 });
+    }
+
+    #[test]
+    fn a_meter_of_several_channels_gives_each_its_own_force() {
+        let (mut device, port) = identified();
+        device.newtons_per_unit = vec![-100.0, 2.0];
+        reply(&port, 0.1, "+1.5E+00, 9.9E37");
+        let sample = device.sample().unwrap();
+        let forces: Vec<Option<Force>> = sample.axes().map(|channel| channel.force).collect();
+        assert_eq!(forces, [Some(Force::Newtons(-150.0)), Some(Force::Newtons(f64::INFINITY))]);
+        assert_eq!(sample.axes().map(|channel| channel.flags.saturated).collect::<Vec<_>>(), [false, true]);
+        assert_eq!(device.axes(), 2);
+        for (said, why) in [
+            ("+1.5E+00", "it has 1 numbers, and the meter 2 channels"),
+            ("1.0,OVL", "channel 2: it is no number"),
+            ("1,5,2,5", "it has 4 numbers, and the meter 2 channels"),
+        ] {
+            reply(&port, 0.1, said);
+            assert!(matches!(device.sample(), Err(DeviceFault::NoReading { reason, .. }) if reason == why), "{why}");
+        }
     }
 
     #[test]

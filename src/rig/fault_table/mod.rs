@@ -23,6 +23,7 @@
 //! | 27 | energy error, also of tracking | `motion::an_energy_error_beyond_its_limit_holds_the_rig`, `motion::tracking_that_changes_the_energy_holds_the_rig` |
 //! | 18–22 | the same of one axis of two | `axes::*` |
 //! | 10, 14, 18, 25, 26 | the same of axes that do not stop | `gliding::*` |
+//! | 10, 12, 16, 20–22 | the same of devices of one axis each, of a meter of several channels, of several sites | `several::*` |
 //! | 29 | panic, abort | `tests/system/ended.rs`, for this table is of one process |
 //! | 30 | a record that says two things | `forged::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
@@ -39,6 +40,7 @@ mod line;
 mod long;
 mod motion;
 mod room;
+mod several;
 mod stage;
 mod targets;
 mod two_axes;

@@ -53,7 +53,7 @@ fn no_rig_writes_more_than_was_reckoned() {
         ("modbus", on(modbus())),
         ("grbl and hx711", on(grbl())),
         ("grbl and indicator", with_cell(Dialect::Grbl, Some(Dialect::Indicator))),
-        ("grbl and scpi", with_cell(Dialect::Grbl, Some(Dialect::Scpi { newtons_per_unit: 1.0 }))),
+        ("grbl and scpi", with_cell(Dialect::Grbl, Some(Dialect::Scpi { newtons_per_unit: vec![1.0] }))),
         ("instron", with_cell(Dialect::Instron, None)),
         ("mark10", coarse(with_cell(Dialect::Mark10, None))),
         ("nees", with_cell(Dialect::Nees { control_points: vec!["MDL-00-01".to_owned()] }, None)),

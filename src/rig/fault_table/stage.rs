@@ -3,8 +3,8 @@
 
 use crate::formula::Formula;
 use crate::plan::{
-    DeviceLink, Dialect, Gate, Interval, Limits, Link, Move, Plan, PortPlan, ProcedureKind, ReadingRules, RealLink, SafeState,
-    Settle,
+    Behind, DeviceLink, Dialect, Gate, Interval, Limits, Link, Move, Plan, PortPlan, ProcedureKind, ReadingRules, RealLink,
+    SafeState, Settle,
 };
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered, recover};
@@ -126,8 +126,17 @@ pub(super) fn open(plan: &Plan, stand: &InProcess) -> Result<RealRig, RigFault> 
     let attach = |link: &DeviceLink, line: usize| {
         device::open(link, Box::new(stand.port(line)), Box::new(stand.clock()), Wish::default(), plan.rig.settle.timeout)
     };
-    let actuator = attach(&link.actuator, 0);
-    let load_cell = link.load_cell.as_ref().map(|cell| attach(cell, 1));
+    let (actuators, cells) = (link.actuators(), link.load_cells());
+    let first_cell = actuators.len();
+    let of_role = |behind: Vec<Behind<'_>>, first: usize| {
+        let member = |(at, Behind { link, axes, .. }): (usize, Behind<'_>)| device::Member {
+            device: attach(link, first + at),
+            axes,
+            serial_number: link.serial_number.clone(),
+        };
+        device::together(behind.into_iter().enumerate().map(member).collect(), plan.rig.axes().unwrap_or(1))
+    };
+    let (actuator, load_cell) = (of_role(actuators, 0).unwrap(), of_role(cells, first_cell));
     RealRig::open(&plan.rig, &plan.limits, actuator, load_cell, Box::new(stand.clock()), Wish::default())
 }
 

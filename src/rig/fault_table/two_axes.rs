@@ -83,6 +83,17 @@ pub(super) fn gliding_text(duration: &str) -> String {
     PLAN.replace("DURATION", duration).replace("  time_step = 10 ms", mode)
 }
 
+/// The shake above with other lines of its rig: each of these replaced.
+pub(super) fn with_devices(duration: &str, lines: &[(&str, &str)]) -> String {
+    lines.iter().fold(PLAN.replace("DURATION", duration), |text, (line, other)| {
+        assert!(text.contains(line), "{line}");
+        text.replace(line, other)
+    })
+}
+
+/// How its one device is reached.
+pub(super) const LINK: &str = "link        = serial(port: \"/dev/ttyUSB0\", dialect: native, reply_timeout: 0.1 s)";
+
 /// What the upper axis says of itself.
 pub(super) fn upper(plan: &mut Plan) -> &mut AxisPlan {
     let link: &mut RealLink = super::stage::link(plan);

@@ -28,7 +28,6 @@ pub struct RealRig {
     link: RealLink,
     settle: Settle,
     axes: Vec<Axis>,
-    calibration: Calibration,
     identity: Identity,
     /// The replies in which its devices said so.
     introduction: Vec<Vec<u8>>,
@@ -54,6 +53,9 @@ struct Axis {
     sign: f64,
     limits: Limits,
     rules: ReadingRules,
+    calibration: Calibration,
+    /// Another device than the one that moves it reads its force.
+    weighed_apart: bool,
     judge: Judge,
     /// The last reading on the way was outside a limit.
     outside: bool,
@@ -92,10 +94,14 @@ impl RealRig {
 
     /// A fault of a device, said of the rig.
     fn told(&mut self, part: Part, fault: &DeviceFault) -> RigFault {
-        let place = match (part, &self.link.load_cell) {
-            (Part::LoadCell, Some(cell)) => format!("load cell on {}", cell.port),
-            _ => format!("actuator on {}", self.link.actuator.port),
+        let (role, behind, culprit) = match (part, &self.load_cell) {
+            (Part::LoadCell, Some(cell)) => ("load cell", self.link.load_cells(), cell.culprit()),
+            _ => ("actuator", self.link.actuators(), self.actuator.culprit()),
         };
+        // Of several the one it is the fault of; where that is not known the first.
+        let place = behind
+            .get(culprit.unwrap_or(0))
+            .map_or_else(|| role.to_owned(), |behind| format!("{} on {}", behind.name(role), behind.link.port));
         let told = format!("{place}: {fault}");
         match fault {
             DeviceFault::Interrupted => return RigFault::Interrupted,

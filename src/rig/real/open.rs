@@ -3,7 +3,7 @@
 
 use super::validity::Judge;
 use super::{Axis, Part, RealRig, degrees_of_freedom};
-use crate::plan::{DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
+use crate::plan::{Behind, DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
 use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::port::Clock;
 use crate::rig::{Identity, Rig as _, RigFault, Wish, named_axis};
@@ -26,7 +26,6 @@ impl RealRig {
         let mut rig = Self {
             settle: plan.settle,
             axes: axes(plan, &link, limits),
-            calibration: plan.calibration.clone(),
             identity: nobody(&plan.name),
             introduction: Vec::new(),
             actuator,
@@ -55,11 +54,18 @@ impl RealRig {
     /// Asks who is there.
     fn meet(&mut self) -> Result<(), RigFault> {
         let actuator = self.actuator.identify().map_err(|fault| self.told(Part::Actuator, &fault))?;
-        let fit = pinned(&self.link.actuator, &actuator);
+        // Several devices of one role know each its own serial number.
+        let alone = |behind: Vec<Behind<'_>>| match behind.as_slice() {
+            [one] => Some(one.link.clone()),
+            _ => None,
+        };
+        let fit = alone(self.link.actuators()).map_or(Ok(()), |link| pinned(&link, &actuator));
         fit.map_err(|fault| self.told(Part::Actuator, &fault))?;
         let mut said = vec![actuator.clone()];
-        if let (Some(cell), Some(link)) = (&mut self.load_cell, &self.link.load_cell) {
-            let met = cell.identify().and_then(|identity| pinned(link, &identity).map(|()| identity));
+        let cell_link = alone(self.link.load_cells());
+        if let Some(cell) = &mut self.load_cell {
+            let fit = |identity: &DeviceIdentity| cell_link.map_or(Ok(()), |link| pinned(&link, identity));
+            let met = cell.identify().and_then(|identity| fit(&identity).map(|()| identity));
             said.push(met.map_err(|fault| self.told(Part::LoadCell, &fault))?);
         }
         let all = |field: fn(&DeviceIdentity) -> &str| {
@@ -116,6 +122,8 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
         sign: plan.sign_of(place),
         limits: plan.limits_of(place, limits),
         rules: link.readings_of(place),
+        calibration: plan.calibration_of(place),
+        weighed_apart: link.load_cells().iter().any(|cell| cell.axes.contains(&place)),
         judge: Judge::of_axis(named_axis(place, count)),
         outside: false,
         span: 0.0,

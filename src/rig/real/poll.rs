@@ -2,7 +2,7 @@
 //! with the bytes they were made of; what is no reading is asked for again a few times. It moves nothing.
 
 use super::validity::{Invalid, Said};
-use super::{Part, RealRig};
+use super::{Axis, Part, RealRig};
 use crate::rig::device::{Channel, DeviceFault, Flags, Force, Sample};
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
@@ -120,8 +120,9 @@ impl RealRig {
         for (place, (moved_axis, weighed_axis)) in places.iter().zip(&forces).enumerate() {
             let lacks = |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
             let displacement = moved_axis.displacement.ok_or_else(|| lacks("displacement"))?;
+            let weighed_axis = if self.axes[place].weighed_apart { weighed_axis } else { moved_axis };
             let original = weighed_axis.force.ok_or_else(|| lacks("force"))?;
-            let force = self.newtons(original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
+            let force = self.axes[place].newtons(original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
             let flags = either(moved_axis.flags, weighed_axis.flags);
             // One clock for all axes: the first judges it.
             let device_time = moved.time.filter(|_| place == 0);
@@ -156,17 +157,6 @@ impl RealRig {
         }
     }
 
-    /// N, in the cell's sign.
-    fn newtons(&self, force: Force) -> Option<f64> {
-        match force {
-            Force::Newtons(force) => Some(force),
-            #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
-            Force::Counts { count, .. } => {
-                self.calibration.newtons_per_count.map(|factor| (count as f64 - self.calibration.zero_count) * factor)
-            }
-        }
-    }
-
     fn refuse(&mut self, invalid: Invalid) -> Unusable {
         match invalid {
             Invalid::AskAgain(reason) => Unusable::AskAgain(RigFault::Device(reason)),
@@ -174,6 +164,19 @@ impl RealRig {
             Invalid::Untrusted(reason) => {
                 self.untrusted = Some(reason.clone());
                 Unusable::Fault(RigFault::Device(reason))
+            }
+        }
+    }
+}
+
+impl Axis {
+    /// N, in the cell's sign.
+    fn newtons(&self, force: Force) -> Option<f64> {
+        match force {
+            Force::Newtons(force) => Some(force),
+            #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
+            Force::Counts { count, .. } => {
+                self.calibration.newtons_per_count.map(|factor| (count as f64 - self.calibration.zero_count) * factor)
             }
         }
     }

@@ -53,7 +53,7 @@ impl<'a> Bytes<'a> {
         let reply = unescaped(said).and_then(|line| native::reply(&line).ok()).ok_or_else(other)?;
         let hello = native::hello(&reply.words).ok_or_else(other)?;
         let device = native_identity(&hello, Some(reply.boot));
-        let alone = self.link.is_some_and(|link| link.load_cell.is_none());
+        let alone = self.link.is_some_and(|link| link.load_cells().is_empty());
         let names = |whole: &str, part: &str| if alone { whole == part } else { whole.starts_with(part) };
         let told = &rig.identity;
         let same = names(&told.model, &device.model)
@@ -86,9 +86,9 @@ impl<'a> Bytes<'a> {
         let Some(link) = self.link else {
             return if sample.raw.is_empty() { Ok(()) } else { Err("a virtual rig answers in no bytes".to_owned()) };
         };
-        let cell = link.load_cell.as_ref().map(|cell| cell.dialect == Dialect::Native);
+        let cells = link.load_cells();
         // Two devices that speak the same are not told apart by their bytes.
-        if !self.moved_natively() || cell == Some(true) {
+        if !self.moved_natively() || cells.iter().any(|cell| cell.link.dialect == Dialect::Native) {
             return Ok(());
         }
         let mut readings = Vec::new();
@@ -111,14 +111,15 @@ impl<'a> Bytes<'a> {
             readings.iter().map(|data| self.rig.sign_of(axis) * of(data, axis)).collect()
         };
         // What weighs by itself says the force in a dialect of its own.
-        let weighs = cell.is_none();
+        let alone = cells.is_empty();
+        let weighs = |axis: usize| cells.iter().all(|cell| !cell.axes.contains(&axis));
         for (axis, x) in sample.x.iter().enumerate() {
-            if !is_of(&of_axis(axis, |data, axis| data.axes[axis].displacement), *x, weighs) {
+            if !is_of(&of_axis(axis, |data, axis| data.axes[axis].displacement), *x, alone) {
                 return Err(format!("the bytes that came do not say {x} m"));
             }
         }
-        for (axis, force) in sample.r.iter().enumerate().filter(|_| weighs) {
-            if !is_of(&of_axis(axis, |data, axis| data.axes[axis].force), *force, weighs) {
+        for (axis, force) in sample.r.iter().enumerate().filter(|(axis, _)| weighs(*axis)) {
+            if !is_of(&of_axis(axis, |data, axis| data.axes[axis].force), *force, alone) {
                 return Err(format!("the bytes that came do not say {force} N"));
             }
         }

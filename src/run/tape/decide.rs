@@ -143,10 +143,14 @@ pub fn same_resolution(recorded: DeclaredNoise, found: DeclaredNoise) -> Result<
 /// Sign, calibration or dialect differ.
 pub fn same_measure(recorded: &RigPlan, now: &RigPlan) -> Result<(), Refusal> {
     let dialects = |rig: &RigPlan| {
-        let link = rig.link.as_real();
-        link.map(|link| (link.actuator.dialect.clone(), link.load_cell.as_ref().map(|cell| cell.dialect.clone())))
+        let devices = rig.link.as_real().map_or_else(Vec::new, RealLink::devices);
+        devices.into_iter().map(|(name, device)| (name, device.dialect.clone())).collect::<Vec<_>>()
     };
-    let scale = |rig: &RigPlan| (rig.calibration.newtons_per_count.map(f64::to_bits), rig.calibration.zero_count.to_bits());
+    let scale = |rig: &RigPlan| {
+        let of = |axis| rig.calibration_of(axis);
+        let axes = (0..rig.axes().unwrap_or(1)).map(of);
+        axes.map(|all| (all.newtons_per_count.map(f64::to_bits), all.zero_count.to_bits())).collect::<Vec<_>>()
+    };
     let differs = |what| Err(Refusal::OtherMeasure { what });
     if recorded.axes() != now.axes() {
         return differs("axes");

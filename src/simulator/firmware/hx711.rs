@@ -32,7 +32,7 @@ impl Firmware for Hx711 {
         // After a pause the next count comes a period later: what was not converted is not made up.
         self.next = if now < self.next + self.period { self.next + self.period } else { now + self.period };
         let count = bench.counts().to_string();
-        format!("{}\r\n", bench.shown_force(0, count)).into_bytes()
+        format!("{}\r\n", bench.shown(count)).into_bytes()
     }
 
     fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {

@@ -27,7 +27,7 @@ impl Indicator {
             (true, false) => "ST",
         };
         let shown = if within { format!("{kilograms:+08.2}") } else { "^^^^^^^^".to_owned() };
-        format!("{status},GS,{},kg\r\n", bench.shown_force(0, shown)).into_bytes()
+        format!("{status},GS,{},kg\r\n", bench.shown(shown)).into_bytes()
     }
 }
 

@@ -39,7 +39,7 @@ impl Mark10Gauge {
     pub(super) fn command(&mut self, command: &str, bench: &mut Bench) -> String {
         let reading = self.reading(bench);
         match command {
-            "?" | "?C" => format!("{}\r\n", bench.shown_force(0, newtons(reading))),
+            "?" | "?C" => format!("{}\r\n", bench.shown(newtons(reading))),
             "?PC" => format!("{}\r\n", newtons(self.peaks[0])),
             "?PT" => format!("{}\r\n", newtons(-self.peaks[1])),
             "Z" => {

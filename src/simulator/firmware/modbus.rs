@@ -42,7 +42,7 @@ impl Modbus {
         if map.force.is_some() {
             let force = bench.force() / map.force_unit;
             // Another number than the ordinary one is a fault's: what is none is not a number here either.
-            let shown = bench.shown_force(0, force.to_string()).parse().unwrap_or(f64::NAN);
+            let shown = bench.shown(force.to_string()).parse().unwrap_or(f64::NAN);
             number(map.force, shown);
         }
         words.extend(map.status.map(|at| (at, if bench.moving() { map.moving_mask } else { 0 })));

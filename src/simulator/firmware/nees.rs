@@ -15,8 +15,10 @@ const AXIS: &str = "x";
 
 #[derive(Debug)]
 pub struct Nees {
-    /// One a ram.
+    /// One for each of its rams.
     control_points: Vec<String>,
+    /// The rams of the bench that are its own, by place.
+    rams: Vec<usize>,
     /// m/s
     speed: f64,
     lines: LineBuffer,
@@ -39,8 +41,8 @@ impl Nees {
     /// A rig with a control point for each ram, of which the one with the farthest way moves at `speed` (m/s). It refuses what
     /// lies outside the bench's limits.
     #[must_use]
-    pub fn new(control_points: Vec<String>, speed: f64) -> Self {
-        Self { control_points, speed, lines: LineBuffer::default(), session: Session::default() }
+    pub fn new(control_points: Vec<String>, rams: Vec<usize>, speed: f64) -> Self {
+        Self { control_points, rams, speed, lines: LineBuffer::default(), session: Session::default() }
     }
 
     /// The answers to one line.
@@ -61,7 +63,7 @@ impl Nees {
             }
             Request::SetParameter => Ok(vec!["OK\t0\tparameter set".to_owned()]),
             Request::CloseSession => {
-                bench.hold();
+                bench.hold_those(&self.rams);
                 *session = Session { carriage_return: session.carriage_return, ..Session::default() };
                 Ok(vec!["OK\t0\tsession closed".to_owned()])
             }
@@ -80,13 +82,13 @@ impl Nees {
                     return Err(Refusal::new(Why::Order, transaction, "not the transaction that was proposed last"));
                 };
                 if let Some(targets) = target {
-                    bench.go_as(None, &targets, self.speed);
+                    bench.go_those(None, &self.rams, &targets, self.speed);
                 }
                 session.executing = Some((*transaction).to_owned());
                 Ok(self.arrived(bench))
             }
             Request::GetControlPoint { transaction, point } => {
-                let Some(ram) = nees_message::place_of(&self.control_points, point) else {
+                let Some(ram) = nees_message::place_of(&self.control_points, point).map(|place| self.rams[place]) else {
                     return Err(Refusal::new(Why::Message, transaction, "no such control point"));
                 };
                 let (displacement, force) = (bench.displacement_of(ram), bench.force_of(ram));
@@ -99,7 +101,7 @@ impl Nees {
                 session.proposed.take_if(|(proposed, _)| proposed == transaction);
                 let stopped = session.executing.take_if(|executing| executing == transaction);
                 let stopped = stopped.map(|_| {
-                    bench.hold();
+                    bench.hold_those(&self.rams);
                     Refusal::new(Why::Order, transaction, "cancelled").line()
                 });
                 Ok(stopped.into_iter().chain([nees_message::done(transaction)]).collect())
@@ -118,21 +120,23 @@ impl Nees {
         if wishes.is_empty() {
             return Ok(None);
         }
-        let mut targets: Vec<f64> = (0..bench.rams()).map(|ram| bench.commanded_of(ram)).collect();
+        let mut targets: Vec<f64> = self.rams.iter().map(|ram| bench.commanded_of(*ram)).collect();
         for (ram, wish) in &wishes {
             targets[*ram] = wish.value;
         }
-        let inside = targets.iter().enumerate().all(|(ram, target)| bench.limits_of(ram).contains(*target));
-        if inside {
+        let own = || self.rams.iter().zip(&targets);
+        if own().all(|(ram, target)| bench.limits_of(*ram).contains(*target)) {
             return Ok(Some(targets));
         }
-        bench.refuse_all(&targets);
+        for (ram, target) in own() {
+            bench.refuse_of(*ram, *target);
+        }
         Err((Why::Limit, "beyond the limits of this rig"))
     }
 
     /// The answer to `execute`, once the motion is done.
     fn arrived(&mut self, bench: &Bench) -> Vec<String> {
-        let done = self.session.executing.take_if(|_| !bench.moving());
+        let done = self.session.executing.take_if(|_| !bench.any_moving(&self.rams));
         done.map(|transaction| nees_message::done(&transaction)).into_iter().collect()
     }
 
@@ -156,7 +160,7 @@ impl Firmware for Nees {
     }
 
     fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        bench.hold();
+        bench.hold_those(&self.rams);
         self.lines.clear();
         self.session = Session::default();
         Vec::new()
@@ -173,7 +177,7 @@ mod tests {
     }
 
     fn opened() -> (Nees, Bench) {
-        let (mut rig, mut bench) = (Nees::new(vec!["MDL-00-01".to_owned()], 0.01), spring());
+        let (mut rig, mut bench) = (Nees::new(vec!["MDL-00-01".to_owned()], vec![0], 0.01), spring());
         assert_eq!(said(&mut rig, &mut bench, "open-session\tpsd\n"), "OK\t0\tsession opened\n");
         (rig, bench)
     }

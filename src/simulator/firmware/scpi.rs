@@ -6,23 +6,28 @@ use crate::simulator::{Bench, Firmware};
 #[derive(Debug)]
 pub struct Scpi {
     serial_number: String,
-    newtons_per_unit: f64,
+    /// The ram and the force of a unit of each channel, N.
+    channels: Vec<(usize, f64)>,
     line: Vec<u8>,
 }
 
 impl Scpi {
-    /// A meter whose unit is this many N.
+    /// A meter with a channel for each of these rams, whose unit is so many N.
     #[must_use]
-    pub const fn new(serial_number: String, newtons_per_unit: f64) -> Self {
-        Self { serial_number, newtons_per_unit, line: Vec::new() }
+    pub const fn new(serial_number: String, channels: Vec<(usize, f64)>) -> Self {
+        Self { serial_number, channels, line: Vec::new() }
     }
 
     fn answer(&self, line: &[u8], bench: &mut Bench) -> Vec<u8> {
         match line.trim_ascii().to_ascii_uppercase().as_slice() {
             b"*IDN?" => format!("PSD,PSD-SIM,{},1.3\n", self.serial_number).into_bytes(),
             b"READ?" => {
-                let shown = scientific(bench.force() / self.newtons_per_unit);
-                format!("{}\n", bench.shown_force(0, shown)).into_bytes()
+                let channel = |(ram, newtons): &(usize, f64)| {
+                    let shown = scientific(bench.force_of(*ram) / newtons);
+                    bench.shown_force(*ram, shown)
+                };
+                let words: Vec<String> = self.channels.iter().map(channel).collect();
+                format!("{}\n", words.join(",")).into_bytes()
             }
             _ => Vec::new(),
         }
@@ -68,7 +73,7 @@ mod tests {
 
     #[test]
     fn it_answers_with_its_own_unit() {
-        let (mut meter, mut bench) = (Scpi::new("77".to_owned(), 2.0), bench());
+        let (mut meter, mut bench) = (Scpi::new("77".to_owned(), vec![(0, 2.0)]), bench());
         assert_eq!(meter.receive(b"*IDN?\nREAD", &mut bench), b"PSD,PSD-SIM,77,1.3\n");
         bench.go(0.005, 0.01);
         bench.advance(1.0);

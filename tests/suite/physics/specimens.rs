@@ -149,6 +149,22 @@ proptest! {
         }
     }
 
+    /// What stability is judged by is an upper bound of every slope, and no more than is reached: some path shows nine tenths
+    /// of it in `a_stiffest_slope_is_reached`.
+    #[test]
+    fn no_slope_is_beyond_the_largest(behaviour in any(), turns in turns()) {
+        let mut model = SpecimenModel::new(&behaviour);
+        let (mut place, mut force) = (0.0, model.move_to(0.0));
+        let bound = behaviour.largest_stiffness();
+        prop_assert!(bound >= behaviour.initial_stiffness() * (1.0 - 1e-12));
+        for to in places(&turns, 40) {
+            let next = model.move_to(to);
+            let most = bound * (to - place).abs() * (1.0 + 1e-6) + 1e-7;
+            prop_assert!((next - force) * (to - place).signum() <= most, "{} at {to}, at most {bound}", (next - force) / (to - place));
+            (place, force) = (to, next);
+        }
+    }
+
     /// From its virgin state, whatever was done to it: ∫R dX ≥ 0. So a closed cycle from there takes energy, too. What trapezoids
     /// over a corner seem to give back is less in shorter ones.
     #[test]
@@ -184,5 +200,19 @@ proptest! {
             let (force, times) = (model.move_to(place), scaled.move_to(place));
             prop_assert!((times - factor * force).abs() < 1e-8 * (1.0 + force.abs()), "{times} N is not {factor} × {force} N");
         }
+    }
+}
+
+/// A joint bears before its faces slip, and a Bouc–Wen spring with β = 1 unloads: twice as stiff as at first, both.
+#[test]
+fn a_stiffest_slope_is_reached() {
+    let bolted = Behaviour::Bolted(Bolted { stiffness: 1e6, bearing_force: 1e4, clearance: 1e-4, slip_force: 1e3 });
+    let bouc_wen = Behaviour::BoucWen { stiffness: 1e6, yield_force: 1e3, hardening: 0.0, sharpness: 1.0, beta: 1.0 };
+    for (behaviour, from, to) in [(bolted, 1.5e-4, 1.6e-4), (bouc_wen, 1e-2, 1e-2 - 1e-6)] {
+        let mut model = SpecimenModel::new(&behaviour);
+        let before = model.move_to(from);
+        let slope = (model.move_to(to) - before) / (to - from);
+        assert!((slope / 2e6 - 1.0).abs() < 1e-3, "{slope}");
+        assert_eq!((behaviour.initial_stiffness(), behaviour.largest_stiffness()), (1e6, 2e6));
     }
 }

@@ -1,0 +1,178 @@
+//! Several devices on a rig of two axes: load cells apart from the actuators, on one meter of two channels or each on a port of its
+//! own, and sites that speak NEES, each behind its own. A run is the virtual one; what one device does holds every axis and is
+//! said of that device; and what one site refuses no other begins.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::axes::played;
+use super::stage::{Ended, open, run, run_without, stand};
+use super::two_axes::{LINK, checked, ideal, results, upper, with_devices};
+use crate::plan::{Interval, Plan};
+use crate::record::Outcome;
+use crate::record::journal::testing::{Killed, PowerLoss};
+use crate::record::journal::{Durability, EntryKind, Journal};
+use crate::rig::failpoint::Guarding;
+use crate::rig::{Rig as _, Tally};
+use crate::run::Unwatched;
+use crate::run::tape::{self, Bands, ResumeBody, RigBody};
+use crate::simulator::Log;
+
+const LOWER: &str = "    axis(gate:";
+const UPPER: &str = "    axis(sign: negative,";
+
+/// A meter of two channels beside the controller.
+fn metered(duration: &str) -> String {
+    let link = LINK.replace("link ", "actuator ");
+    let devices = format!("{link}\n  load_cell   = tcp(\"10.0.0.7:5025\", scpi([2.5 kN, -1 kN]), reply_timeout: 0.1 s)");
+    with_devices(duration, &[(LINK, devices.as_str())])
+}
+
+/// A cell for each axis, on its own port: a meter and a converter of counts.
+fn apart(duration: &str) -> String {
+    with_devices(
+        duration,
+        &[
+            (LOWER, "    axis(load_cell: tcp(\"10.0.0.7:5025\", scpi(1 N), reply_timeout: 0.1 s), gate:"),
+            (
+                UPPER,
+                "    axis(load_cell: serial(\"/dev/ttyUSB2\", hx711, reply_timeout: 0.1 s), force_per_count: 0.01 N, zero_count: 700, sign: negative,",
+            ),
+        ],
+    )
+}
+
+/// Each storey behind a site of its own.
+fn sites(duration: &str) -> String {
+    let first = "link        = tcp(\"10.0.0.1:44000\", nees(\"MDL-00-01\"), reply_timeout: 0.1 s)";
+    let second = "    axis(actuator: tcp(\"10.0.0.2:44000\", nees(\"MDL-00-07\"), reply_timeout: 0.1 s), sign: negative,";
+    with_devices(duration, &[(LINK, first), (UPPER, second)])
+}
+
+fn plan(text: &str) -> Plan {
+    checked(text, "frame_rig")
+}
+
+fn same(real: &[(&str, f64)], ideal: &[(&str, f64)], near: f64) {
+    assert!(real.len() == ideal.len() && real.len() > 8);
+    for ((name, real), (_, ideal)) in real.iter().zip(ideal) {
+        let near = if name.contains("energy_error") { 100.0 * near } else { near + near * ideal.abs() };
+        assert!((real - ideal).abs() <= near, "{name}: {real} is not {ideal}");
+    }
+}
+
+#[test]
+fn each_layout_gives_what_the_virtual_rig_gives() {
+    // Nine digits of a meter, and counts of 10 mN.
+    for (text, near) in [(metered("0.3 s"), 2e-6), (apart("0.3 s"), 2e-5), (sites("0.3 s"), 1e-6)] {
+        let ended = run(&plan(&text), "");
+        assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
+        assert_eq!(ended.tally, Tally::default());
+        same(&results(&ended.record), &ideal(&text), near);
+    }
+}
+
+/// Held, with no axis on its way.
+fn held(ended: &Ended, why: &str) {
+    assert!(!ended.completed() && ended.reason().contains(why), "{why}: {}", ended.reason());
+    assert!(!ended.stand.stand().bench().moving(), "{why}");
+}
+
+#[test]
+fn what_a_load_cell_does_is_said_of_it_and_holds_every_axis() {
+    let numbers: Vec<String> = (60..180).map(|reading| format!("after {reading} readings: axis 2 number OVL")).collect();
+    held(&run(&plan(&metered("0.3 s")), &numbers.join("\n")), "axis 2 has no number");
+    let silent = "after 40 moves: load cell drop replies for ever";
+    held(&run(&plan(&metered("0.3 s")), silent), "load cell on 10.0.0.7:5025: no usable answer");
+    let text = apart("0.3 s");
+    held(
+        &run(&plan(&text), "after 40 moves: load cell of axis 1 drop replies for ever"),
+        "load cell of axis 1 on 10.0.0.7:5025: ",
+    );
+    held(
+        &run(&plan(&text), "after 40 moves: load cell of axis 2 drop replies for ever"),
+        "load cell of axis 2 on /dev/ttyUSB2: ",
+    );
+    held(&run(&plan(&text), "after 150 readings: axis 2 freeze force"), "axis 2: the force sensor is frozen");
+    held(&run(&plan(&text), "after 40 moves: drop replies for ever"), "actuator on /dev/ttyUSB0: no usable answer");
+    let ended = run(&plan(&metered("0.3 s")), "after 40 moves: load cell drop reply\nafter 60 moves: load cell repeat reply");
+    assert!(ended.completed() && ended.tally.resent == 1, "{} {:?}", ended.reason(), ended.tally);
+}
+
+#[test]
+fn what_one_site_refuses_no_other_begins() {
+    let mut plan = plan(&sites("0.3 s"));
+    upper(&mut plan).displacement = Some(Interval { low: -0.002, high: 0.001 });
+    let ended = run(&plan, "");
+    assert!(matches!(ended.record.outcome, Outcome::Aborted { .. }));
+    held(&ended, "target displacement of axis 2");
+    // Without the guard the site itself refuses, when the other has said yes: that one is told that it is off.
+    let ended = run_without(Guarding::TargetLimits, &plan, "");
+    held(&ended, "actuator of axis 2 on 10.0.0.2:44000: refused: ");
+    let refused = ended.log.find("NOT OK").expect("a refusal");
+    let after = &ended.log[refused..];
+    assert!(after.contains("actuator > cancel") && !after.contains("> execute"), "{after}");
+    assert!(!after.contains(" bench move "), "neither moved");
+    let (first, second) = ("actuator > execute", "actuator of axis 2 > execute");
+    assert_eq!(ended.log.matches(first).count(), ended.log.matches(second).count(), "every step was told to both");
+}
+
+#[test]
+fn a_site_that_is_silent_stops_every_other() {
+    for script in ["after 41 moves: actuator of axis 2 drop replies for ever", "after 41 moves: actuator of axis 2 hang up"] {
+        let ended = run(&plan(&sites("0.3 s")), script);
+        held(&ended, "actuator of axis 2 on 10.0.0.2:44000: ");
+    }
+    // One whose line is gone ends its own way alone; the other is held.
+    let gone = run(&plan(&sites("0.3 s")), "after 41 moves: hang up");
+    assert!(gone.reason().contains("actuator on 10.0.0.1:44000: the line is gone"), "{}", gone.reason());
+    assert!(!gone.stand.stand().bench().any_moving(&[1]));
+    held(&run(&plan(&sites("0.3 s")), "after 60 moves: axis 2 stick"), "following error of axis 2");
+    let late = "after 40 moves: actuator of axis 2 delay replies 3 0.05 s\nafter 50 moves: actuator of axis 2 repeat replies 4";
+    let ended = run(&plan(&sites("0.3 s")), late);
+    assert!(ended.completed(), "{}", ended.reason());
+}
+
+#[test]
+fn sites_that_were_cut_off_anywhere_are_brought_to_the_same_end() {
+    let plan = plan(&sites("40 ms"));
+    let whole = run(&plan, "");
+    assert!(whole.completed());
+    for (kills, call) in (20..).step_by(3).enumerate() {
+        let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            let mut rig = open(&plan, &stand).unwrap();
+            let storage = Killed::at(&disk, call, call % 2 == 0);
+            let mut journal = Journal::create(Box::new(storage), Durability::EveryPromise);
+            tape::begin(&mut journal, &super::stage::header(), &["text".to_owned()]).unwrap();
+            tape::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
+        }));
+        if ended.is_ok() {
+            assert!(kills > 10, "{kills}");
+            return;
+        }
+        let (recovered, before) = played(&disk);
+        if before.ended {
+            continue;
+        }
+        let mut rig = open(&plan, &stand).unwrap();
+        let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
+        let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
+        let decision = tape::decide(&before, &about, &found, &bands, false).unwrap_or_else(|refusal| panic!("{call}: {refusal}"));
+        let resumption = ResumeBody {
+            from: decision.from,
+            by: "A. Witness".to_owned(),
+            reason: "power".to_owned(),
+            doubt: decision.doubt,
+            found: (found.displacement, found.force),
+            recorded: decision.recorded,
+            t: before.time,
+            wall: None,
+        };
+        let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
+        journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
+        journal.append(EntryKind::Resume, &resumption).unwrap();
+        let resumed = tape::resume(&plan, played(&disk).1, &mut rig, &mut Unwatched, journal, Box::new(|| None));
+        assert_eq!((resumed.mismatch, resumed.record.outcome.clone()), (None, Outcome::Completed), "call {call}");
+        same(&results(&resumed.record), &results(&whole.record), 1e-9);
+    }
+}
