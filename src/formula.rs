@@ -2,7 +2,7 @@
 //! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
 //! Out: an [`Estimate`], the value with its standard uncertainty.
 
-use crate::uncertainty::{Contribution, Moved, Source, combined, sources_of};
+use crate::uncertainty::{Contribution, Moved, Source, combined, combined_entries, sources_of};
 
 /// Position of a procedure in the plan, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -28,6 +28,8 @@ pub struct ResultReference {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
     Constant(f64),
+    /// A number that the plan states with its uncertainty.
+    Stated(Stated),
     Result(ResultReference),
     /// Δt of eq. 7 for the impact at hand; stands only in `time_step`.
     CriticalTimeStep,
@@ -36,6 +38,23 @@ pub enum Formula {
     Negate(Box<Formula>),
     Binary(Operator, Box<Formula>, Box<Formula>),
     Call(Function, Vec<Formula>),
+}
+
+/// A number of the plan, SI, and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stated {
+    pub source: Source,
+    pub value: f64,
+    /// Standard.
+    pub uncertainty: f64,
+}
+
+impl Stated {
+    /// The number, as a constant where it is exact.
+    #[must_use]
+    pub fn formula(self) -> Formula {
+        if self.uncertainty > 0.0 { Formula::Stated(self) } else { Formula::Constant(self.value) }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,6 +111,11 @@ pub trait Results {
             _ => Vec::new(),
         }
     }
+
+    /// By how many of its standard uncertainties a source is moved here.
+    fn moved(&self, _: Source) -> f64 {
+        0.0
+    }
 }
 
 /// No procedure has run: constants only.
@@ -142,7 +166,8 @@ impl Formula {
     pub fn contributions(&self, results: &dyn Results, critical: Option<f64>) -> Result<Vec<Contribution>, FormulaError> {
         let mut references = Vec::new();
         self.collect_references(&mut references);
-        let sources = sources_of(&references, results);
+        let mut sources = sources_of(&references, results);
+        self.collect_stated(&mut sources);
         let effect = |source| {
             // Half the effect of moving the source by ±u: exact for a linear formula.
             let up = self.number(&Moved { results, source, by: 1.0 }, critical)?;
@@ -167,7 +192,7 @@ impl Formula {
     /// Adds every result the formula reads, each once.
     pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
         match self {
-            Self::Constant(_) | Self::CriticalTimeStep => {}
+            Self::Constant(_) | Self::Stated(_) | Self::CriticalTimeStep => {}
             Self::Result(reference) => {
                 if !into.contains(reference) {
                     into.push(*reference);
@@ -182,12 +207,38 @@ impl Formula {
         }
     }
 
+    /// Adds the source of every number that it states with an uncertainty, each once.
+    pub fn collect_stated(&self, into: &mut Vec<Source>) {
+        match self {
+            Self::Constant(_) | Self::Result(_) | Self::CriticalTimeStep => {}
+            Self::Stated(stated) => {
+                if !into.contains(&stated.source) {
+                    into.push(stated.source);
+                }
+            }
+            Self::Negate(inner) | Self::Index(inner, _) => inner.collect_stated(into),
+            Self::Binary(_, left, right) => {
+                left.collect_stated(into);
+                right.collect_stated(into);
+            }
+            Self::List(parts) | Self::Call(_, parts) => parts.iter().for_each(|part| part.collect_stated(into)),
+        }
+    }
+
+    /// Whether it states a number with an uncertainty.
+    #[must_use]
+    pub fn is_uncertain(&self) -> bool {
+        let mut stated = Vec::new();
+        self.collect_stated(&mut stated);
+        !stated.is_empty()
+    }
+
     /// Whether `critical` stands in it.
     #[must_use]
     pub fn reads_critical_time_step(&self) -> bool {
         match self {
             Self::CriticalTimeStep => true,
-            Self::Constant(_) | Self::Result(_) => false,
+            Self::Constant(_) | Self::Stated(_) | Self::Result(_) => false,
             Self::Negate(inner) | Self::Index(inner, _) => inner.reads_critical_time_step(),
             Self::Binary(_, left, right) => left.reads_critical_time_step() || right.reads_critical_time_step(),
             Self::List(parts) | Self::Call(_, parts) => parts.iter().any(Self::reads_critical_time_step),
@@ -206,10 +257,19 @@ impl Formula {
         let number = |formula: &Formula| formula.number(results, critical);
         Ok(match self {
             Self::Constant(value) => Value::Number(*value),
+            Self::Stated(Stated { source, value, uncertainty }) => {
+                let by = results.moved(*source);
+                Value::Number(if by == 0.0 { *value } else { value + by * uncertainty })
+            }
             Self::CriticalTimeStep => Value::Number(critical.ok_or(FormulaError::Missing("critical"))?),
             Self::Result(reference) => {
                 match (results.result(*reference).ok_or(FormulaError::Missing(reference.name))?, reference.part) {
-                    (ResultValue::List(values), _) => Value::List(values),
+                    (ResultValue::List(values), Part::Value) => Value::List(values),
+                    (ResultValue::List(values), Part::Uncertainty) => {
+                        let entries = combined_entries(&results.contributions(*reference), values.len());
+                        let known: Option<Vec<f64>> = entries.into_iter().collect();
+                        Value::List(known.ok_or(FormulaError::Missing(reference.name))?)
+                    }
                     (ResultValue::Number { value, .. }, Part::Value) => {
                         Value::Number(value.ok_or(FormulaError::Missing(reference.name))?)
                     }
@@ -300,6 +360,21 @@ mod tests {
         assert!((root.uncertainty.unwrap() - 0.1).abs() < 1e-4);
         let difference = Formula::Binary(Operator::Subtract, Box::new(stiffness()), Box::new(stiffness()));
         assert_eq!(difference.evaluate(&One, None), Ok(Estimate { value: 0.0, uncertainty: Some(0.0) }));
+    }
+
+    /// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²), and nothing of what it is taken from itself.
+    #[test]
+    fn a_stated_number_carries_its_uncertainty() {
+        let of = |source, value, uncertainty| Stated { source, value, uncertainty }.formula();
+        let times = |a: Formula, b: Formula| Formula::Binary(Operator::Multiply, Box::new(a), Box::new(b));
+        let (mass, velocity) = (of(Source::StrikerMass(0), 20.0, 0.1), of(Source::StrikerVelocity(0), 1.0, 0.01));
+        let energy = times(times(Formula::Constant(0.5), mass), times(velocity.clone(), velocity));
+        let found = energy.evaluate(&NoResults, None).unwrap();
+        assert_eq!((found.value, energy.constant()), (10.0, Some(10.0)));
+        assert!((found.uncertainty.unwrap() - 0.05_f64.hypot(0.2)).abs() < 1e-12);
+        let nothing = Formula::Binary(Operator::Subtract, Box::new(energy.clone()), Box::new(energy));
+        assert_eq!(nothing.evaluate(&NoResults, None), Ok(Estimate { value: 0.0, uncertainty: Some(0.0) }));
+        assert_eq!(of(Source::StrikerMass(0), 20.0, 0.0), Formula::Constant(20.0));
     }
 
     #[test]

@@ -14,11 +14,34 @@ pub enum Source {
         procedure: ProcedureId,
         result: &'static str,
     },
+    /// The same of one entry of a list of results.
+    FitEntry {
+        procedure: ProcedureId,
+        result: &'static str,
+        entry: usize,
+    },
     /// By its place among the plan's strikers.
     StrikerMass(usize),
     StrikerVelocity(usize),
     /// By its place among the plan's specimens.
     SpecimenMass(usize),
+    /// The mass of one floor of a frame, both from 0.
+    StoreyMass {
+        specimen: usize,
+        storey: usize,
+    },
+    /// The stiffness of one storey of a frame, as the plan states it.
+    StoreyStiffness {
+        specimen: usize,
+        storey: usize,
+    },
+    /// The computed damping ratio of one mode of a frame, from 0; of Rayleigh damping the one ratio that it has.
+    DampingRatio {
+        procedure: ProcedureId,
+        mode: usize,
+    },
+    /// The factor on a record of the ground, by its place among the plan's grounds.
+    GroundScale(usize),
     /// The factor between newtons and those of the load cell of an axis, by its place; each axis has a cell of its own.
     ForceScale(usize),
     /// The factor between metres and those of the transducer of an axis, by its place.
@@ -27,6 +50,11 @@ pub enum Source {
     ForceZero(usize),
     /// Noise and resolution of a procedure's readings: one of the draws by which they are sampled.
     Readings {
+        procedure: ProcedureId,
+        draw: u16,
+    },
+    /// The same, with the inputs of which there is one a floor, a mode or an axis drawn together with them.
+    Drawn {
         procedure: ProcedureId,
         draw: u16,
     },
@@ -40,6 +68,8 @@ pub enum Source {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
     pub source: Source,
+    /// Which number of a list it is of, from 0; 0 of a result that is one number.
+    pub entry: usize,
     /// Change of the number when the source moves by its standard uncertainty, in the number's own unit.
     pub amount: f64,
     /// Whether the number follows the source smoothly there. Where it does not, `amount` is the largest change seen.
@@ -49,11 +79,35 @@ pub struct Contribution {
 impl Contribution {
     #[must_use]
     pub const fn new(source: Source, amount: f64) -> Self {
-        Self { source, amount, smooth: true }
+        Self { source, entry: 0, amount, smooth: true }
     }
 }
 
-/// u = √Σ cᵢ² of independent contributions (JCGM 100:2008, eq. 10); None of nothing.
+/// What several contributions of one source do to one number is their sum: adds `part` to what `parts` have of its source
+/// already.
+pub fn share(parts: &mut Vec<Contribution>, part: Contribution) {
+    match parts.iter_mut().find(|known| known.source == part.source && known.entry == part.entry) {
+        Some(known) => {
+            known.amount += part.amount;
+            known.smooth &= part.smooth;
+        }
+        None => parts.push(part),
+    }
+}
+
+/// u of each of `count` entries of a list; None where nothing of an entry is uncertain.
+#[must_use]
+pub fn combined_entries(contributions: &[Contribution], count: usize) -> Vec<Option<f64>> {
+    let mut squares = vec![None; count];
+    for part in contributions {
+        if let Some(square) = squares.get_mut(part.entry) {
+            *square = Some(square.unwrap_or(0.0) + part.amount * part.amount);
+        }
+    }
+    squares.into_iter().map(|square: Option<f64>| square.map(f64::sqrt)).collect()
+}
+
+/// u = √Σ cᵢ² of independent contributions to one number (JCGM 100:2008, eq. 10); None of nothing.
 #[must_use]
 pub fn combined(contributions: &[Contribution]) -> Option<f64> {
     let variance = contributions.iter().map(|part| part.amount * part.amount).reduce(|sum, square| sum + square)?;
@@ -71,12 +125,30 @@ pub struct Moved<'a> {
 impl Results for Moved<'_> {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         let found = self.results.result(reference)?;
-        let ResultValue::Number { value: Some(value), uncertainty } = found else { return Some(found) };
-        let amount = (reference.part == Part::Value)
-            .then(|| self.results.contributions(reference))
-            .and_then(|parts| parts.iter().find(|part| part.source == self.source).map(|part| part.amount));
-        let value = amount.map_or(value, |amount| value + self.by * amount);
-        Some(ResultValue::Number { value: Some(value), uncertainty })
+        if reference.part != Part::Value {
+            return Some(found);
+        }
+        let parts = self.results.contributions(reference);
+        let mine = parts.iter().filter(|part| part.source == self.source);
+        Some(match found {
+            ResultValue::Number { value: Some(value), uncertainty } => {
+                let value = mine.fold(value, |value, part| value + self.by * part.amount);
+                ResultValue::Number { value: Some(value), uncertainty }
+            }
+            ResultValue::List(mut values) => {
+                for part in mine {
+                    if let Some(value) = values.get_mut(part.entry) {
+                        *value += self.by * part.amount;
+                    }
+                }
+                ResultValue::List(values)
+            }
+            none @ ResultValue::Number { .. } => none,
+        })
+    }
+
+    fn moved(&self, source: Source) -> f64 {
+        self.results.moved(source) + if source == self.source { self.by } else { 0.0 }
     }
 
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
@@ -158,6 +230,18 @@ mod tests {
         let other = Formula::Binary(Operator::Add, Box::new(line(0.0)), Box::new(Formula::Result(reference("mass"))));
         let u = other.evaluate(&OneLine, None).unwrap().uncertainty.unwrap();
         assert!((u - 0.5_f64.hypot(0.3)).abs() < 1e-12);
+    }
+
+    /// Σ over one source before the square, each entry of a list for itself.
+    #[test]
+    fn what_shares_a_source_adds_up_entry_by_entry() {
+        let of = |entry, amount| Contribution { entry, ..Contribution::new(source("stiffness"), amount) };
+        let mut parts = Vec::new();
+        for part in [of(0, 3.0), of(1, 1.0), of(0, 1.0), Contribution::new(source("mass"), 3.0)] {
+            share(&mut parts, part);
+        }
+        assert_eq!(parts.len(), 3);
+        assert_eq!(combined_entries(&parts, 3), [Some(5.0), Some(1.0), None]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::checker::{Checker, Place, Reads};
 use super::faults::{cyclic as fault, names, values};
 use super::striker::STANDARD_GRAVITY;
-use super::{impact, storey_impact, striker};
+use super::{impact, storey_impact};
 use crate::formula::{Formula, Function, Operator};
 use crate::plan::{Between, BlowOn, Condition, Escalate, MOST_BLOWS, ProcedureKind};
 use crate::schema::Kind;
@@ -79,7 +79,7 @@ fn velocities(checker: &mut Checker, block: usize) -> Option<Vec<Formula>> {
         "drop_heights" => levels.into_iter().map(|height| root(2.0 * STANDARD_GRAVITY, height)).collect(),
         _ => {
             let hammer = checker.reference(block, "striker", Kind::Striker)?;
-            let mass = striker::export(checker, hammer, "mass", head)?;
+            let mass = checker.constant(hammer, "mass")?;
             levels.into_iter().map(|energy| root(2.0 / mass, energy)).collect()
         }
     })

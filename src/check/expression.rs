@@ -149,6 +149,8 @@ impl<'a> Checker<'a> {
             return Some(typed);
         }
         match typed.constant() {
+            // What is stated with an uncertainty is kept as it is made up.
+            Some(_) if typed.formula.is_uncertain() => Some(typed),
             Some(value) => Some(Typed { formula: Formula::Constant(value), ..typed }),
             None => self.fail(values::not_finite(typed.span)),
         }

@@ -8,7 +8,9 @@ use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::{frames as fault, values};
 use super::matrix;
+use super::striker::MOST_UNCERTAIN;
 use crate::plan::{Behaviour, Frame, MOST_STOREYS, Storey};
+use crate::quantity::Dimension;
 use crate::schema::{Field, FieldType};
 use crate::source::Span;
 use crate::syntax::ast::ExprKind;
@@ -79,6 +81,8 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
 
 fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at: Span, place: Place) -> Option<Storey> {
     let mass = checker.constant_argument(chosen, "mass", place);
+    let mass_uncertainty = checker.constant_argument(chosen, "mass_uncertainty", place);
+    let stiffness_uncertainty = checker.constant_argument(chosen, "stiffness_uncertainty", place);
     let height = checker.optional_argument(chosen, "height", place);
     let total = checker.optional_argument(chosen, "stiffness", place);
     let column = checker.optional_argument(chosen, "column_stiffness", place);
@@ -103,7 +107,18 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
         (None, None, None) => return checker.fail(fault::storey_without_stiffness(number, at)),
     };
     let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
-    Some(Storey { mass, stiffness, height, behaviour, damping, coulomb })
+    let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
+    let stated = [
+        ("mass_uncertainty", mass_uncertainty, mass, Dimension::MASS),
+        ("stiffness_uncertainty", stiffness_uncertainty, stiffness, Dimension::STIFFNESS),
+    ];
+    for (field, uncertainty, value, dimension) in stated {
+        if uncertainty > MOST_UNCERTAIN * value {
+            let at = chosen.span(field).unwrap_or(at);
+            return checker.fail(values::too_uncertain(field, uncertainty, value, dimension, at));
+        }
+    }
+    Some(Storey { mass, mass_uncertainty, stiffness, stiffness_uncertainty, height, behaviour, damping, coulomb })
 }
 
 /// The frame that the files of its matrices give, with the files.

@@ -9,6 +9,7 @@ use crate::plan::Ground;
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
     let name = checker.scope.blocks[block].name;
     let scale = checker.constant(block, "scale");
+    let scale_uncertainty = checker.constant(block, "scale_uncertainty");
     let stated = checker.given(block, "unit").map(|(_, entry)| entry);
     let unit = match stated {
         Some(_) => checker.constant(block, "unit").map(Some),
@@ -22,7 +23,7 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
         Ok(record) => record,
         Err(reason) => return checker.fail(fault::bad_record(&file.name, &reason, at)),
     };
-    let (scale, unit) = (scale?, unit?);
+    let (scale, scale_uncertainty, unit) = (scale?, scale_uncertainty?, unit?);
     let unit = match (record.unit, unit, stated) {
         (Some(_), Some(_), Some(stated)) => return checker.fail(fault::unit_twice(&file.name, stated.span)),
         (Some(unit), ..) | (None, Some(unit), _) => unit,
@@ -33,5 +34,5 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
         let reason = format!("sample {} is no finite acceleration in its unit and scale", sample + 1);
         return checker.fail(fault::bad_record(&file.name, &reason, at));
     }
-    Some(Ground { name: name?.node.clone(), file: file.name, scale, times: record.times, accelerations })
+    Some(Ground { name: name?.node.clone(), file: file.name, scale, scale_uncertainty, times: record.times, accelerations })
 }

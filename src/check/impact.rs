@@ -33,7 +33,7 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
     };
     let mass_uncertainty = match checker.given(block, "mass") {
         Some(_) => Some(0.0),
-        None => specimen_block.and_then(|tested| checker.constant(tested, "mass_uncertainty")),
+        None => specimen_block.and_then(|tested| specimen::mass_uncertainty(checker, tested)),
     };
     let stiffness = checker.stiffness_or_specimens(block, specimen_block);
     let damping = checker.quantity(block, "damping");

@@ -105,7 +105,7 @@ impl<'a> Checker<'a> {
             return self.fail(fault::no_uncertainty(text, name.span));
         };
         let formula = Formula::Result(ResultReference { part: Part::Uncertainty, ..reference });
-        Some(Typed::number(formula, typed.dimension, span))
+        Some(Typed { shape: typed.shape, ..Typed::number(formula, typed.dimension, span) })
     }
 
     /// What a block gives: a result, a derived value, or a field.
@@ -127,12 +127,12 @@ impl<'a> Checker<'a> {
             return self.reads_allowed(typed, span, place);
         }
         if let Some(export) = declared.kind.export(&name.node) {
-            let value = match declared.kind.kind {
-                Kind::Specimen => specimen::export(self, block, export.name, span)?,
-                Kind::Striker => striker::export(self, block, export.name, span)?,
+            let formula = match declared.kind.kind {
+                Kind::Specimen => specimen::exported(self, block, export.name, span)?,
+                Kind::Striker => striker::exported(self, block, export.name)?,
                 _ => return None,
             };
-            return Some(Typed::number(Formula::Constant(value), export.dimension, span));
+            return Some(Typed::number(formula, export.dimension, span));
         }
         if declared.kind.field(&name.node).is_some_and(|field| field.ty.is_numeric()) {
             let Some(entry) = declared.block.fields.iter().position(|entry| entry.key.node == name.node) else {

@@ -164,6 +164,7 @@ fn virtual_link<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place
         tracking: tracking?,
         drift: drift?,
         seed,
+        foretold: None,
     })
 }
 

@@ -14,6 +14,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let ground = checker.reference(block, "ground", Kind::Ground);
     let specimen = checker.specimen_block(block);
     let damping = damping(checker, block);
+    let damping_uncertainty = damping_uncertainty(checker, block, damping.as_ref());
     let stepping = stepping::stepping(checker, block, Some(&Contact::Rigid), 5.0);
     let scale = checker.quantity(block, "scale");
     let duration = checker.optional(block, "duration");
@@ -28,6 +29,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         specimen: checker.scope.place_in_kind(specimen),
         ground: checker.scope.place_in_kind(ground?),
         damping: damping?,
+        damping_uncertainty: damping_uncertainty?,
         stepping: stepping?,
         scale: scale?,
         duration: duration?,
@@ -45,6 +47,24 @@ pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
         Shape::List if matches!(typed.formula, Formula::List(_)) => ShakeDamping::Modal(typed.parts()),
         Shape::List => return checker.fail(types::list_for_number(written.value.span)),
     })
+}
+
+/// Standard, of each ratio: no ratio less its uncertainty is below 0.
+pub fn damping_uncertainty(checker: &mut Checker, block: usize, damping: Option<&ShakeDamping>) -> Option<f64> {
+    const FIELD: &str = "damping_ratio_uncertainty";
+    let uncertainty = checker.constant(block, FIELD)?;
+    let ratios = match damping? {
+        ShakeDamping::Rayleigh(ratio) => std::slice::from_ref(ratio),
+        ShakeDamping::Modal(ratios) => ratios,
+    };
+    let least = ratios.iter().filter_map(Formula::constant).reduce(f64::min);
+    match (least.filter(|least| uncertainty > *least), checker.given(block, FIELD)) {
+        (Some(least), Some((_, entry))) => {
+            let at = entry.value.span;
+            checker.fail(fault::damping_too_uncertain(uncertainty, least, at))
+        }
+        _ => Some(uncertainty),
+    }
 }
 
 /// What the time step of a shake must be held against, as far as it is known before the run: what that of any frame must

@@ -6,10 +6,20 @@ use super::faults::{frames, names as fault, specimens};
 use super::frame;
 use super::limits::CheckedLimits;
 use super::striker::uncertainty;
-use crate::plan::{Behaviour, Interval, Mechanism, Specimen};
+use crate::formula::{Formula, Function, Stated};
+use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
 use crate::syntax::ast::ExprKind;
+use crate::uncertainty::Source;
+
+/// Standard, of the mass that an impact takes from its specimen, kg.
+pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
+    if frame::is_frame(checker, block) {
+        return frame::frame(checker, block).map(|frame| frame.total_mass_uncertainty());
+    }
+    checker.constant(block, "mass_uncertainty")
+}
 
 /// A specimen whose entries are all right; None where a fault was reported.
 pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
@@ -17,8 +27,9 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let (name, head) = (declared.name, declared.block.head);
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
+        let mass_uncertainty = frame.total_mass_uncertainty();
         let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
-        return Some(Specimen { frame, ..Specimen::new(&name?.node, mass, None) });
+        return Some(Specimen { frame, mass_uncertainty, ..Specimen::new(&name?.node, mass, None) });
     }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {
@@ -82,6 +93,27 @@ fn own_mass(checker: &mut Checker, block: usize) -> Option<f64> {
     let (density, area, length) =
         (checker.constant(block, "density")?, checker.constant(block, "area")?, checker.constant(block, "length")?);
     Some(density * area * length)
+}
+
+/// `beam.mass` and its like, with what is uncertain of them.
+pub fn exported(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -> Option<Formula> {
+    let value = export(checker, block, name, asked_at)?;
+    let specimen = checker.scope.place_in_kind(block);
+    if name != "mass" {
+        return Some(Formula::Constant(value));
+    }
+    if frame::is_frame(checker, block) {
+        let frame = frame::frame(checker, block)?;
+        let of_storey = |(storey, it): (usize, &Storey)| {
+            let source = Source::StoreyMass { specimen, storey };
+            Stated { source, value: it.mass, uncertainty: it.mass_uncertainty }.formula()
+        };
+        let uncertain = frame.storeys.iter().any(|storey| storey.mass_uncertainty > 0.0);
+        let masses = || frame.storeys.iter().enumerate().map(of_storey).collect();
+        return Some(if uncertain { Formula::Call(Function::Sum, masses()) } else { Formula::Constant(value) });
+    }
+    let uncertainty = checker.constant(block, "mass_uncertainty")?;
+    Some(Stated { source: Source::SpecimenMass(specimen), value, uncertainty }.formula())
 }
 
 /// The value of `beam.mass`, `beam.stiffness` or another; None where the specimen has a fault that is reported in its place.

@@ -43,6 +43,7 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
         }
     }
     let damping = shake::damping(checker, block);
+    let damping_uncertainty = shake::damping_uncertainty(checker, block, damping.as_ref());
     let contact = impact::contact(checker, block);
     let stepping = stepping::stepping(checker, block, contact.as_ref(), impact::FINER);
     let duration = checker.quantity(block, "duration");
@@ -55,6 +56,7 @@ pub fn storey_impact(checker: &mut Checker, block: usize, specimen: usize, frame
         striker: checker.scope.place_in_kind(striker?),
         struck: struck?,
         damping: damping?,
+        damping_uncertainty: damping_uncertainty?,
         contact: contact?,
         stepping: stepping?,
         duration: duration?,
@@ -111,9 +113,15 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &StoreyImpact, frame: 
 /// In an impact on one degree of freedom: what only a frame has.
 pub fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Option<()> {
     let mut sound = Some(());
-    if let Some((_, entry)) = checker.given(block, "damping_ratio") {
-        let at = entry.key.span;
-        sound = checker.fail(fault::of_a_frame_only("damping_ratio", at, "write `damping = 50 N*s/m`"));
+    let hints = [
+        ("damping_ratio", "write `damping = 50 N*s/m`"),
+        ("damping_ratio_uncertainty", "remove it: the modes of a frame have damping ratios"),
+    ];
+    for (field, hint) in hints {
+        if let Some((_, entry)) = checker.given(block, field) {
+            let at = entry.key.span;
+            sound = checker.fail(fault::of_a_frame_only(field, at, hint));
+        }
     }
     if let (Some((_, entry)), Some(specimen)) = (checker.given(block, "storey"), specimen) {
         let (at, tested) = (entry.key.span, &checker.scope.blocks[specimen]);

@@ -2,9 +2,11 @@
 
 use super::checker::Checker;
 use super::faults::{names as fault, values};
+use crate::formula::{Formula, Operator, Stated};
 use crate::plan::Striker;
 use crate::quantity::Dimension;
 use crate::source::Span;
+use crate::uncertainty::Source;
 
 /// Standard gravity, m/s².
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
@@ -71,7 +73,7 @@ pub fn uncertainty(checker: &mut Checker, block: usize, field: &'static str, val
 }
 
 /// Share of a value that its standard uncertainty may be: beyond it, nothing is linear, and 0 is no longer out of reach.
-const MOST_UNCERTAIN: f64 = 0.2;
+pub const MOST_UNCERTAIN: f64 = 0.2;
 
 fn entry_dimension(field: &str) -> Dimension {
     if field == "velocity_uncertainty" { Dimension::VELOCITY } else { Dimension::MASS }
@@ -92,14 +94,48 @@ fn velocity(checker: &mut Checker, block: usize) -> Option<f64> {
     Some((2.0 * STANDARD_GRAVITY * height).sqrt())
 }
 
-/// The value of `pendulum.energy` and its like; None where the striker has a fault that is reported in its place.
-pub fn export(checker: &mut Checker, block: usize, name: &str, _asked_at: Span) -> Option<f64> {
-    match name {
-        "mass" => checker.constant(block, "mass"),
-        "velocity" => velocity(checker, block),
-        "gap" => checker.constant(block, "gap"),
-        "drop_height" if checker.given(block, "drop_height").is_some() => checker.constant(block, "drop_height"),
-        "drop_height" => velocity(checker, block).map(|velocity| velocity * velocity / (2.0 * STANDARD_GRAVITY)),
-        _ => Some(0.5 * checker.constant(block, "mass")? * velocity(checker, block)?.powi(2)),
+/// `pendulum.energy` and its like, with what is uncertain of them; None where the striker has a fault that is reported in its
+/// place.
+pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formula> {
+    let place = checker.scope.place_in_kind(block);
+    let stated = |checker: &mut Checker, field, source, value| {
+        let uncertainty = checker.constant(block, field)?;
+        Some(Stated { source, value, uncertainty }.formula())
+    };
+    let mass = |checker: &mut Checker| {
+        let value = checker.constant(block, "mass")?;
+        stated(checker, "mass_uncertainty", Source::StrikerMass(place), value)
+    };
+    let speed = |checker: &mut Checker, value| stated(checker, "velocity_uncertainty", Source::StrikerVelocity(place), value);
+    let times = |a: Formula, b: Formula| Formula::Binary(Operator::Multiply, Box::new(a), Box::new(b));
+    let formula = match name {
+        "mass" => mass(checker)?,
+        "gap" => Formula::Constant(checker.constant(block, "gap")?),
+        _ => {
+            let value = velocity(checker, block)?;
+            let velocity = speed(checker, value)?;
+            match name {
+                "velocity" => velocity,
+                "drop_height" => {
+                    let height = match checker.given(block, "drop_height") {
+                        Some(_) => checker.constant(block, "drop_height")?,
+                        None => value * value / (2.0 * STANDARD_GRAVITY),
+                    };
+                    // h (v/v₀)²: as high as it is stated, as uncertain as the velocity that follows.
+                    let ratio = Formula::Binary(Operator::Divide, Box::new(velocity), Box::new(Formula::Constant(value)));
+                    times(Formula::Constant(height), times(ratio.clone(), ratio))
+                }
+                _ => times(times(Formula::Constant(0.5), mass(checker)?), times(velocity.clone(), velocity)),
+            }
+        }
+    };
+    Some(folded(formula))
+}
+
+/// A number that nothing makes uncertain.
+fn folded(formula: Formula) -> Formula {
+    match formula.constant() {
+        Some(value) if !formula.is_uncertain() => Formula::Constant(value),
+        _ => formula,
     }
 }

@@ -6,6 +6,7 @@ use super::impact::{critical_before_the_run, time_step_before_the_run};
 use crate::plan::{BlowOn, Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker, Until};
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
+use crate::uncertainty::Source;
 
 /// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
 pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Option<&Striker>) {
@@ -38,7 +39,7 @@ pub fn limit_force(checker: &mut Checker, at: Span, step: f64, (mass, force): (f
 pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement], plan: Span) {
     peak_forces(checker, procedures, requirements);
     blows_on_blows(checker, procedures);
-    unused_uncertainties(checker, procedures);
+    unused_uncertainties(checker, procedures, requirements);
     match procedures.last() {
         None => checker.faults.push(fault::nothing_runs(plan)),
         Some((block, _)) if requirements.is_empty() => {
@@ -84,16 +85,25 @@ fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
 }
 
 /// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own.
-fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
-    let used: Vec<usize> = procedures
-        .iter()
-        .filter_map(|(_, procedure)| match &procedure.as_ref()?.kind {
-            ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(blow), .. }) => {
-                (blow.mass_uncertainty > 0.0).then_some(blow.specimen)
-            }
-            _ => None,
-        })
-        .collect();
+fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
+    let mut read = Vec::new();
+    for condition in requirements.iter().flat_map(|requirement| &requirement.conditions) {
+        condition.collect_stated(&mut read);
+    }
+    let mut used = Vec::new();
+    for (_, procedure) in procedures {
+        if let Some(
+            ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(blow), .. }),
+        ) = procedure.as_ref().map(|procedure| &procedure.kind)
+        {
+            blow.mass.collect_stated(&mut read);
+            used.extend((blow.mass_uncertainty > 0.0).then_some(blow.specimen));
+        }
+    }
+    used.extend(read.into_iter().filter_map(|source| match source {
+        Source::SpecimenMass(specimen) => Some(specimen),
+        _ => None,
+    }));
     let specimens: Vec<usize> = checker.scope.of_kind(Kind::Specimen).map(|(block, _)| block).collect();
     for block in specimens.into_iter().enumerate().filter(|(place, _)| !used.contains(place)).map(|(_, block)| block) {
         let stated = checker.given(block, "mass_uncertainty").map(|(_, entry)| entry.value.span);

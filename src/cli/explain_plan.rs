@@ -12,11 +12,11 @@ use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::formula::ResultValue;
 use crate::output::{PredictedLimit, PredictedProcedure, PredictedRequirement, Prediction, behaviour};
-use crate::plan::{Interval, Limits, Link, Plan, ProcedureKind, VirtualLink};
+use crate::plan::{Condition, DecisionRule, Interval, Limits, Link, Plan, ProcedureKind, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::{digits, join, readable, si_unit, significant, stated, unit};
 use crate::record::{History, ImpactHistory, Outcome, Record};
-use crate::verdict::{self, Assessment};
+use crate::verdict::{self, Assessment, ConditionOutcome};
 
 /// What a run would do.
 pub enum Explained<'a> {
@@ -71,8 +71,7 @@ pub struct DryRun<'a> {
 impl<'a> DryRun<'a> {
     pub fn of(plan: &'a Plan) -> Self {
         let mut ideal = plan.clone();
-        let seed = plan.rig.link.as_virtual().map_or(0, |link| link.seed);
-        ideal.rig.link = Link::Virtual(VirtualLink { seed, ..VirtualLink::default() });
+        ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig.link));
         let model =
             format!("dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift", plan.rig.name);
         Self::on(plan, &ideal, model)
@@ -274,21 +273,38 @@ impl<'a> DryRun<'a> {
         errors.reduce(f64::max).map(|high| Interval { low: 0.0, high })
     }
 
+    /// One row a condition: what it would come to, how well that would be known, and whether so much is left.
     fn requirements(&self) -> Vec<Vec<String>> {
-        let outcomes = self.assessment.requirements.iter().flat_map(|requirement| {
-            requirement.conditions.iter().map(move |condition| {
-                let shown =
-                    |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| readable(value, condition.dimension));
-                vec![
-                    condition.verdict.name().to_owned(),
+        let planned = self.plan.requirements.iter().zip(&self.assessment.requirements);
+        let rows = planned.flat_map(|(requirement, outcome)| {
+            requirement.conditions.iter().zip(&outcome.conditions).map(|(condition, outcome)| {
+                let shown = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| readable(value, outcome.dimension));
+                let mut row = vec![
+                    outcome.verdict.name().to_owned(),
                     escape(&requirement.label),
-                    escape(&condition.text),
-                    shown(condition.value),
-                    format!("margin {}", shown(condition.margin)),
-                ]
+                    escape(&outcome.text),
+                    shown(outcome.value),
+                    format!("margin {}", shown(outcome.margin)),
+                ];
+                row.extend(self.known(condition, outcome));
+                row
             })
         });
-        outcomes.collect()
+        rows.collect()
+    }
+
+    /// How far the uncertainty that the plan declares reaches, and what that leaves of the decision.
+    fn known(&self, condition: &Condition, outcome: &ConditionOutcome) -> [String; 2] {
+        let nothing = || ["u not known".to_owned(), String::new()];
+        let band = verdict::assess_condition(condition, DecisionRule::Guarded, &self.record).guard_band;
+        let (Some(band), Some(margin)) = (band, outcome.margin) else { return nothing() };
+        let uncertain = outcome.uncertainty.map_or_else(|| "–".to_owned(), |u| readable(u, outcome.dimension));
+        let left = match (margin.abs() >= band, self.plan.decision_rule) {
+            (true, _) => "is decided",
+            (false, DecisionRule::Guarded) => "NOT decided: the limit is nearer",
+            (false, DecisionRule::Simple) => "decided by the value alone: the limit is nearer",
+        };
+        [format!("u {uncertain}"), format!("U of the margin {}, {left}", readable(band, outcome.dimension))]
     }
 }
 

@@ -112,10 +112,10 @@ fn results(summary: &Value) -> Vec<(String, Dimension, Cell)> {
             let dimension = unit::parse(unit).map_or(Dimension::NUMBER, |unit| unit.dimension);
             match &quantity["value"] {
                 Value::Array(entries) => found.extend(
-                    entries
-                        .iter()
-                        .enumerate()
-                        .map(|(index, entry)| (format!("{name}[{index}]"), dimension, Cell { value: entry.as_f64(), u: None })),
+                    entries.iter().zip(0_usize..).map(|(entry, index)| {
+                        let cell = Cell { value: entry.as_f64(), u: quantity["u"][index].as_f64() };
+                        (format!("{name}[{index}]"), dimension, cell)
+                    }),
                 ),
                 value => found.push((name, dimension, Cell { value: value.as_f64(), u: quantity["u"].as_f64() })),
             }

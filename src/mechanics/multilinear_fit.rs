@@ -35,9 +35,22 @@ pub struct MultilinearFit {
     pub hardening: (f64, f64),
     /// Standard error of the change of stiffness at each break, N/m.
     pub change_errors: Vec<f64>,
+    pub shares: CurveShares,
     pub r_squared: f64,
     /// The criterion for 0, 1, … breaks, less its least, where it chose.
     pub criterion: Vec<f64>,
+}
+
+/// How much each number has of the independent errors of the fit, in its own unit: those of K₁, of the intercept beyond what it
+/// shares with K₁, of each further stiffness and then of each break beyond what they share with all before them. Their squares
+/// add up to that of the number's standard error; of points without scatter there is nothing to share.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct CurveShares {
+    pub intercept: Vec<f64>,
+    pub stiffnesses: Vec<Vec<f64>>,
+    pub breaks: Vec<Vec<f64>>,
+    pub forces: Vec<Vec<f64>>,
+    pub hardening: Vec<f64>,
 }
 
 impl MultilinearFit {
@@ -157,24 +170,52 @@ fn stated(
     #[expect(clippy::cast_precision_loss, reason = "far fewer points than 2^53")]
     let freedom = (points.len() - size) as f64;
     let covariance = scaled_inverse(&normal)? * (line.squares / freedom);
-    let error = |effect: &[(usize, f64)]| {
+    let whole = |effect: &[(usize, f64)]| {
         let mut all = DVector::<f64>::zeros(size);
         for (index, by) in effect {
             all[*index] += by;
         }
+        all
+    };
+    let error = |effect: &[(usize, f64)]| {
+        let all = whole(effect);
         (all.transpose() * &covariance * all)[(0, 0)].max(0.0).sqrt()
+    };
+    // K₁ stands before the intercept, so that an error of it is one of its own.
+    let mut ordered = covariance.clone();
+    ordered.swap_rows(0, 1);
+    ordered.swap_columns(0, 1);
+    let unit = ordered.diagonal().map(|variance| if variance > 0.0 { variance.sqrt() } else { 1.0 });
+    let scaled = DMatrix::from_fn(size, size, |row, column| ordered[(row, column)] / (unit[row] * unit[column]));
+    let root = scaled.cholesky().map(|root| DMatrix::from_diagonal(&unit) * root.l());
+    let share = |times: f64, effect: &[(usize, f64)]| -> Vec<f64> {
+        let Some(root) = &root else { return vec![0.0; size] };
+        let mut all = whole(effect);
+        all.swap_rows(0, 1);
+        (all.transpose() * root).iter().map(|part| times * part).collect()
     };
     let stiffness = strong / far;
     let first_last = (slopes[0], slopes[count]);
     let hardening = first_last.1 / first_last.0;
-    let at_break = |index: usize| {
+    let of_force = |index: usize| -> Vec<(usize, f64)> {
         let place = line.breaks[index];
-        let force: f64 = row(place, &line.breaks).zip(&line.coefficients).map(|(part, by)| part * by).sum();
         // ∂R/∂τ of the breaks before this one, and along the stretch that ends here.
         let by_slopes = row(place, &line.breaks).enumerate();
         let by_breaks = slopes.windows(2).take(index).enumerate().map(|(before, pair)| (count + 2 + before, pair[0] - pair[1]));
-        let effect: Vec<(usize, f64)> = by_slopes.chain(by_breaks).chain([(count + 2 + index, slopes[index])]).collect();
-        (way * strong * force, strong * error(&effect))
+        by_slopes.chain(by_breaks).chain([(count + 2 + index, slopes[index])]).collect()
+    };
+    let at_break = |index: usize| {
+        let parts = row(line.breaks[index], &line.breaks).zip(&line.coefficients);
+        let force: f64 = parts.map(|(part, by)| part * by).sum();
+        (way * strong * force, strong * error(&of_force(index)))
+    };
+    let of_hardening = [(1, -hardening / first_last.0), (count + 1, 1.0 / first_last.0)];
+    let shares = CurveShares {
+        intercept: share(way * strong, &[(0, 1.0)]),
+        stiffnesses: (0..=count).map(|k| share(stiffness, &[(k + 1, 1.0)])).collect(),
+        breaks: (0..count).map(|k| share(way * far, &[(count + 2 + k, 1.0)])).collect(),
+        forces: (0..count).map(|index| share(way * strong, &of_force(index))).collect(),
+        hardening: share(1.0, &of_hardening),
     };
     let total = {
         #[expect(clippy::cast_precision_loss, reason = "far fewer points than 2^53")]
@@ -188,8 +229,9 @@ fn stated(
         breaks: (0..count).map(|k| (way * far * line.breaks[k], far * error(&[(count + 2 + k, 1.0)]))).collect(),
         forces: (0..count).map(at_break).collect(),
         // A curve of one stretch has one stiffness, known to be its own.
-        hardening: (hardening, error(&[(1, -hardening / first_last.0), (count + 1, 1.0 / first_last.0)])),
+        hardening: (hardening, error(&of_hardening)),
         change_errors: (0..count).map(|k| stiffness * error(&[(k + 1, 1.0), (k + 2, -1.0)])).collect(),
+        shares,
         r_squared: if total > 0.0 { 1.0 - line.squares / total } else { 1.0 },
         criterion,
     })
@@ -313,6 +355,45 @@ mod tests {
             let held = values.iter().filter(|(value, error)| (value - exact).abs() < 2.0 * error).count();
             // 382 by the normal law, three binomial deviations 13.
             assert!((366..=397).contains(&held), "{index}: twice the error holds the truth {held} times of 400");
+        }
+    }
+
+    /// The squares of the shares of a number add up to that of its standard error, and two numbers are correlated as 400 fits are:
+    /// the first stiffness and the first break, whose force is hardly one of either.
+    #[test]
+    fn its_shares_are_its_errors_and_know_what_follows_from_what() {
+        let mut state = 7;
+        let mut noise = || 15.0 * normal(&mut state);
+        let mut fit = || {
+            let (x, y) = ramp(&mut noise);
+            fit_multilinear(&x, &y, BreakCount::Exactly(2)).unwrap()
+        };
+        let one = fit();
+        let shares = &one.shares;
+        let size = |share: &[f64]| share.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let lists = [(&one.stiffnesses, &shares.stiffnesses), (&one.breaks, &shares.breaks), (&one.forces, &shares.forces)];
+        let listed = lists.into_iter().flat_map(|(numbers, shares)| numbers.iter().zip(shares));
+        for ((value, error), share) in listed.chain([(&one.intercept, &shares.intercept), (&one.hardening, &shares.hardening)]) {
+            assert!((size(share) / error - 1.0).abs() < 1e-6, "{value} ± {error}: {share:?}");
+        }
+        assert!(shares.stiffnesses[0][1..].iter().all(|part| part.abs() < 1e-9 * one.stiffnesses[0].1), "K₁ is its own");
+        let together = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / (size(a) * size(b));
+        let fits: Vec<MultilinearFit> = (0..400).map(|_| fit()).collect();
+        let pairs: [(Read, Read, f64); 4] = [
+            (|fit| fit.stiffnesses[0], |fit| fit.breaks[0], together(&shares.stiffnesses[0], &shares.breaks[0])),
+            (|fit| fit.stiffnesses[0], |fit| fit.intercept, together(&shares.stiffnesses[0], &shares.intercept)),
+            (|fit| fit.breaks[0], |fit| fit.forces[0], together(&shares.breaks[0], &shares.forces[0])),
+            (|fit| fit.stiffnesses[1], |fit| fit.breaks[1], together(&shares.stiffnesses[1], &shares.breaks[1])),
+        ];
+        for (index, (first, second, stated)) in pairs.into_iter().enumerate() {
+            let mean = |read: Read| fits.iter().map(|fit| read(fit).0).sum::<f64>() / 400.0;
+            let product = |a: Read, b: Read| {
+                let (of_a, of_b) = (mean(a), mean(b));
+                fits.iter().map(|fit| (a(fit).0 - of_a) * (b(fit).0 - of_b)).sum::<f64>()
+            };
+            let found = product(first, second) / (product(first, first) * product(second, second)).sqrt();
+            // A correlation of 400 pairs is known to (1 − r²)/√400; three of them, and what one fit is off the mean of all.
+            assert!((found - stated).abs() < 3.0 / 20.0 * (1.0 - stated * stated) + 0.02, "pair {index}: {found}, stated {stated}");
         }
     }
 

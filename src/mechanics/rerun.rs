@@ -55,41 +55,74 @@ pub(crate) fn integrate(
 ) -> Outcome {
     let mut solver = ImpactSolver::new(input, place, force);
     let mut before = ImpactState { measured_displacement: displacement, ..*solver.state() };
-    let mut summary = SummaryBuilder::new(input);
-    summary.push(&before);
-    let mut between = Between::new(&before);
-    let mut end = Ending { displacement: before.displacement, restoring: 0.0, damping: 0.0 };
+    let mut told = Telling::new(input, until, &before);
     for _ in 0..steps {
         let target = solver.predict();
         let (displacement, force) = read(target);
         let now = *solver.complete(displacement, force);
-        summary.push(&now);
-        between.take(&before, &now, input.time_step);
         let over = solver.over(until);
-        end = Ending::of(&before, &now, over && until == Until::StrikerStop, input.time_step);
+        told.take(&before, &now, over);
         if over {
             break;
         }
         before = now;
     }
-    let summary = summary.finish();
-    let values = [
-        between.displacement,
-        between.time,
-        between.stop_time.unwrap_or(f64::NAN),
-        end.displacement,
-        summary.max_velocity,
-        summary.max_contact_force,
-        summary.impulse,
-        summary.restitution.unwrap_or(f64::NAN),
-        summary.indentation,
-        summary.indentation_energy,
-        between.absorbed,
-        end.restoring,
-        end.damping,
-        summary.striker_energy,
-    ];
-    Outcome { summary, values, unseen: 0.0 }
+    told.finish()
+}
+
+/// What an impact comes to, collected from the ends of its steps.
+pub struct Telling {
+    summary: SummaryBuilder,
+    between: Between,
+    end: Ending,
+    until: Until,
+    time_step: f64,
+}
+
+impl Telling {
+    #[must_use]
+    pub fn new(input: &ImpactInput, until: Until, start: &ImpactState) -> Self {
+        let mut summary = SummaryBuilder::new(input);
+        summary.push(start);
+        let end = Ending { share: 1.0, displacement: start.displacement, restoring: 0.0, damping: 0.0 };
+        Self { summary, between: Between::new(start), end, until, time_step: input.time_step }
+    }
+
+    /// Takes the ends of a step; `over` where the run ends with it.
+    pub fn take(&mut self, before: &ImpactState, now: &ImpactState, over: bool) {
+        self.summary.push(now);
+        self.between.take(before, now, self.time_step);
+        self.end = Ending::of(before, now, over && self.until == Until::StrikerStop, self.time_step);
+    }
+
+    /// Share of the last step at which the run ends.
+    #[must_use]
+    pub const fn share(&self) -> f64 {
+        self.end.share
+    }
+
+    #[must_use]
+    pub fn finish(self) -> Outcome {
+        let Self { summary, between, end, .. } = self;
+        let summary = summary.finish();
+        let values = [
+            between.displacement,
+            between.time,
+            between.stop_time.unwrap_or(f64::NAN),
+            end.displacement,
+            summary.max_velocity,
+            summary.max_contact_force,
+            summary.impulse,
+            summary.restitution.unwrap_or(f64::NAN),
+            summary.indentation,
+            summary.indentation_energy,
+            between.absorbed,
+            end.restoring,
+            end.damping,
+            summary.striker_energy,
+        ];
+        Outcome { summary, values, unseen: 0.0 }
+    }
 }
 
 /// Share of a step at which a velocity that falls evenly from `before` to `now` is none; None where it does not get there.
@@ -136,6 +169,8 @@ impl Between {
 
 /// The end of the run, inside its last step where that ends it by a velocity that comes to nothing.
 struct Ending {
+    /// Of the last step.
+    share: f64,
     /// m
     displacement: f64,
     /// J
@@ -151,6 +186,7 @@ impl Ending {
         let mean_velocity = before.velocity + 0.5 * share * (now.velocity - before.velocity);
         let inside = |before: f64, now: f64| before + share * (now - before);
         Self {
+            share,
             displacement: if share < 1.0 { before.displacement + share * time_step * mean_velocity } else { now.displacement },
             restoring: inside(before.energies.restoring, now.energies.restoring),
             damping: inside(before.energies.damping, now.energies.damping),

@@ -3,7 +3,7 @@
 
 use super::Run;
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::Plan;
+use crate::plan::{Plan, ProcedureKind, ShakeDamping, Storey};
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, ProcedureRecord};
 use crate::rig::named_axis;
@@ -13,6 +13,8 @@ use crate::uncertainty::{Contribution, Source};
 #[derive(Clone, Debug)]
 pub(super) struct Budget<'a> {
     pub result: &'a NamedResult,
+    /// Of a list, which of its numbers, from 0.
+    pub entry: Option<usize>,
     pub value: f64,
     /// u, of all lines together.
     pub uncertainty: f64,
@@ -62,20 +64,34 @@ impl Budget<'_> {
 
 /// Budgets of a procedure's results, those that more enters than its own scatter.
 pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureRecord) -> Vec<Budget<'a>> {
-    let own = |part: &Contribution| matches!(part.source, Source::Fit { procedure, .. } if procedure == ProcedureId(index));
+    let own = |part: &Contribution| matches!(part.source, Source::Fit { procedure, .. } | Source::FitEntry { procedure, .. } if procedure == ProcedureId(index));
     let made = procedure.results.iter().filter(|result| !result.contributions.iter().all(own));
-    made.filter_map(|result| {
-        let ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } = result.value else { return None };
-        Some(Budget { result, value, uncertainty, lines: lines(run, &result.contributions) })
+    made.flat_map(|result| match &result.value {
+        ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } => {
+            let lines = lines(run, result.contributions.iter());
+            vec![Budget { result, entry: None, value: *value, uncertainty: *uncertainty, lines }]
+        }
+        ResultValue::Number { .. } => Vec::new(),
+        ResultValue::List(values) => of_entries(run, result, values),
     })
     .collect()
 }
 
+/// A budget for each number of a list whose uncertainty is known.
+fn of_entries<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> Vec<Budget<'a>> {
+    let known = values.iter().zip(result.entry_uncertainties()).enumerate();
+    let budget = |(entry, (value, uncertainty)): (usize, (&f64, Option<f64>))| {
+        let lines = lines(run, result.contributions.iter().filter(|part| part.entry == entry));
+        Some(Budget { result, entry: Some(entry), value: *value, uncertainty: uncertainty?, lines })
+    };
+    known.filter_map(budget).collect()
+}
+
 /// A line for each source; the draws of the readings are one.
-fn lines(run: &Run<'_>, contributions: &[Contribution]) -> Vec<Line> {
-    let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. });
-    let mut lines: Vec<Line> = contributions.iter().filter(|part| !drawn(part)).map(|part| line(run, part)).collect();
-    let draws: Vec<&Contribution> = contributions.iter().filter(drawn).collect();
+fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution>) -> Vec<Line> {
+    let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. } | Source::Drawn { .. });
+    let (draws, moved): (Vec<&Contribution>, Vec<&Contribution>) = contributions.partition(drawn);
+    let mut lines: Vec<Line> = moved.into_iter().map(|part| line(run, part)).collect();
     if let Some(first) = draws.first() {
         let together = draws.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
         let draws = Some(draws.len());
@@ -90,9 +106,14 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
     let striker = |index: usize| plan.strikers.get(index);
     let (input, from, value, uncertainty, dimension) = match part.source {
         Source::Fit { procedure, result } => {
-            let (value, uncertainty, dimension) = fitted(run, procedure, result, part.source);
+            let (value, uncertainty, dimension) = fitted(run, procedure, (result, None), part.source);
             let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
             (format!("{name}.{result}"), From::Result, value, uncertainty, dimension)
+        }
+        Source::FitEntry { procedure, result, entry } => {
+            let (value, uncertainty, dimension) = fitted(run, procedure, (result, Some(entry)), part.source);
+            let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
+            (format!("{name}.{result}[{entry}]"), From::Result, value, uncertainty, dimension)
         }
         Source::StrikerMass(index) => {
             let (name, value, u) = striker(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.mass, s.mass_uncertainty));
@@ -108,6 +129,19 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
                 plan.specimens.get(index).map_or(("", 0.0, 0.0), |s| (s.name.as_str(), s.mass, s.mass_uncertainty));
             (format!("{name}.mass"), From::Plan, Some(value), Some(u), Dimension::MASS)
         }
+        Source::StoreyMass { specimen, storey } => {
+            let (name, value, u) = storey_of(run, specimen, storey, |it| (it.mass, it.mass_uncertainty));
+            (format!("{name}.storeys[{storey}].mass"), From::Plan, value, u, Dimension::MASS)
+        }
+        Source::StoreyStiffness { specimen, storey } => {
+            let (name, value, u) = storey_of(run, specimen, storey, |it| (it.stiffness, it.stiffness_uncertainty));
+            (format!("{name}.storeys[{storey}].stiffness"), From::Plan, value, u, Dimension::STIFFNESS)
+        }
+        Source::DampingRatio { procedure, mode } => damping_ratio(run, procedure, mode),
+        Source::GroundScale(index) => {
+            let (name, u) = plan.grounds.get(index).map_or(("", 0.0), |ground| (ground.name.as_str(), ground.scale_uncertainty));
+            (format!("factor on {name}"), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
+        }
         Source::ForceScale(axis) => {
             let u = plan.rig.calibration_of(axis).force_uncertainty;
             (of_axis("force calibration", plan, axis), From::Rig, Some(1.0), Some(u), Dimension::NUMBER)
@@ -121,6 +155,10 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             (of_axis("zero of the load cell", plan, axis), From::Rig, Some(0.0), Some(u), Dimension::FORCE)
         }
         Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
+        Source::Drawn { .. } => {
+            let name = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
+            (name.to_owned(), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
@@ -133,15 +171,55 @@ fn of_axis(what: &str, plan: &Plan, axis: usize) -> String {
     named_axis(axis, axes).map_or_else(|| what.to_owned(), |axis| format!("{what} of axis {axis}"))
 }
 
-/// Value and dimension of a fitted result, and how much of its uncertainty is of this source.
-fn fitted(run: &Run<'_>, procedure: ProcedureId, name: &'static str, source: Source) -> (Option<f64>, Option<f64>, Dimension) {
+/// The specimen's name, and a number of one of its storeys with its uncertainty.
+fn storey_of<'a>(
+    run: &Run<'a>,
+    specimen: usize,
+    storey: usize,
+    read: fn(&Storey) -> (f64, f64),
+) -> (&'a str, Option<f64>, Option<f64>) {
+    let Some(specimen) = run.plan.specimens.get(specimen) else { return ("", None, None) };
+    let found = specimen.frame.as_ref().and_then(|frame| frame.storeys.get(storey)).map(read);
+    (&specimen.name, found.map(|found| found.0), found.map(|found| found.1))
+}
+
+fn damping_ratio(
+    run: &Run<'_>,
+    procedure: ProcedureId,
+    mode: usize,
+) -> (String, From, Option<f64>, Option<f64>, Dimension) {
+    let damping = run.plan.procedures.get(procedure.0).and_then(|planned| match &planned.kind {
+        ProcedureKind::Shake(shake) => Some((&planned.name, &shake.damping, shake.damping_uncertainty)),
+        ProcedureKind::StoreyImpact(impact) => Some((&planned.name, &impact.damping, impact.damping_uncertainty)),
+        _ => None,
+    });
+    let Some((name, damping, uncertainty)) = damping else {
+        return ("damping_ratio".to_owned(), From::Plan, None, None, Dimension::NUMBER);
+    };
+    let (label, ratio) = match damping {
+        ShakeDamping::Rayleigh(ratio) => (format!("{name}.damping_ratio"), Some(ratio)),
+        ShakeDamping::Modal(ratios) => (format!("{name}.damping_ratio[{mode}]"), ratios.get(mode)),
+    };
+    let value = ratio.and_then(|ratio| ratio.evaluate(run.record, None).ok()).map(|ratio| ratio.value);
+    (label, From::Plan, value, Some(uncertainty), Dimension::NUMBER)
+}
+
+/// Value and dimension of a fitted result or of an entry of one, and how much of its uncertainty is of this source.
+fn fitted(
+    run: &Run<'_>,
+    procedure: ProcedureId,
+    (name, entry): (&'static str, Option<usize>),
+    source: Source,
+) -> (Option<f64>, Option<f64>, Dimension) {
     let reference = ResultReference { procedure, name, part: Part::Value };
-    let value = match run.record.result(reference) {
-        Some(ResultValue::Number { value, .. }) => value,
+    let value = match (run.record.result(reference), entry) {
+        (Some(ResultValue::Number { value, .. }), _) => value,
+        (Some(ResultValue::List(values)), Some(entry)) => values.get(entry).copied(),
         _ => None,
     };
     let parts = run.record.contributions(reference);
-    let uncertainty = parts.iter().find(|part| part.source == source).map(|part| part.amount);
+    let mut mine = parts.iter().filter(|part| part.entry == entry.unwrap_or(0));
+    let uncertainty = mine.find(|part| part.source == source).map(|part| part.amount);
     let found = run.record.procedures.get(procedure.0).and_then(|procedure| procedure.result(name));
     (value, uncertainty, found.map_or(Dimension::NUMBER, |found| found.dimension))
 }

@@ -148,6 +148,9 @@ pub struct ProcedureSummary {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BudgetSummary {
     pub result: &'static str,
+    /// Which entry of a list it is of, from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub entry: Option<usize>,
     pub unit: String,
     pub u: Option<f64>,
     pub contributions: Vec<ContributionSummary>,
@@ -178,7 +181,15 @@ pub struct ContributionSummary {
 pub struct Quantity {
     pub value: Value,
     pub unit: String,
-    pub u: Option<f64>,
+    pub u: Uncertainty,
+}
+
+/// The standard uncertainty of a number, or of each entry of a list; null where none is known.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Uncertainty {
+    Number(Option<f64>),
+    List(Vec<Option<f64>>),
 }
 
 /// A number, null where the result does not exist in this run, a count as a whole number, or a list in one unit.

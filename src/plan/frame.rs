@@ -26,8 +26,12 @@ pub struct Frame {
 pub struct Storey {
     /// kg, of the floor
     pub mass: f64,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
     /// N/m, of all its columns together
     pub stiffness: f64,
+    /// Standard, N/m; 0 where none is stated.
+    pub stiffness_uncertainty: f64,
     /// m
     pub height: Option<f64>,
     /// Storey shear against drift, what a virtual rig bends.
@@ -42,7 +46,8 @@ impl Storey {
     /// Of this mass (kg), stiffness (N/m) and behaviour, and nothing else stated.
     #[must_use]
     pub const fn new(mass: f64, stiffness: f64, behaviour: Behaviour) -> Self {
-        Self { mass, stiffness, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
+        let (mass_uncertainty, stiffness_uncertainty) = (0.0, 0.0);
+        Self { mass, mass_uncertainty, stiffness, stiffness_uncertainty, height: None, behaviour, damping: 0.0, coulomb: 0.0 }
     }
 }
 
@@ -76,6 +81,20 @@ impl Frame {
     pub fn total_mass(&self) -> f64 {
         self.mass.iter().flatten().sum()
     }
+
+    /// Standard, of the mass of all floors together, kg: each is independent of the others.
+    #[must_use]
+    pub fn total_mass_uncertainty(&self) -> f64 {
+        self.storeys.iter().map(|storey| storey.mass_uncertainty.powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The same frame with other storeys: its matrices follow.
+    #[must_use]
+    pub fn with(&self, change: impl FnOnce(&mut [Storey])) -> Self {
+        let mut storeys = self.storeys.clone();
+        change(&mut storeys);
+        if storeys.is_empty() { self.clone() } else { Self::of_storeys(storeys) }
+    }
 }
 
 /// The motion of the ground, from 0 s on.
@@ -85,6 +104,8 @@ pub struct Ground {
     pub file: String,
     /// Factor of the plan, already in `accelerations`.
     pub scale: f64,
+    /// Standard, of the accelerations, relative; 0 where none is stated.
+    pub scale_uncertainty: f64,
     /// s, from 0, rising.
     pub times: Vec<f64>,
     /// m/s²
@@ -120,6 +141,8 @@ pub struct Shake {
     /// Index into `Plan::grounds`.
     pub ground: usize,
     pub damping: ShakeDamping,
+    /// Standard, of each damping ratio; 0 where none is stated.
+    pub damping_uncertainty: f64,
     pub stepping: Stepping,
     /// Factor on the record.
     pub scale: Formula,
@@ -137,6 +160,8 @@ pub struct StoreyImpact {
     /// The struck floor, from 0.
     pub struck: usize,
     pub damping: ShakeDamping,
+    /// Standard, of each damping ratio; 0 where none is stated.
+    pub damping_uncertainty: f64,
     pub contact: Contact,
     pub stepping: Stepping,
     /// s, at most.

@@ -19,6 +19,7 @@ mod unload;
 use crate::formula::{Formula, ResultReference};
 use crate::mechanics::monitor;
 use crate::quantity::Dimension;
+use crate::uncertainty::Source;
 
 pub use axis::{AxisCalibration, AxisPlan};
 pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
@@ -32,8 +33,8 @@ pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, Sti
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingRules, RealLink, RigPlan,
-    SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
+    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
+    RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::{FrameUnload, Unload};
@@ -403,6 +404,18 @@ pub struct Condition {
 }
 
 impl Condition {
+    /// Adds the source of every number that it states with an uncertainty, each once.
+    pub fn collect_stated(&self, into: &mut Vec<Source>) {
+        self.value.collect_stated(into);
+        match &self.test {
+            Test::Compare { limit, .. } => limit.collect_stated(into),
+            Test::Within { target, tolerance, .. } => {
+                target.collect_stated(into);
+                tolerance.collect_stated(into);
+            }
+        }
+    }
+
     /// Adds every result that it reads, each once.
     pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
         self.value.collect_references(into);

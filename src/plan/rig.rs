@@ -66,6 +66,40 @@ pub struct VirtualLink {
     /// Drift of the load cell, N/s of rig time.
     pub drift: f64,
     pub seed: u64,
+    /// Of a dry run on an ideal rig: what another one declares of its readings. None of it is done to them, all of it is in the
+    /// uncertainty that is foretold.
+    pub foretold: Option<ReadingErrors>,
+}
+
+impl VirtualLink {
+    /// An ideal rig in place of another: nothing is done to its readings, and uncertainties are foretold with their errors.
+    #[must_use]
+    pub fn ideal_of(link: &Link) -> Self {
+        let (seed, foretold) = match link {
+            Link::Virtual(link) => {
+                let Self { seed, noise, resolution, force_resolution, .. } = *link;
+                (seed, ReadingErrors { noise, resolution, force_resolution })
+            }
+            Link::Real(link) => {
+                let axes = || (0..link.axes.len().max(1)).map(|axis| link.readings_of(axis));
+                let noise = axes().map(|rules| rules.noise).fold(0.0, f64::max);
+                let resolution = axes().map(|rules| rules.resolution).fold(0.0, f64::max);
+                (0, ReadingErrors { noise, resolution, force_resolution: 0.0 })
+            }
+        };
+        Self { seed, foretold: Some(foretold), ..Self::default() }
+    }
+}
+
+/// What a reading may be off by.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct ReadingErrors {
+    /// Standard deviation of the load cell, N.
+    pub noise: f64,
+    /// Quantum of the displacement, m.
+    pub resolution: f64,
+    /// Quantum of the force, N.
+    pub force_resolution: f64,
 }
 
 /// Speed at which a virtual rig moves where none is asked of it, m/s: that of a slow quasi-static test.

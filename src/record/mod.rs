@@ -22,7 +22,7 @@ pub use crate::mechanics::multilinear_fit::MultilinearFit;
 pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
 use crate::quantity::Dimension;
 use crate::rig::Identity;
-use crate::uncertainty::{Contribution, Source};
+use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use drift::{AxisDrift, Beyond, Drift, Zero};
 pub use escalate::{Blow, BlowHistory, EscalateHistory};
@@ -102,7 +102,7 @@ pub struct NamedResult {
     pub name: &'static str,
     pub value: ResultValue,
     pub dimension: Dimension,
-    /// What the uncertainty of a number is made of; empty where it is all its own, or there is none.
+    /// What the uncertainty of a number, or of each entry of a list, is made of; empty where it is all its own, or there is none.
     pub contributions: Vec<Contribution>,
 }
 
@@ -315,6 +315,15 @@ impl ProcedureRecord {
 }
 
 impl NamedResult {
+    /// Standard uncertainty of each entry of a list; empty where none is known.
+    #[must_use]
+    pub fn entry_uncertainties(&self) -> Vec<Option<f64>> {
+        match &self.value {
+            ResultValue::List(values) if !self.contributions.is_empty() => combined_entries(&self.contributions, values.len()),
+            _ => Vec::new(),
+        }
+    }
+
     /// What the uncertainty of the result, as `reference` names it, is made of.
     #[must_use]
     pub fn contributions_of(&self, reference: ResultReference) -> Vec<Contribution> {

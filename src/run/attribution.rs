@@ -5,16 +5,17 @@
 use super::inputs::Inputs;
 use crate::formula::{Formula, ProcedureId, ResultValue};
 use crate::mechanics::backbone::SHARED;
+use crate::mechanics::multilinear_fit::{CurveShares, MultilinearFit};
 use crate::plan::{Calibration, ProcedureKind};
 use crate::quantity::Dimension;
 use crate::record::{BilinearFit, History, NamedResult};
-use crate::uncertainty::{Contribution, Source, combined};
+use crate::uncertainty::{Contribution, Source, combined, share};
 
 /// Results of a fit that lie on one line, slope first.
 const LINES: [(&str, &str); 2] = [("stiffness", "intercept_force"), ("damping", "coulomb_force")];
 
 /// Forces that a false zero of the load cell shifts; slopes and differences do not show it.
-const SHIFTED: [&str; 2] = ["intercept_force", "yield_force"];
+const SHIFTED: [&str; 3] = ["intercept_force", "yield_force", "break_forces"];
 
 /// Says of every identified result what its uncertainty is made of.
 pub(super) fn attribute(
@@ -24,29 +25,33 @@ pub(super) fn attribute(
     inputs: &Inputs<'_>,
     results: &mut [NamedResult],
 ) {
-    let (line, bilinear) = match history {
-        History::Ramp(ramp) => (ramp.fit, ramp.bilinear.as_ref()),
-        History::Sweep(sweep) => (sweep.fit, None),
+    let (line, bilinear, curve) = match history {
+        History::Ramp(ramp) => (ramp.fit, ramp.bilinear.as_ref(), ramp.multilinear.as_deref()),
+        History::Sweep(sweep) => (sweep.fit, None, None),
         // What is fitted to the backbone; its loops know already.
-        History::Cycle(_) => (None, None),
+        History::Cycle(cycle) => (None, None, cycle.backbone.as_ref()),
         _ => return,
     };
     let procedure = inputs.procedure();
     for result in results.iter_mut().filter(|result| result.contributions.is_empty()) {
         if let ResultValue::Number { value: Some(value), uncertainty: Some(own) } = result.value {
-            result.contributions = match bilinear {
-                Some(fit) => shares_of(procedure, result.name, own, fit),
-                None => own_parts(procedure, result.name, own, line.map(|line| line.correlation)),
+            result.contributions = match (bilinear, curve) {
+                (Some(fit), _) => shares_of(procedure, result.name, own, fit),
+                (None, Some(fit)) => shares_of_curve(procedure, result.name, own, fit),
+                (None, None) => own_parts(procedure, result.name, own, line.map(|line| line.correlation)),
             };
             result.contributions.extend(of_calibration(result, value, calibration));
         }
+    }
+    if let Some(fit) = curve {
+        of_lists(procedure, fit, calibration, results);
     }
     if let (ProcedureKind::DampingSweep(sweep), History::Sweep(_)) = (kind, history) {
         damping_ratio(results, &sweep.stiffness, inputs);
     }
     for result in results.iter_mut() {
         // A fit alone keeps its standard error as it is, to the bit.
-        let calibrated = |part: &Contribution| !matches!(part.source, Source::Fit { .. });
+        let calibrated = |part: &Contribution| !matches!(part.source, Source::Fit { .. } | Source::FitEntry { .. });
         if result.contributions.iter().any(calibrated)
             && let ResultValue::Number { uncertainty, .. } = &mut result.value
         {
@@ -75,6 +80,47 @@ fn shares_of(procedure: ProcedureId, name: &'static str, own: f64, fit: &Bilinea
             .map(|(result, share)| part(result, share))
             .collect(),
         _ => vec![part(name, own)],
+    }
+}
+
+/// The independent errors of a curve by what they are of: K₁, the intercept, the further stiffnesses, the breaks.
+fn parts_of_curve(procedure: ProcedureId, fit: &MultilinearFit, shares: &[f64]) -> Vec<Contribution> {
+    let of_list = |result, entry| Source::FitEntry { procedure, result, entry };
+    let further = (1..fit.stiffnesses.len()).map(|entry| of_list("curve_stiffnesses", entry));
+    let breaks = (0..fit.breaks.len()).map(|entry| of_list("breaks", entry));
+    let first = [of_list("curve_stiffnesses", 0), Source::Fit { procedure, result: "intercept_force" }];
+    let parts = first.into_iter().chain(further).chain(breaks).zip(shares);
+    parts.filter(|(_, share)| **share != 0.0).map(|(source, share)| Contribution::new(source, *share)).collect()
+}
+
+/// The errors of a multilinear fit by what they share.
+fn shares_of_curve(procedure: ProcedureId, name: &'static str, own: f64, fit: &MultilinearFit) -> Vec<Contribution> {
+    let MultilinearFit { shares, .. } = fit;
+    let softens = fit.stiffnesses.windows(2).position(|pair| pair[1].0 < pair[0].0);
+    let share = match name {
+        "stiffness" => shares.stiffnesses.first(),
+        "intercept_force" => Some(&shares.intercept),
+        "yield_displacement" => softens.and_then(|knee| shares.breaks.get(knee)),
+        "yield_force" => softens.and_then(|knee| shares.forces.get(knee)),
+        "hardened_stiffness" => shares.stiffnesses.last(),
+        "hardening" => Some(&shares.hardening),
+        _ => None,
+    };
+    let parts = share.map_or_else(Vec::new, |share| parts_of_curve(procedure, fit, share));
+    if parts.is_empty() { vec![Contribution::new(Source::Fit { procedure, result: name }, own)] } else { parts }
+}
+
+/// The same of every entry of the lists of a curve.
+fn of_lists(procedure: ProcedureId, fit: &MultilinearFit, calibration: &Calibration, results: &mut [NamedResult]) {
+    let CurveShares { stiffnesses, breaks, forces, .. } = &fit.shares;
+    for (name, shares) in [("curve_stiffnesses", stiffnesses), ("breaks", breaks), ("break_forces", forces)] {
+        let Some(result) = results.iter_mut().find(|result| result.name == name) else { continue };
+        let ResultValue::List(values) = &result.value else { continue };
+        let of_entry = |(entry, (value, share)): (usize, (&f64, &Vec<f64>))| {
+            let parts = parts_of_curve(procedure, fit, share).into_iter().chain(of_calibration(result, *value, calibration));
+            parts.map(|part| Contribution { entry, ..part }).collect::<Vec<Contribution>>()
+        };
+        result.contributions = values.iter().zip(shares).enumerate().flat_map(of_entry).collect();
     }
 }
 
@@ -110,11 +156,7 @@ fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, inputs: &Inpu
         part.amount *= ratio / damping;
     }
     for part in in_stiffness {
-        let amount = -0.5 * ratio / known.value * part.amount;
-        match parts.iter_mut().find(|known| known.source == part.source) {
-            Some(same) => same.amount += amount,
-            None => parts.push(Contribution::new(part.source, amount)),
-        }
+        share(&mut parts, Contribution::new(part.source, -0.5 * ratio / known.value * part.amount));
     }
     if let Some(result) = results.iter_mut().find(|result| result.name == "damping_ratio")
         && parts.iter().all(|part| part.amount.is_finite())

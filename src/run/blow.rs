@@ -2,6 +2,7 @@
 //! evaluated once; for each blow a velocity. Out: the blow as an impact of its own, and how its load is taken off. It decides
 //! nothing about the next one.
 
+use super::frame_doubts::FrameDoubts;
 use super::inputs::Inputs;
 use super::propagation::Doubts;
 use super::session::Session;
@@ -16,7 +17,7 @@ use crate::record::{BlowHistory, NamedResult};
 #[expect(clippy::large_enum_variant, reason = "one of it in an escalate")]
 pub(super) enum Struck<'a> {
     Specimen { plan: &'a Impact, setting: impact::Setting, doubts: Doubts<'a> },
-    Storey { plan: &'a StoreyImpact, setting: storey_impact::Setting, unloading: Unloading },
+    Storey { plan: &'a StoreyImpact, setting: storey_impact::Setting, unloading: Unloading, doubts: FrameDoubts<'a> },
 }
 
 /// A blow, as far as it went.
@@ -53,7 +54,8 @@ impl<'a> Struck<'a> {
                 let frame = whole.specimens[blow.specimen].frame.as_ref().ok_or_else(storey_impact::no_frame)?;
                 let setting = storey_impact::Setting::evaluate(blow, frame, &fastest, inputs, session)?;
                 let unloading = unload::of_frame(frame)?;
-                Ok((Self::Storey { plan: blow, setting, unloading }, velocities))
+                let doubts = FrameDoubts::of_blow(blow, whole, inputs, session);
+                Ok((Self::Storey { plan: blow, setting, unloading, doubts }, velocities))
             }
         }
     }
@@ -77,9 +79,10 @@ impl<'a> Struck<'a> {
                 let steps = history.steps.last().map_or(0, |last| last.step);
                 Blown { history: BlowHistory::Impact(history), results, stop, steps }
             }
-            Self::Storey { plan, setting, .. } => {
+            Self::Storey { plan, setting, doubts, .. } => {
                 setting.strikes_at(striker_velocity);
-                let storey_impact::Blown { history, results, stop } = storey_impact::blow(plan, setting, before, session);
+                let storey_impact::Blown { history, results, stop } =
+                    storey_impact::blow(plan, setting, &doubts.of_blow_number(index), before, session);
                 let steps = history.blow.steps.last().map_or(0, |last| last.step);
                 Blown { history: BlowHistory::Storey(history), results, stop, steps }
             }

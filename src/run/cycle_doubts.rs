@@ -4,7 +4,7 @@
 
 use super::cycle::results;
 use super::inputs::Inputs;
-use super::propagation::draws_of;
+use super::study::draws_of;
 use crate::formula::ResultValue;
 use crate::mechanics::cyclic::{LoopPoint, loop_of};
 use crate::mechanics::recorded_path::{Distortion, Noise};
@@ -85,7 +85,7 @@ fn distorted(history: &CycleHistory, distortion: Distortion) -> CycleHistory {
     let Distortion { force_scale, displacement_scale, zero, noise } = distortion;
     let mut other = CycleHistory { backbone: None, ..history.clone() };
     for step in &mut other.steps {
-        let [of_force, of_displacement] = noise.map_or([0.0; 2], |noise| noise.errors(step.step));
+        let [of_force, of_displacement] = noise.map_or([0.0; 2], |noise| noise.errors(step.step, 0));
         step.displacement = displacement_scale * step.displacement + of_displacement;
         step.restoring_force = force_scale * step.restoring_force + zero + of_force;
     }

@@ -13,7 +13,7 @@ use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
-use crate::uncertainty::{Contribution, combined};
+use crate::uncertainty::{Contribution, combined, share};
 use crate::verdict::{Verdict, assess_condition};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -130,13 +130,7 @@ fn largest(blows: &[Blow], name: &'static str) -> NamedResult {
 fn sum(blows: &[Blow], name: &'static str, total: Option<f64>) -> NamedResult {
     let mut parts: Vec<Contribution> = Vec::new();
     for part in blows.iter().flat_map(|blow| contributions(blow, name)) {
-        match parts.iter_mut().find(|known| known.source == part.source) {
-            Some(known) => {
-                known.amount += part.amount;
-                known.smooth &= part.smooth;
-            }
-            None => parts.push(part),
-        }
+        share(&mut parts, part);
     }
     told(name, Dimension::ENERGY, total, parts)
 }
@@ -157,6 +151,13 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let of = |name: &str| blows.iter().map(|blow| blow.number(name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
     let list =
         |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
+    // Each as uncertain as that of its blow.
+    let known = |name, dimension, of_blow: &str| {
+        let parts = blows.iter().enumerate().flat_map(|(entry, blow)| {
+            contributions(blow, of_blow).into_iter().map(move |part| Contribution { entry, ..part })
+        });
+        NamedResult { contributions: parts.collect(), ..list(name, dimension, of(of_blow)) }
+    };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
     let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;
     let passed = blows.iter().rev().find(|blow| blow.held == Some(true)).map(|blow| blow.energy);
@@ -176,10 +177,10 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
         sum(blows, "absorbed_energy", absorbed),
         list("velocities", Dimension::VELOCITY, blows.iter().map(|blow| blow.velocity).collect()),
         list("blow_energies", Dimension::ENERGY, blows.iter().map(|blow| blow.energy).collect()),
-        list("max_displacements", Dimension::LENGTH, of("max_displacement")),
+        known("max_displacements", Dimension::LENGTH, "max_displacement"),
         list("residual_displacements", Dimension::LENGTH, rests),
-        list("absorbed_energies", Dimension::ENERGY, of("absorbed_energy")),
-        list("impulses", Dimension::IMPULSE, of("impulse")),
+        known("absorbed_energies", Dimension::ENERGY, "absorbed_energy"),
+        known("impulses", Dimension::IMPULSE, "impulse"),
         list("energy_errors", Dimension::NUMBER, of("energy_error")),
     ];
     if blows.iter().any(|blow| blow.storey().is_some()) {

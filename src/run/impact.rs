@@ -48,7 +48,7 @@ pub(super) struct Blown {
 /// The blow of a striker from where the rig is now; `before` steps of the procedure are done already.
 pub(super) fn blow(plan: &Impact, setting: &Setting, doubts: &Doubts<'_>, before: u64, session: &mut Session<'_>) -> Blown {
     let mut strike = Strike::new(setting, before);
-    let stop = strike.run(plan, session).err();
+    let mut stop = strike.run(plan, session).err();
     let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
     let worst = strike.watch.worst;
     if let (Some(summary), None) = (&summary, &stop) {
@@ -57,10 +57,9 @@ pub(super) fn blow(plan: &Impact, setting: &Setting, doubts: &Doubts<'_>, before
     let history =
         ImpactHistory { steps: strike.steps, time_step: setting.input.time_step, critical_time_step: setting.critical_time_step };
     let mut results = results(summary.as_ref(), worst, &history);
-    if let (Some(summary), None) = (&summary, &stop)
-        && let Err(reason) = doubts.propagate(setting, &history.steps, summary, &mut results)
-    {
-        session.event(EventKind::Remark, format!("the uncertainty of the results is not known: {reason}"));
+    if let (Some(summary), None) = (&summary, &stop) {
+        let found = doubts.propagate(setting, &history.steps, summary, &mut results, &mut |done, of| session.study(done, of));
+        stop = session.told_of(found);
     }
     Blown { history, results, stop }
 }

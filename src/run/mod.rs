@@ -21,6 +21,9 @@ mod followed;
 mod followed_tests;
 #[cfg(test)]
 mod forecast_tests;
+mod frame_doubts;
+#[cfg(test)]
+mod frame_doubts_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
@@ -49,6 +52,7 @@ mod samples;
 mod sequence_tests;
 mod session;
 mod shake;
+mod shake_doubts;
 mod shake_results;
 mod shaking;
 mod stepping;
@@ -58,10 +62,12 @@ mod stiffer_tests;
 mod stiffness_on_the_way;
 mod stiffness_ramp;
 mod stop;
+mod storey_doubts;
 mod storey_impact;
 mod storey_summary;
 mod strike;
 mod striking;
+mod study;
 pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -74,6 +80,7 @@ mod zero;
 
 pub use damping_sweep::MOST_SAMPLES;
 pub use request::{Parting, Request};
+pub use study::MOST_DRAWS;
 
 use serde::{Deserialize, Serialize};
 
@@ -92,6 +99,8 @@ pub trait Observer {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
     fn step_done(&mut self, report: &StepReport);
     fn procedure_finished(&mut self, name: &str);
+    /// The uncertainty of the results is being worked out, by runs taken again: so many of so many are done.
+    fn studying(&mut self, _done: usize, _of: usize) {}
     /// Asked after every step: true stops the run after holding the rig.
     fn stop_requested(&self) -> bool;
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is

@@ -282,7 +282,8 @@ fn a_record_that_does_not_lead_to_its_results_tells_none() {
     };
     let mut results = record.procedures[0].results.clone();
     let before = results.clone();
-    let reason = doubts.propagate(&setting, &history.steps, &summary, &mut results).unwrap_err();
+    let found = doubts.propagate(&setting, &history.steps, &summary, &mut results, &mut |_, _| Ok(()));
+    let Err(super::study::Unknown::Reason(reason)) = found else { panic!("an uncertainty is told") };
     assert_eq!(reason, "the recorded way, taken again, does not lead to the recorded results");
     assert_eq!(results, before);
 }
@@ -344,6 +345,9 @@ fn blows_of_one_striker_share_what_is_uncertain_of_it() {
             .map(|blow| blow.results.iter().find(|result| result.name == "absorbed_energy").unwrap())
             .map(|result| combined(&result.contributions).unwrap())
             .collect();
+        // The list of all blows is as uncertain as they are.
+        let listed = record.procedures[0].result("absorbed_energies").unwrap().entry_uncertainties();
+        assert_eq!(listed, of_blows.iter().map(|u| Some(*u)).collect::<Vec<_>>());
         (of_blows, number(&record, 0, "absorbed_energy"), number(&record, 0, "max_displacement"))
     };
     let (of_blows, (total, u), (largest, largest_u)) = run(0.01, 0.0);

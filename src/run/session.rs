@@ -4,6 +4,7 @@
 use super::escalate::most_moves;
 use super::shake;
 use super::stop::Stop;
+use super::study::Unknown;
 use super::storey_impact;
 use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
@@ -164,6 +165,24 @@ impl<'run> Session<'run> {
     /// Whether nothing real is moved, so that what the plan says of the specimen is what the specimen does.
     pub(super) const fn reckoned(&self) -> bool {
         self.reckoned
+    }
+
+    /// While a study of the run is under way, of which so much is done: who watches is told, and a real rig is heard from.
+    pub(super) fn study(&mut self, done: usize, of: usize) -> Result<(), Stop> {
+        self.observer.studying(done, of);
+        self.breathe()
+    }
+
+    /// Why a study came to nothing is an event, unless the rig failed meanwhile.
+    pub(super) fn told_of(&mut self, study: Result<(), Unknown>) -> Option<Stop> {
+        match study {
+            Ok(()) => None,
+            Err(Unknown::Stop(stop)) => Some(stop),
+            Err(Unknown::Reason(reason)) => {
+                self.event(EventKind::Remark, format!("the uncertainty of the results is not known: {reason}"));
+                None
+            }
+        }
     }
 
     fn stop_if_requested(&mut self) -> Result<(), Stop> {

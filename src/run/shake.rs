@@ -4,8 +4,10 @@
 
 use super::Performed;
 use super::followed::Followed;
+use super::frame_doubts::FrameDoubts;
 use super::inputs::Inputs;
 use super::session::Session;
+use super::shake_doubts;
 use super::shake_results::{ShakeSummary, results};
 use super::shaking::Shaking;
 use super::stepping::{self, FrameSteps};
@@ -49,9 +51,15 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
         summary: ShakeSummary::new(setting.frame.properties.matrices.order()),
         followed: Followed::default(),
     };
-    let stop = shaking.run(plan, ground, session).err();
+    let mut stop = shaking.run(plan, ground, session).err();
     let summary = Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty());
-    let results = results(shaking.history.modes.as_ref(), summary, &shaking.followed);
+    let mut results = results(shaking.history.modes.as_ref(), summary, &shaking.followed);
+    if stop.is_none() {
+        let doubts = FrameDoubts::of_shake(plan, whole, inputs, session);
+        let mut tick = |done, of| session.study(done, of);
+        let found = shake_doubts::propagate(&doubts, plan, ground, &setting, &shaking.history, &mut results, &mut tick);
+        stop = session.told_of(found);
+    }
     Performed { results, history: History::Shake(shaking.history), stop }
 }
 

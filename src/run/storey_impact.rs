@@ -5,10 +5,12 @@
 use super::Performed;
 use super::followed::Followed;
 use super::impact::{law, remark};
+use super::frame_doubts::FrameDoubts;
 use super::inputs::Inputs;
 use super::session::Session;
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
+use super::storey_doubts;
 use super::storey_summary::{StoreySummary, results};
 use super::striking::Striking;
 use crate::formula::NoResults;
@@ -28,7 +30,8 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     let setting = frame.ok_or_else(no_frame).and_then(|frame| Setting::evaluate(plan, frame, striker, inputs, session));
     match setting {
         Ok(setting) => {
-            let Blown { history, results, stop } = blow(plan, &setting, 0, session);
+            let doubts = FrameDoubts::of_blow(plan, whole, inputs, session);
+            let Blown { history, results, stop } = blow(plan, &setting, &doubts, 0, session);
             Performed { results, history: History::StoreyImpact(history), stop }
         }
         Err(stop) => {
@@ -54,17 +57,29 @@ pub(super) struct Blown {
 }
 
 /// The blow of a striker from where the floors are now; `before` steps of the procedure are done already.
-pub(super) fn blow(plan: &StoreyImpact, setting: &Setting, before: u64, session: &mut Session<'_>) -> Blown {
+pub(super) fn blow(
+    plan: &StoreyImpact,
+    setting: &Setting,
+    doubts: &FrameDoubts<'_>,
+    before: u64,
+    session: &mut Session<'_>,
+) -> Blown {
     let history = history_of(plan, Some(setting));
     let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
     let mut striking = Striking { setting, before, history, summary, followed: Followed::default() };
-    let stop = striking.run(plan, session).err();
+    let mut stop = striking.run(plan, session).err();
     let Striking { history, summary, followed, .. } = striking;
     let summary = (!history.floors.is_empty()).then_some(summary);
     if let (Some(summary), None) = (&summary, &stop) {
         remark(&summary.blow(), plan.until, session);
     }
-    Blown { results: results(summary.as_ref(), &followed, &history), history, stop }
+    let mut results = results(summary.as_ref(), &followed, &history);
+    if let (Some(summary), None) = (&summary, &stop) {
+        let mut tick = |done, of| session.study(done, of);
+        let found = storey_doubts::propagate(doubts, plan, setting, &history, &summary.blow(), &mut results, &mut tick);
+        stop = session.told_of(found);
+    }
+    Blown { results, history, stop }
 }
 
 /// Before its first step.

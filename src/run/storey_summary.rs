@@ -6,35 +6,12 @@ use super::impact;
 use super::results::result;
 use crate::formula::ResultValue;
 use crate::mechanics::contact::StepState;
-use crate::mechanics::frame::impact::StrikerState;
 use crate::mechanics::frame::{FrameState, drifts, shears};
+pub(super) use crate::mechanics::frame_rerun::of_floor;
 use crate::mechanics::impact::{ImpactInput, ImpactState};
 use crate::mechanics::summary::{ImpactSummary, SummaryBuilder};
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, StoreyImpactHistory};
-
-/// The struck floor with the striker, as the end of a step of one degree of freedom; energies are those of the whole frame.
-/// Where no storeys are followed, its tangent is `stiffness` (N/m).
-pub(super) fn of_floor(frame: &FrameState, striker: &StrikerState, struck: usize, stiffness: f64) -> ImpactState {
-    ImpactState {
-        step: frame.step,
-        time: frame.time,
-        displacement: frame.displacement[struck],
-        target: frame.target[struck],
-        measured_displacement: frame.measured_displacement[struck],
-        velocity: frame.velocity[struck],
-        acceleration: frame.acceleration[struck],
-        restoring_force: frame.restoring_force[struck],
-        force_at_computed: frame.force_at_computed[struck],
-        contact_force: striker.contact_force,
-        striker_displacement: striker.displacement,
-        striker_velocity: striker.velocity,
-        tangent_stiffness: frame.storey_stiffness.get(struck).copied().unwrap_or(stiffness),
-        indentation: striker.indentation,
-        state: striker.state,
-        energies: striker.energies,
-    }
-}
 
 /// Peaks over the computed displacements and the measured forces.
 pub(super) struct StoreySummary {

@@ -7,7 +7,7 @@ use crate::plan::{
     VirtualLink,
 };
 use crate::record::Record;
-use crate::rig::VirtualRig;
+use crate::rig::virtual_rig;
 
 /// Nothing but an ideal virtual rig.
 pub(crate) fn empty_plan() -> Plan {
@@ -59,6 +59,7 @@ pub(crate) fn struck_frame() -> Plan {
         striker: 0,
         struck: 1,
         damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
+        damping_uncertainty: 0.0,
         contact: Contact::Restitution { coefficient: Formula::Constant(0.5) },
         stepping: Stepping { max_tangent_ratio: Formula::Constant(2.0), ..every(0.01) },
         duration: Formula::Constant(0.25),
@@ -121,7 +122,7 @@ pub(crate) fn result_of(procedure: usize, name: &'static str) -> Formula {
 }
 
 pub(crate) fn run_unwatched(plan: &Plan) -> Record {
-    super::run(plan, &mut VirtualRig::of_plan(plan), &mut super::Unwatched)
+    super::run(plan, &mut *virtual_rig(plan), &mut super::Unwatched)
 }
 
 /// Value and uncertainty of a result of the procedure `p0`, `p1`, …

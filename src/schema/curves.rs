@@ -18,11 +18,11 @@ pub(super) const MULTILINEAR: Variant = Variant::with(
 
 /// After whatever else a procedure with a curve results in.
 pub(super) const RESULTS: [ResultKind; 6] = [
-    ResultKind::list("breaks", Dimension::LENGTH, "where the stretches of a multilinear curve meet"),
+    ResultKind::measured_list("breaks", Dimension::LENGTH, "where the stretches of a multilinear curve meet"),
     ResultKind::list("break_uncertainties", Dimension::LENGTH, "standard uncertainty of each of `breaks`"),
-    ResultKind::list("break_forces", Dimension::FORCE, "force of the curve at each break"),
+    ResultKind::measured_list("break_forces", Dimension::FORCE, "force of the curve at each break"),
     ResultKind::list("break_force_uncertainties", Dimension::FORCE, "standard uncertainty of each of `break_forces`"),
-    ResultKind::list("curve_stiffnesses", Dimension::STIFFNESS, "stiffness of each stretch of a multilinear curve"),
+    ResultKind::measured_list("curve_stiffnesses", Dimension::STIFFNESS, "stiffness of each stretch of a multilinear curve"),
     ResultKind::list(
         "curve_stiffness_uncertainties",
         Dimension::STIFFNESS,

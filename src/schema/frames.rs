@@ -12,6 +12,10 @@ const STOREY: &[Variant] = &[Variant::with(
         Field::quantity("mass", Dimension::MASS, "mass of the floor").required("mass: 2 t").above_zero(),
         Field { example: "stiffness: 3 MN/m", ..STIFFNESS.or_said("that of the behaviour, or 2 `column_stiffness`") },
         Field::quantity("column_stiffness", Dimension::STIFFNESS, "stiffness of one of its two columns").above_zero(),
+        Field::quantity("mass_uncertainty", Dimension::MASS, "standard uncertainty of the mass").or(0.0, "kg").at_least_zero(),
+        Field::quantity("stiffness_uncertainty", Dimension::STIFFNESS, "standard uncertainty of the stiffness of the storey")
+            .or(0.0, "N/m")
+            .at_least_zero(),
         Field::quantity("height", Dimension::LENGTH, "height of the storey").above_zero(),
         Field::choice("behaviour", BEHAVIOURS, "storey shear against drift, what a virtual rig bends")
             .or_said("elastic, of its stiffness"),
@@ -36,6 +40,14 @@ pub(super) const MASS_MATRIX: Field =
 
 pub(super) const STIFFNESS_MATRIX: Field = Field::text("stiffness_matrix", "file of K in N/m, a row a line; with `mass_matrix`");
 
+pub(super) const DAMPING_UNCERTAINTY: Field = Field::quantity(
+    "damping_ratio_uncertainty",
+    Dimension::NUMBER,
+    "standard uncertainty of the damping ratio of a frame; of a list, of each by itself",
+)
+.or(0.0, "%")
+.within(0.0, 0.2);
+
 pub(super) const GROUND: BlockKind = BlockKind {
     kind: Kind::Ground,
     keyword: &["ground"],
@@ -48,6 +60,9 @@ pub(super) const GROUND: BlockKind = BlockKind {
         )
         .required("record = \"ground.csv\""),
         Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, ""),
+        Field::quantity("scale_uncertainty", Dimension::NUMBER, "standard uncertainty of the accelerations, of them")
+            .or(0.0, "%")
+            .within(0.0, 0.2),
         Field::quantity("unit", Dimension::ACCELERATION, "what 1 in the record is worth, where its header does not say")
             .above_zero()
             .or_said("as its header says"),
@@ -73,6 +88,7 @@ pub(super) const SHAKE: BlockKind = BlockKind {
         )
         .within(0.0, 1.0)
         .or(0.0, ""),
+        DAMPING_UNCERTAINTY,
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,
         methods::I_MODIFICATION,

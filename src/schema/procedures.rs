@@ -1,7 +1,7 @@
 //! What is run: `stiffness ramp`, `damping sweep`, `impact`, `move`, `inspect`.
 
 use super::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
-use super::{curves, methods, results};
+use super::{curves, frames, methods, results};
 use crate::quantity::Dimension;
 
 pub(super) const SPECIMEN: Field =
@@ -160,6 +160,7 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         .within(0.0, 1.0)
         .or(0.0, "")
         .of_frames(),
+        frames::DAMPING_UNCERTAINTY.of_frames(),
         Field::choice("contact", CONTACTS, "contact law").or_said("rigid"),
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,

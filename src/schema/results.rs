@@ -83,16 +83,16 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
     ResultKind::measured("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
     ResultKind::count("steps", "number of steps"),
-    ResultKind::new("contact_duration", Dimension::TIME, "virtual time of the first blow, in whole steps").of_storey(),
-    ResultKind::new("rebound_velocity", Dimension::VELOCITY, "speed of the striker on its way back at the end of the run")
+    ResultKind::measured("contact_duration", Dimension::TIME, "virtual time of the first blow, in whole steps").of_storey(),
+    ResultKind::measured("rebound_velocity", Dimension::VELOCITY, "speed of the striker on its way back at the end of the run")
         .of_storey(),
-    ResultKind::list("floor_displacement", Dimension::LENGTH, "largest size of each floor's displacement").of_storey(),
-    ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift").of_storey(),
-    ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run").of_storey(),
-    ResultKind::list("storey_energy", Dimension::ENERGY, "shear of each storey integrated over its drift, over the run")
+    ResultKind::measured_list("floor_displacement", Dimension::LENGTH, "largest size of each floor's displacement").of_storey(),
+    ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift").of_storey(),
+    ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run").of_storey(),
+    ResultKind::measured_list("storey_energy", Dimension::ENERGY, "shear of each storey integrated over its drift, over the run")
         .of_storey(),
-    ResultKind::new("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey").of_storey(),
-    ResultKind::list("periods", Dimension::TIME, "natural periods, longest first").of_storey(),
+    ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey").of_storey(),
+    ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first").of_storey(),
     FLOORS_FOLLOWED[0].of_storey(),
     FLOORS_FOLLOWED[1].of_storey(),
     FLOORS_FOLLOWED[2].of_storey(),
@@ -128,11 +128,11 @@ const FLOORS_FOLLOWED: [ResultKind; 4] = [
 ];
 
 pub(super) const SHAKE: &[ResultKind] = &[
-    ResultKind::list("max_displacement", Dimension::LENGTH, "largest size of each floor's displacement, relative to the ground"),
-    ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift"),
-    ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run"),
-    ResultKind::list("periods", Dimension::TIME, "natural periods, longest first"),
-    ResultKind::new("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey"),
+    ResultKind::measured_list("max_displacement", Dimension::LENGTH, "largest size of each floor's displacement, relative to the ground"),
+    ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift"),
+    ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run"),
+    ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first"),
+    ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
     ResultKind::count("steps", "number of steps"),
     FOLLOWED[0],

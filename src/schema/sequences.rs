@@ -97,14 +97,14 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ),
         ResultKind::list("velocities", Dimension::VELOCITY, "velocity of the striker in each blow"),
         ResultKind::list("blow_energies", Dimension::ENERGY, "energy of the striker in each blow"),
-        ResultKind::list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
+        ResultKind::measured_list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
         ResultKind::list("residual_displacements", Dimension::LENGTH, "where the specimen was brought to after each blow"),
-        ResultKind::list(
+        ResultKind::measured_list(
             "absorbed_energies",
             Dimension::ENERGY,
             "what each blow put into the specimen up to its largest displacement",
         ),
-        ResultKind::list("impulses", Dimension::IMPULSE, "impulse of each blow"),
+        ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each blow"),
         ResultKind::list("energy_errors", Dimension::NUMBER, "what the energy balance of each blow misses, over its input"),
         ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift over all blows").of_storey(),
         ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift where it was brought to after the last blow")

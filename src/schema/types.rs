@@ -432,4 +432,9 @@ impl ResultKind {
     pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
         Self { list: true, ..Self::new(name, dimension, doc) }
     }
+
+    /// The same, each with its uncertainty.
+    pub(super) const fn measured_list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self { measured: true, ..Self::list(name, dimension, doc) }
+    }
 }

@@ -3,6 +3,7 @@
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::quantity::Dimension;
+use crate::quantity::display::significant;
 use crate::source::Span;
 use crate::syntax::ast::Ident;
 
@@ -139,6 +140,15 @@ pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {
     Diagnostic::new(Code::DampingRatios, format!("{found} damping ratios for {modes} modes"))
         .at(span, "a list has one for each mode")
         .help("give one ratio for each mode, the longest period first, or one number: Rayleigh damping")
+}
+
+/// A ratio that would be below 0.
+pub fn damping_too_uncertain(uncertainty: f64, least: f64, span: Span) -> Diagnostic {
+    let percent = |number: f64| format!("{} %", significant(100.0 * number, 2));
+    let of = format!("the damping ratio of {} would be below 0", percent(least));
+    Diagnostic::new(Code::DampingTooUncertain, format!("less its uncertainty, {of}"))
+        .at(span, format!("{} is one standard uncertainty", percent(uncertainty)))
+        .help("write a standard uncertainty of at most the damping ratio; of a ratio in 0 to ζ, all as likely, it is ζ / (2 √3)")
 }
 
 pub fn damping_impossible(reason: &str, span: Span) -> Diagnostic {

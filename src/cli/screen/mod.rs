@@ -110,6 +110,10 @@ impl Observer for Screen {
         self.shared.lock().model.step_done(report);
     }
 
+    fn studying(&mut self, done: usize, of: usize) {
+        self.shared.lock().model.study = Some((done, of));
+    }
+
     fn procedure_finished(&mut self, _: &str) {}
 
     fn stop_requested(&self) -> bool {

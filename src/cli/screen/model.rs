@@ -25,6 +25,8 @@ pub struct Model {
     /// The procedure that runs, or ran last.
     pub procedure: Option<Running>,
     pub last: Option<StepReport>,
+    /// While the uncertainty of the results is worked out: runs taken again, of how many.
+    pub study: Option<(usize, usize)>,
     /// Displacement (m) over time (s) of this procedure.
     pub displacement: Curve,
     /// Force (N) over displacement (m) of this procedure.
@@ -77,6 +79,7 @@ impl Model {
             limits: plan.limits,
             procedure: None,
             last: None,
+            study: None,
             displacement: Curve::default(),
             force: Curve::default(),
             increment: None,
@@ -86,6 +89,7 @@ impl Model {
     }
 
     pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.study = None;
         self.procedure = Some(Running { name: name.to_owned(), keyword: keyword.to_owned(), steps });
         // While a person looks at the specimen, what came before stays to be seen.
         if keyword == INSPECT {
@@ -98,6 +102,7 @@ impl Model {
     }
 
     pub fn step_done(&mut self, report: &StepReport) {
+        self.study = None;
         self.increment = self.last.as_ref().map(|last| {
             let changes = report.axes().zip(last.axes()).map(|((to, ..), (from, ..))| (to - from).abs());
             changes.fold(0.0, f64::max)

@@ -129,6 +129,10 @@ impl Observer for Watcher {
         self.face().step_done(report);
     }
 
+    fn studying(&mut self, done: usize, of: usize) {
+        self.face().studying(done, of);
+    }
+
     fn procedure_finished(&mut self, name: &str) {
         self.face().procedure_finished(name);
     }

@@ -62,6 +62,12 @@ impl Observer for Bar {
         }
     }
 
+    fn studying(&mut self, done: usize, of: usize) {
+        if let Some(bar) = &self.shown {
+            bar.set_message(format!("uncertainty: {done} of {of} runs taken again"));
+        }
+    }
+
     fn procedure_finished(&mut self, _: &str) {
         self.clear();
     }

@@ -269,7 +269,7 @@ impl<'a> Again<'a> {
         let (displacement, force) = self.recorded();
         let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * force + zero);
         if let Some(noise) = noise {
-            let [of_force, of_displacement] = noise.errors(self.step as u64);
+            let [of_force, of_displacement] = noise.errors(self.step as u64, 0);
             force += of_force;
             displacement += of_displacement;
         }

@@ -74,14 +74,18 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Errors of force (N) and displacement (m) of the reading at `step`.
+    /// Errors of force (N) and displacement (m) of the reading at `step` of the axis at this place.
     #[must_use]
-    pub fn errors(&self, step: u64) -> [f64; 2] {
-        let bits = drawn(self.draw, step);
+    pub fn errors(&self, step: u64, axis: u32) -> [f64; 2] {
+        // Two bits an axis; past the last of a word, another word.
+        let bits = drawn(self.draw, step ^ u64::from(axis / 32) << 40) >> (2 * (axis % 32));
         let signed = |bit: u64, size: f64| if bits & bit == 0 { size } else { -size };
         [signed(1, self.force), signed(2, self.displacement)]
     }
 }
+
+/// A way taken again that leaves the recorded one for more than this share of the largest displacement is not known by it.
+pub const UNSEEN: f64 = 1e-3;
 
 /// A way back whose stiffness fell by less than this share of what the stiffness of the whole way there fell by, kept it.
 const KEPT: f64 = 0.2;
@@ -108,6 +112,12 @@ impl RecordedPath {
         let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
         let (branches, pieces) = pieces::cut(&readings, stiffness, force_noise, least);
         Some(Self { readings, branches, pieces, least, rule: Rule::Shifted })
+    }
+
+    /// The recorded reading of a step; past the end of the record, of its last.
+    #[must_use]
+    pub fn recorded(&self, step: usize) -> &Reading {
+        &self.readings[step.min(self.readings.len() - 1)]
     }
 
     /// Whether it swung through no force and back after it flowed: what came then rests on more than one supposition.

@@ -5,14 +5,15 @@ use super::super::budget::{Budget, From, Line, budgets};
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
 use super::{results::percent, words};
-use crate::formula::{ProcedureId, ResultReference};
+use crate::formula::{ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::{minus, significant, typeset, unit};
 use crate::record::ProcedureRecord;
+use crate::run::MOST_DRAWS;
 use crate::verdict::COVERAGE;
 
 /// Told where no requirement reads a result of the procedure.
-const UNASKED: [&str; 2] = ["max_displacement", "absorbed_energy"];
+const UNASKED: [&str; 3] = ["max_displacement", "absorbed_energy", "max_base_shear"];
 
 /// A share of u² below which lines are told together.
 const SMALL: f64 = 1e-3;
@@ -20,7 +21,7 @@ const SMALL: f64 = 1e-3;
 pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let mut budgets = budgets(run, index, procedure);
     let asked = asked(run, index);
-    budgets.retain(|budget| asked.contains(&budget.result.name));
+    budgets.retain(|budget| asked.contains(&budget.result.name) && is_told(budget));
     if !budgets.is_empty() {
         body.extend(budgets.iter().map(one));
         body.push(Block::note(note(&budgets)));
@@ -38,9 +39,20 @@ fn asked(run: &Run<'_>, index: usize) -> Vec<&'static str> {
     if mine.is_empty() { UNASKED.to_vec() } else { mine }
 }
 
+/// Of a list, the budget of its largest number stands for all.
+fn is_told(budget: &Budget<'_>) -> bool {
+    let (Some(entry), ResultValue::List(values)) = (budget.entry, &budget.result.value) else { return true };
+    let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    largest.is_some_and(|(place, _)| place == entry)
+}
+
 fn one(budget: &Budget<'_>) -> Block {
+    let which = budget.entry.map_or_else(String::new, |entry| match budget.result.name {
+        "periods" => format!(", mode {}", entry + 1),
+        _ => format!(", storey {}", entry + 1),
+    });
     let columns = vec![
-        Column::words(format!("Uncertainty budget of {}", words(budget.result.name)), 3),
+        Column::words(format!("Uncertainty budget of {}{which}", words(budget.result.name)), 3),
         Column::words("Input ± u", 2),
         Column::numbers("Sensitivity"),
         Column::numbers("Contribution"),
@@ -50,7 +62,7 @@ fn one(budget: &Budget<'_>) -> Block {
 }
 
 fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
-    let Budget { result, value, uncertainty, lines } = budget;
+    let Budget { result, value, uncertainty, lines, .. } = budget;
     let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
     let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
     let mut rows: Vec<Vec<Text>> = told
@@ -117,6 +129,12 @@ fn note(budgets: &[Budget<'_>]) -> String {
     );
     if budgets.iter().any(|budget| budget.lines.iter().any(|line| line.draws.is_some())) {
         text += " Errors of the readings were drawn, and what they do is sampled.";
+    }
+    let draws = budgets.iter().flat_map(|budget| &budget.lines).filter_map(|line| line.draws).min();
+    if let Some(draws) = draws.filter(|draws| *draws < usize::from(MOST_DRAWS)) {
+        #[expect(clippy::cast_precision_loss, reason = "a few")]
+        let known = 1.0 / (2.0 * draws as f64).sqrt();
+        text += &format!(" The run is long, and they were drawn {draws} times only: their share of u is known to {}.", percent(known));
     }
     if told.iter().any(|line| !line.smooth) {
         text += " † The result does not follow this input smoothly: the differences to either side, or at half the size, disagree; \

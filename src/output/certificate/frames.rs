@@ -8,7 +8,7 @@ use crate::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
-use crate::record::{Floors, Modes, ProcedureRecord, ShakeHistory, UnloadStep};
+use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
 
 /// Storeys from the ground up, or the files of the matrices.
 pub(super) fn structure(frame: &Frame, body: &mut Vec<Block>) {
@@ -167,16 +167,10 @@ pub(super) fn storey_table<S: Floors>(
     frame: Option<&Frame>,
     displacement: &str,
 ) -> Block {
-    let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
-        Some(ResultValue::List(values)) => values.clone(),
-        _ => Vec::new(),
-    };
-    let (displacement, drift, residual) = (list(displacement), list("max_drift"), list("residual_drift"));
     let shear = largest(steps, S::shear);
     let whole = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    let cell = |values: &[f64], storey: usize, dimension| -> Text {
-        values.get(storey).map_or_else(|| "—".to_owned(), |value| number::text_beside(*value, whole(values), dimension)).into()
-    };
+    let drift = procedure.result("max_drift").map_or(&[][..], entries);
+    let cell = |name: &str, storey: usize| procedure.result(name).map_or_else(|| "—".into(), |result| entry(result, storey));
     let columns = vec![
         Column::words("Storey", 1),
         Column::numbers("Largest displacement of its floor"),
@@ -190,14 +184,36 @@ pub(super) fn storey_table<S: Floors>(
         let ratio = height(storey).zip(drift.get(storey)).map(|(height, drift)| results::percent(drift / height));
         vec![
             (storey + 1).to_string().into(),
-            cell(&displacement, storey, Dimension::LENGTH),
-            cell(&drift, storey, Dimension::LENGTH),
+            cell(displacement, storey),
+            cell("max_drift", storey),
             ratio.unwrap_or_else(|| "—".to_owned()).into(),
-            cell(&residual, storey, Dimension::LENGTH),
-            cell(&shear, storey, Dimension::FORCE),
+            cell("residual_drift", storey),
+            number::text_beside(shear[storey], whole(&shear), Dimension::FORCE).into(),
         ]
     };
     Block::Table(Table { columns, rows: (0..shear.len()).map(row).collect() })
+}
+
+/// The numbers of a list.
+fn entries(result: &NamedResult) -> &[f64] {
+    match &result.value {
+        ResultValue::List(values) => values,
+        ResultValue::Number { .. } => &[],
+    }
+}
+
+/// A number of a list with its standard uncertainty where it has one, else in the unit of the largest.
+pub(super) fn entry(result: &NamedResult, place: usize) -> Text {
+    let values = entries(result);
+    let Some(value) = values.get(place) else { return "—".into() };
+    match result.entry_uncertainties().get(place) {
+        Some(Some(u)) => number::with_uncertainty(*value, Some(*u), result.dimension),
+        _ => {
+            let whole = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            number::text_beside(*value, whole, result.dimension)
+        }
+    }
+    .into()
 }
 
 /// Where the storeys of a frame came to rest: what stayed of it is permanent.

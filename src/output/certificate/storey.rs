@@ -96,15 +96,15 @@ fn met(run: &Run<'_>, impact: &StoreyImpact) -> Option<String> {
 
 /// What each storey took of the energy: its shear over its drift, to the end of the run.
 fn storey_energies(procedure: &ProcedureRecord) -> Block {
-    let energies = match procedure.result("storey_energy").map(|result| &result.value) {
-        Some(ResultValue::List(energies)) => energies.as_slice(),
-        _ => &[],
+    let Some(result) = procedure.result("storey_energy") else { return Block::note(String::new()) };
+    let energies = match &result.value {
+        ResultValue::List(energies) => energies.as_slice(),
+        ResultValue::Number { .. } => &[],
     };
     let input = scalar(procedure, "striker_energy").unwrap_or(0.0);
-    let whole = energies.iter().fold(0.0, |largest: f64, energy| largest.max(energy.abs()));
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
         let share = if input > 0.0 { percent(energy / input) } else { "—".to_owned() };
-        vec![format!("storey {}", storey + 1).into(), number::text_beside(*energy, whole, Dimension::ENERGY).into(), share.into()]
+        vec![format!("storey {}", storey + 1).into(), frames::entry(result, storey), share.into()]
     };
     let columns = vec![
         Column::words("Energy in each storey at the end of the run, ∫V dδ", 1),

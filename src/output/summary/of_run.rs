@@ -5,7 +5,7 @@ use super::super::{Amends, Change, Run, deviations, standing};
 use super::{
     AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary,
     EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary,
-    RequirementSummary, RigSummary, SCHEMA, Summary, Value,
+    RequirementSummary, RigSummary, SCHEMA, Summary, Uncertainty, Value,
 };
 use crate::formula::{Estimate, ResultValue};
 use crate::quantity::Dimension;
@@ -117,7 +117,7 @@ pub(in crate::output) fn governing(requirement: &RequirementOutcome) -> Option<&
 fn procedure(run: &Run<'_>, index: usize, procedure: &ProcedureRecord) -> ProcedureSummary {
     let input = |(name, estimate, dimension): &(&'static str, Estimate, Dimension)| {
         let value = ResultValue::Number { value: Some(estimate.value), uncertainty: estimate.uncertainty };
-        ((*name).to_owned(), quantity(&value, *dimension))
+        ((*name).to_owned(), quantity(&value, &[], *dimension))
     };
     ProcedureSummary {
         kind: procedure.kind,
@@ -141,6 +141,7 @@ fn budget(budget: &Budget<'_>) -> BudgetSummary {
     };
     BudgetSummary {
         result: budget.result.name,
+        entry: budget.entry,
         unit: si_unit(budget.result.dimension),
         u: finite(budget.uncertainty),
         contributions: budget.lines.iter().map(contribution).collect(),
@@ -151,7 +152,7 @@ fn budget(budget: &Budget<'_>) -> BudgetSummary {
 fn result(kind: &str, result: &NamedResult) -> Quantity {
     let words: Vec<&str> = kind.split(' ').collect();
     let known = schema::block_of_words(&words).and_then(|block| block.result(result.name));
-    let quantity = quantity(&result.value, result.dimension);
+    let quantity = quantity(&result.value, &result.entry_uncertainties(), result.dimension);
     match quantity.value {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number that a f64 holds")]
         Value::Number(Some(count)) if known.is_some_and(|known| known.count) && count >= 0.0 && count.fract() == 0.0 => {
@@ -161,10 +162,17 @@ fn result(kind: &str, result: &NamedResult) -> Quantity {
     }
 }
 
-fn quantity(value: &ResultValue, dimension: Dimension) -> Quantity {
+/// `entries` are the uncertainties of a list, where any is known.
+fn quantity(value: &ResultValue, entries: &[Option<f64>], dimension: Dimension) -> Quantity {
+    let known = |u: &Option<f64>| u.and_then(finite);
     let (value, u) = match value {
-        ResultValue::Number { value, uncertainty } => (Value::Number(value.and_then(finite)), uncertainty.and_then(finite)),
-        ResultValue::List(values) => (Value::List(values.iter().map(|value| finite(*value)).collect()), None),
+        ResultValue::Number { value, uncertainty } => {
+            (Value::Number(value.and_then(finite)), Uncertainty::Number(known(uncertainty)))
+        }
+        ResultValue::List(values) => {
+            let u = if entries.is_empty() { Uncertainty::Number(None) } else { Uncertainty::List(entries.iter().map(known).collect()) };
+            (Value::List(values.iter().map(|value| finite(*value)).collect()), u)
+        }
     };
     Quantity { value, unit: si_unit(dimension), u }
 }

@@ -400,26 +400,9 @@ pub fn refusal(words: &[String]) -> String {
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xffff, |sum, byte| {
-        let [high, _] = sum.to_be_bytes();
-        sum << 8 ^ REMAINDERS[usize::from(high ^ byte)]
+        (0..8).fold(sum ^ u16::from(*byte) << 8, |sum, _| if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 })
     })
 }
-
-/// What is left of each byte, eight places up, when it is divided by the polynomial.
-const REMAINDERS: [u16; 256] = {
-    let mut remainders = [0; 256];
-    let mut byte: u16 = 0;
-    while byte < 256 {
-        let (mut sum, mut bit) = (byte << 8, 0);
-        while bit < 8 {
-            sum = if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 };
-            bit += 1;
-        }
-        remainders[byte as usize] = sum;
-        byte += 1;
-    }
-    remainders
-};
 
 #[cfg(test)]
 #[path = "native_tests.rs"]

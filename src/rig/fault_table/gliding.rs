@@ -63,8 +63,8 @@ require "stays in travel" hit.max_displacement < 25 mm
 fn same(real: &[(&str, f64)], ideal: &[(&str, f64)], near: f64) {
     assert!(real.len() == ideal.len() && real.len() > 8);
     for ((name, real), (_, ideal)) in real.iter().zip(ideal) {
-        let told = ["energy", "error", "force", "shear", "impulse"].iter().any(|word| name.contains(word));
-        let near = if told { 5e-4 + 1e-3 * ideal.abs() } else { near + 1e-5 * ideal.abs() };
+        let told = ["energy", "error", "indicator", "force", "shear", "impulse"].iter().any(|word| name.contains(word));
+        let near = if told { 5e-4 + 3e-3 * ideal.abs() } else { near + 1e-5 * ideal.abs() };
         assert!((real - ideal).abs() <= near, "{name}: {real} is not {ideal}");
     }
 }

@@ -81,20 +81,20 @@ fn held(ended: &Ended, why: &str) {
 fn what_a_load_cell_does_is_said_of_it_and_holds_every_axis() {
     let numbers: Vec<String> = (60..180).map(|reading| format!("after {reading} readings: axis 2 number OVL")).collect();
     held(&run(&plan(&metered("0.3 s")), &numbers.join("\n")), "axis 2 has no number");
-    let silent = "after 40 moves: load cell drop replies for ever";
+    let silent = "after 20 moves: load cell drop replies for ever";
     held(&run(&plan(&metered("0.3 s")), silent), "load cell on 10.0.0.7:5025: no usable answer");
     let text = apart("0.3 s");
     held(
-        &run(&plan(&text), "after 40 moves: load cell of axis 1 drop replies for ever"),
+        &run(&plan(&text), "after 20 moves: load cell of axis 1 drop replies for ever"),
         "load cell of axis 1 on 10.0.0.7:5025: ",
     );
     held(
-        &run(&plan(&text), "after 40 moves: load cell of axis 2 drop replies for ever"),
+        &run(&plan(&text), "after 20 moves: load cell of axis 2 drop replies for ever"),
         "load cell of axis 2 on /dev/ttyUSB2: ",
     );
     held(&run(&plan(&text), "after 150 readings: axis 2 freeze force"), "axis 2: the force sensor is frozen");
-    held(&run(&plan(&text), "after 40 moves: drop replies for ever"), "actuator on /dev/ttyUSB0: no usable answer");
-    let ended = run(&plan(&metered("0.3 s")), "after 40 moves: load cell drop reply\nafter 60 moves: load cell repeat reply");
+    held(&run(&plan(&text), "after 20 moves: drop replies for ever"), "actuator on /dev/ttyUSB0: no usable answer");
+    let ended = run(&plan(&metered("0.3 s")), "after 20 moves: load cell drop reply\nafter 25 moves: load cell repeat reply");
     assert!(ended.completed() && ended.tally.resent == 1, "{} {:?}", ended.reason(), ended.tally);
 }
 

@@ -71,6 +71,10 @@ impl Observer for TapedObserver<'_> {
         self.inner.procedure_finished(name);
     }
 
+    fn studying(&mut self, done: usize, of: usize) {
+        self.inner.studying(done, of);
+    }
+
     fn event(&mut self, event: &Event) {
         let playing = self.state.borrow().playing();
         if playing {

@@ -59,6 +59,7 @@ fn shaken(mode: Mode) -> Plan {
         name: "quake".to_owned(),
         file: "quake.csv".to_owned(),
         scale: 1.0,
+        scale_uncertainty: 0.0,
         times: vec![0.0, 0.02, 0.04, 0.06],
         accelerations: vec![0.0, 8.0, -6.0, 0.0],
     }];
@@ -66,6 +67,7 @@ fn shaken(mode: Mode) -> Plan {
         specimen: 0,
         ground: 0,
         damping: ShakeDamping::Rayleigh(Constant(0.02)),
+        damping_uncertainty: 0.0,
         stepping: Stepping {
             integrator: Integrator::Explicit,
             mode,

@@ -48,6 +48,10 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
             _ => {}
         }
     }
+    if let Some((done, of)) = view.model.study {
+        words = format!("{words}   uncertainty: {done} of {of} runs taken again");
+        return Line::from(vec![Span::raw(" "), badge, Span::raw(words)]);
+    }
     let moving = view.model.procedure.as_ref().is_none_or(|running| running.keyword != INSPECT);
     if let Some(last) = view.model.last.as_ref().filter(|_| moving) {
         words = format!("{words}   t {}", readable(last.time, Dimension::TIME));

@@ -1,0 +1,322 @@
+//! A frame as a run recorded it: the shear of each storey over its drift, along the way it went, so that the run can be taken
+//! again with an input moved a little and no model of the frame. In: targets of all floors and what was read at them, in
+//! order. Out: what would be read at targets near those, step by step.
+//!
+//! Each storey of a shear building has a way of its own (`recorded_path`), so that what is exact of one specimen is exact of
+//! every storey, and what is supposed of one is of every storey of which it may be. A frame whose stiffness is not that of storeys is taken for what it was at the same step and, off its
+//! recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets the recorded readings
+//! come back as they were, to the bit.
+
+use super::frame::{SymmetricBand, drifts, shears, storeys_of};
+use super::recorded_path::{Again, Distortion, Noise, Reading, RecordedPath, Rule, UNSEEN};
+
+/// One step of the record, an entry a floor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameReading {
+    /// Commanded, m.
+    pub target: Vec<f64>,
+    /// m
+    pub displacement: Vec<f64>,
+    /// N
+    pub force: Vec<f64>,
+}
+
+/// How the way differs from the recorded one, an entry an axis: each load cell and each transducer is an instrument of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameDistortion {
+    /// Newtons in one newton of the record.
+    pub force_scale: Vec<f64>,
+    /// Metres in one metre of the record.
+    pub displacement_scale: Vec<f64>,
+    /// Added to every force, N.
+    pub zero: Vec<f64>,
+    /// Added to every reading, with signs drawn for each axis by itself; of no axis, none.
+    pub noise: Vec<Noise>,
+}
+
+impl FrameDistortion {
+    /// None, of so many axes.
+    #[must_use]
+    pub fn none(axes: usize) -> Self {
+        Self { force_scale: vec![1.0; axes], displacement_scale: vec![1.0; axes], zero: vec![0.0; axes], noise: Vec::new() }
+    }
+}
+
+/// Readings of all floors along the way.
+#[derive(Clone, Debug)]
+pub struct FramePath {
+    readings: Vec<FrameReading>,
+    bends: Bends,
+}
+
+#[derive(Clone, Debug)]
+enum Bends {
+    /// From the ground up: shear over drift.
+    Storeys(Vec<RecordedPath>),
+    /// K at no displacement, N/m.
+    Together(SymmetricBand),
+}
+
+impl FramePath {
+    /// `stiffness` is K at no displacement; `force_noise` (N) and `resolution` (m) are those of one floor's readings. None of
+    /// no reading.
+    #[must_use]
+    pub fn new(readings: Vec<FrameReading>, stiffness: &SymmetricBand, force_noise: f64, resolution: f64) -> Option<Self> {
+        readings.first()?;
+        let floors = stiffness.order();
+        let of_floors = |read: fn(&FrameReading) -> &Vec<f64>, to_storeys: fn(&[f64], &mut [f64])| {
+            let of_step = |reading: &FrameReading| {
+                let mut storeys = vec![0.0; floors];
+                to_storeys(read(reading), &mut storeys);
+                storeys
+            };
+            readings.iter().map(of_step).collect::<Vec<Vec<f64>>>()
+        };
+        let bends = match storeys_of(stiffness) {
+            None => Bends::Together(stiffness.clone()),
+            Some(stiffnesses) => {
+                let targets = of_floors(|reading| &reading.target, drifts);
+                let displacements = of_floors(|reading| &reading.displacement, drifts);
+                let forces = of_floors(|reading| &reading.force, shears);
+                let path = |(storey, stiffness): (usize, f64)| {
+                    let at = |step: usize| Reading {
+                        target: targets[step][storey],
+                        displacement: displacements[step][storey],
+                        force: forces[step][storey],
+                    };
+                    // A shear is the sum of the cells above, a drift the difference of two floors.
+                    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+                    let cells = (floors - storey) as f64;
+                    let quantum = if storey == 0 { resolution } else { resolution * 2.0_f64.sqrt() };
+                    RecordedPath::new((0..readings.len()).map(at).collect(), stiffness, force_noise * cells.sqrt(), quantum)
+                };
+                Bends::Storeys(stiffnesses.into_iter().enumerate().map(path).collect::<Option<_>>()?)
+            }
+        };
+        Some(Self { readings, bends })
+    }
+
+    /// What its storeys may be supposed to do for all the record tells, the likeliest first.
+    #[must_use]
+    pub fn rules(&self) -> Vec<Rule> {
+        let mut rules = vec![Rule::Shifted];
+        if let Bends::Storeys(paths) = &self.bends {
+            for rule in paths.iter().flat_map(RecordedPath::rules) {
+                if !rules.contains(&rule) {
+                    rules.push(rule);
+                }
+            }
+        }
+        rules
+    }
+
+    /// Whether a storey swung through no shear and back after it flowed: what came then rests on more than one supposition.
+    #[must_use]
+    pub fn swung_back(&self) -> bool {
+        matches!(&self.bends, Bends::Storeys(paths) if paths.iter().any(RecordedPath::swung_back))
+    }
+
+    /// The same record, if every storey of which it is possible is supposed to keep to a rule.
+    #[must_use]
+    pub fn supposing(&self, rule: Rule) -> Self {
+        let bends = match &self.bends {
+            Bends::Storeys(paths) => Bends::Storeys(paths.iter().map(|path| path.clone().supposing(rule)).collect()),
+            together @ Bends::Together(_) => together.clone(),
+        };
+        Self { readings: self.readings.clone(), bends }
+    }
+
+    /// Takes the way again from its beginning.
+    #[must_use]
+    pub fn again<'a>(&'a self, distortion: &'a FrameDistortion) -> FrameAgain<'a> {
+        let walks = match &self.bends {
+            Bends::Storeys(paths) => paths.iter().map(|path| (path, path.again(Distortion::NONE))).collect(),
+            Bends::Together(_) => Vec::new(),
+        };
+        let first = &self.readings[0];
+        let target = first.target.iter().zip(&distortion.displacement_scale).map(|(place, scale)| place * scale);
+        let mut again = FrameAgain {
+            path: self,
+            distortion,
+            storeys: walks,
+            step: 0,
+            target: target.collect(),
+            place: first.target.clone(),
+            displacement: first.displacement.clone(),
+            force: first.force.clone(),
+        };
+        again.distort();
+        again
+    }
+}
+
+/// The way as it is taken again.
+#[derive(Clone, Debug)]
+pub struct FrameAgain<'a> {
+    path: &'a FramePath,
+    distortion: &'a FrameDistortion,
+    storeys: Vec<(&'a RecordedPath, Again<'a>)>,
+    step: usize,
+    /// Where it begins, m.
+    target: Vec<f64>,
+    /// The last targets, in metres of the record.
+    place: Vec<f64>,
+    displacement: Vec<f64>,
+    force: Vec<f64>,
+}
+
+impl FrameAgain<'_> {
+    /// Where it begins, m.
+    #[must_use]
+    pub fn start(&self) -> &[f64] {
+        &self.target
+    }
+
+    /// The last reading of displacements, m.
+    #[must_use]
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The last reading of forces, N.
+    #[must_use]
+    pub fn force(&self) -> &[f64] {
+        &self.force
+    }
+
+    /// Whether the record tells the whole way, of storeys whose largest drifts these are (m).
+    #[must_use]
+    pub fn is_seen(&self, max_drift: &[f64]) -> bool {
+        self.storeys.iter().zip(max_drift).all(|((_, again), drift)| again.unseen() <= UNSEEN * drift)
+    }
+
+    /// Goes to the targets of the next step, m, and reads.
+    pub fn move_to(&mut self, targets: &[f64]) {
+        self.step += 1;
+        let scaled = targets.iter().zip(&self.distortion.displacement_scale);
+        for (place, (target, scale)) in self.place.iter_mut().zip(scaled) {
+            *place = target / scale;
+        }
+        let recorded = &self.path.readings[self.step.min(self.path.readings.len() - 1)];
+        self.displacement.copy_from_slice(&recorded.displacement);
+        self.force.copy_from_slice(&recorded.force);
+        match &self.path.bends {
+            Bends::Storeys(_) => self.bend_storeys(),
+            Bends::Together(stiffness) => {
+                let off: Vec<f64> = self.place.iter().zip(&recorded.target).map(|(place, target)| place - target).collect();
+                for (displacement, off) in self.displacement.iter_mut().zip(&off) {
+                    *displacement += off;
+                }
+                stiffness.mul_add(1.0, &off, &mut self.force);
+            }
+        }
+        self.distort();
+    }
+
+    /// What every storey does off its recorded drift, added to the recorded readings.
+    fn bend_storeys(&mut self) {
+        let (mut below, mut off) = (0.0, 0.0);
+        for storey in 0..self.storeys.len() {
+            let drift = self.place[storey] - below;
+            below = self.place[storey];
+            let (path, again) = &mut self.storeys[storey];
+            let (displacement, shear) = again.move_to(drift);
+            let recorded = *path.recorded(self.step);
+            off += displacement - recorded.displacement;
+            self.displacement[storey] += off;
+            let more = shear - recorded.force;
+            self.force[storey] += more;
+            if storey > 0 {
+                self.force[storey - 1] -= more;
+            }
+        }
+    }
+
+    fn distort(&mut self) {
+        let FrameDistortion { force_scale, displacement_scale, zero, noise } = self.distortion;
+        for axis in 0..self.force.len() {
+            self.force[axis] = force_scale[axis] * self.force[axis] + zero[axis];
+            self.displacement[axis] *= displacement_scale[axis];
+            if let Some(noise) = noise.get(axis) {
+                #[expect(clippy::cast_possible_truncation, reason = "at most MOST_STOREYS")]
+                let [of_force, of_displacement] = noise.errors(self.step as u64, axis as u32);
+                self.force[axis] += of_force;
+                self.displacement[axis] += of_displacement;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::frame::storey_stiffness;
+
+    const STIFFNESSES: [f64; 3] = [3000.0, 2000.0, 1000.0];
+
+    fn elastic(target: &[f64]) -> FrameReading {
+        let mut force = vec![0.0; target.len()];
+        storey_stiffness(&STIFFNESSES).mul_into(target, &mut force);
+        FrameReading { target: target.to_vec(), displacement: target.iter().map(|place| place + 1e-5).collect(), force }
+    }
+
+    fn targets() -> Vec<[f64; 3]> {
+        (0..60)
+            .map(f64::from)
+            .map(|step| [0.01 * (0.2 * step).sin(), 0.02 * (0.17 * step).sin(), 0.02 * (0.31 * step).sin()])
+            .collect()
+    }
+
+    fn path(stiffness: &SymmetricBand) -> FramePath {
+        FramePath::new(targets().iter().map(|target| elastic(target)).collect(), stiffness, 0.0, 0.0).unwrap()
+    }
+
+    #[test]
+    fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
+        let mut coupled = storey_stiffness(&STIFFNESSES);
+        coupled.set(0, 0, 5500.0);
+        for stiffness in [storey_stiffness(&STIFFNESSES), coupled] {
+            let path = path(&stiffness);
+            let none = FrameDistortion::none(3);
+            let mut again = path.again(&none);
+            assert_eq!(again.start(), targets()[0]);
+            for reading in path.readings.iter().skip(1) {
+                again.move_to(&reading.target);
+                assert_eq!((again.displacement(), again.force()), (reading.displacement.as_slice(), reading.force.as_slice()));
+            }
+        }
+    }
+
+    /// R = D_f·K·D_d⁻¹·X + zero, whatever the way and past its end: each axis has factors of its own.
+    #[test]
+    fn an_elastic_frame_off_its_targets_is_elastic() {
+        for stiffness in [storey_stiffness(&STIFFNESSES), {
+            // As a frame of no storeys: the same numbers are off its own first row.
+            let mut other = storey_stiffness(&STIFFNESSES);
+            other.set(0, 0, 5000.5);
+            other
+        }] {
+            let storeys = storeys_of(&stiffness).is_some();
+            let path = path(&stiffness);
+            let distortion = FrameDistortion {
+                force_scale: vec![1.1, 0.9, 1.2],
+                displacement_scale: vec![1.05, 0.95, 1.0],
+                zero: vec![1.0, 2.0, -3.0],
+                noise: Vec::new(),
+            };
+            let mut again = path.again(&distortion);
+            for (step, target) in targets().iter().chain(&[[0.03, 0.01, -0.04]; 3]).enumerate().skip(1) {
+                let off: Vec<f64> = target.iter().map(|place| place + 1e-3).collect();
+                again.move_to(&off);
+                let places: Vec<f64> = off.iter().zip(&distortion.displacement_scale).map(|(off, scale)| off / scale).collect();
+                let by_hand = elastic(&places).force;
+                for axis in 0..3 {
+                    let expected = distortion.force_scale[axis] * by_hand[axis] + distortion.zero[axis];
+                    // The other frame is 0.5 N/m stiffer off its way, of at most 50 mm.
+                    let within = if storeys { 1e-9 } else { 0.5 * 0.05 * 1.2 };
+                    assert!((again.force()[axis] - expected).abs() < within, "step {step}, axis {axis}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,347 @@
+//! A study of a run: the run taken again, with one input moved at a time and with drawn errors of all its readings. In: inputs
+//! of every kind of run, and what takes it again. Out: for each number that a run comes to, what each source contributes
+//! (JCGM 100:2008, 5.1.3 and 5.1.4: half the difference of the results at ±u). It knows no procedure, and moves no rig.
+//!
+//! What a study costs is bounded by how long the run is ([`Effort`]). Its runs are independent of each other and are shared
+//! out among threads; each has its place, so that the same bytes come out whatever the number of threads.
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use super::stop::Stop;
+use crate::formula::{ProcedureId, ResultValue};
+use crate::mechanics::recorded_path::Rule;
+use crate::record::NamedResult;
+use crate::uncertainty::{Contribution, Source, combined};
+
+/// Draws of the readings' errors at most: the standard uncertainty they give is known to 1/√(2·64), 9 %.
+pub const MOST_DRAWS: u16 = 64;
+/// And at least.
+const FEWEST_DRAWS: u16 = 8;
+/// And at least where inputs are drawn with them.
+const FEWEST_DRAWS_OF_INPUTS: u16 = 16;
+/// Steps that all draws take together, about, and all moves of inputs: what a long run is allowed to cost.
+const STEPS_OF_DRAWS: u64 = 512_000;
+const STEPS_OF_MOVES: u64 = 512_000;
+/// Moves of inputs that a run of any length may cost.
+const MOVES_OF_ANY: u64 = 24;
+/// The run taken again as it was must come out as it did, relatively.
+pub(super) const CLOSE: f64 = 1e-9;
+/// What moving a source up does may differ by so much from what moving it down does, of the larger; beyond it the result
+/// does not follow the source smoothly. Twice what half the difference may be off by.
+const ONE_SIDED: f64 = 0.2;
+/// And half the difference at ±u from that at ±u/2.
+const HALVED: f64 = 0.1;
+/// Suppositions about the specimen that come to results so near to each other, of the larger, agree.
+const AGREED: f64 = 0.2;
+/// How long to wait for the next run before those who watch hear that it goes on.
+const MOMENT: Duration = Duration::from_millis(20);
+
+/// Why no uncertainty is told.
+pub(super) enum Unknown {
+    /// The rig failed while it waited.
+    Stop(Stop),
+    Reason(String),
+}
+
+impl From<String> for Unknown {
+    fn from(reason: String) -> Self {
+        Self::Reason(reason)
+    }
+}
+
+/// Hears how many of how many runs are done; its error ends the study.
+pub(super) type Tick<'a> = &'a mut dyn FnMut(usize, usize) -> Result<(), Stop>;
+
+/// How many runs a study takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Effort {
+    /// Whether every input is moved by half its uncertainty too, to see whether the results follow it in proportion.
+    pub halves: bool,
+    /// Whether inputs of which there is one a storey are drawn together, with the errors of the readings.
+    pub together: bool,
+    pub draws: u16,
+}
+
+impl Effort {
+    /// `steps` of one degree of freedom, of a run with so many uncertain inputs, of which so many are one of many alike;
+    /// `sampled`: whether its readings have errors.
+    pub fn of(steps: u64, inputs: usize, alike: usize, sampled: bool) -> Self {
+        let together = alike > 0 && 2 * inputs as u64 > (STEPS_OF_MOVES / steps.max(1)).max(MOVES_OF_ANY);
+        let moved = if together { inputs - alike } else { inputs } as u64;
+        let halves = 4 * moved * steps <= STEPS_OF_MOVES;
+        let draws = match (sampled, together) {
+            (_, true) => draws_of(steps).max(FEWEST_DRAWS_OF_INPUTS),
+            (true, false) => draws_of(steps),
+            (false, false) => 0,
+        };
+        Self { halves, together, draws }
+    }
+
+    /// By how many standard uncertainties an input is moved.
+    pub fn moves(self) -> &'static [f64] {
+        if self.halves { &[1.0, -1.0, 0.5, -0.5] } else { &[1.0, -1.0] }
+    }
+}
+
+/// How many draws a run of so many steps is worth.
+pub(super) fn draws_of(steps: u64) -> u16 {
+    u16::try_from(STEPS_OF_DRAWS / steps.max(1)).unwrap_or(u16::MAX).clamp(FEWEST_DRAWS, MOST_DRAWS)
+}
+
+/// Whether an input has many like it: one a storey, a mode or an axis.
+pub(super) const fn is_alike(source: Source) -> bool {
+    matches!(
+        source,
+        Source::StoreyMass { .. }
+            | Source::StoreyStiffness { .. }
+            | Source::DampingRatio { .. }
+            | Source::ForceScale(_)
+            | Source::DisplacementScale(_)
+            | Source::ForceZero(_)
+    )
+}
+
+/// What a run that was taken again comes to.
+pub(super) struct Taken {
+    pub values: Vec<f64>,
+    /// Whether the record tells the way to them.
+    pub seen: bool,
+}
+
+/// The runs to take.
+pub(super) struct Study<J> {
+    /// Each source with its input at each of [`Effort::moves`].
+    pub moved: Vec<(Source, Vec<J>)>,
+    /// One draw of all errors each.
+    pub draws: Vec<(Source, J)>,
+}
+
+impl<J: Sync> Study<J> {
+    /// What each source contributes to each of the `nominal` numbers, those of the run as it was. `again` takes a run.
+    pub fn contributions(
+        &self,
+        nominal: &[f64],
+        again: &(dyn Fn(&J) -> Taken + Sync),
+        tick: Tick,
+    ) -> Result<Vec<Vec<Contribution>>, Stop> {
+        let jobs: Vec<&J> = self.moved.iter().flat_map(|(_, jobs)| jobs).chain(self.draws.iter().map(|(_, job)| job)).collect();
+        let found = in_threads(&jobs, &|job| again(job), tick)?;
+        let mut found = found.into_iter();
+        let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); nominal.len()];
+        for (source, jobs) in &self.moved {
+            let taken: Vec<Taken> = found.by_ref().take(jobs.len()).collect();
+            let seen = taken.iter().all(|taken| taken.seen);
+            let moved: Vec<Vec<f64>> = taken.into_iter().map(|taken| taken.values).collect();
+            for (index, (parts, nominal)) in contributions.iter_mut().zip(nominal).enumerate() {
+                let (amount, smooth) = match moved.as_slice() {
+                    [up, down, half_up, half_down] => {
+                        effect(*nominal, [up[index], down[index]], Some([half_up[index], half_down[index]]))
+                    }
+                    [up, down] => effect(*nominal, [up[index], down[index]], None),
+                    _ => continue,
+                };
+                let smooth = smooth && (seen || amount == 0.0);
+                parts.push(Contribution { smooth, ..Contribution::new(*source, amount) });
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_DRAWS")]
+        let root = (self.draws.len() as f64).sqrt();
+        for ((source, _), found) in self.draws.iter().zip(found) {
+            for ((parts, found), nominal) in contributions.iter_mut().zip(found.values).zip(nominal) {
+                // A result that does not exist has no uncertainty, and none is looked for in its draws.
+                if nominal.is_finite() {
+                    parts.push(Contribution::new(*source, (found - nominal) / root));
+                }
+            }
+        }
+        Ok(contributions)
+    }
+}
+
+impl Effort {
+    /// The draws of a procedure and their sources: those of its `blow`, from 0, are its own.
+    pub fn draws(self, procedure: ProcedureId, blow: u16) -> impl Iterator<Item = (u16, Source)> {
+        let first = blow.saturating_mul(MOST_DRAWS);
+        let source = move |draw| match self.together {
+            false => Source::Readings { procedure, draw },
+            true => Source::Drawn { procedure, draw },
+        };
+        (first..first.saturating_add(self.draws)).map(move |draw| (draw, source(draw)))
+    }
+}
+
+/// What each job comes to, in the order of the jobs, worked on by as many threads as the machine has cores.
+fn in_threads<J: Sync, T: Send>(jobs: &[J], work: &(dyn Fn(&J) -> T + Sync), tick: Tick) -> Result<Vec<T>, Stop> {
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let (next, given_up) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let (tell, told) = channel();
+    let mut found: Vec<Option<T>> = jobs.iter().map(|_| None).collect();
+    let ended = std::thread::scope(|scope| {
+        for _ in 0..cores.min(jobs.len()) {
+            let (tell, next, given_up) = (tell.clone(), &next, &given_up);
+            scope.spawn(move || {
+                while !given_up.load(Ordering::Relaxed) {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(place) else { break };
+                    if tell.send((place, work(job))).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(tell);
+        let mut done = 0;
+        while done < jobs.len() {
+            match told.recv_timeout(MOMENT) {
+                Ok((place, value)) => {
+                    found[place] = Some(value);
+                    done += 1;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                // A thread that panicked: the scope says so.
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if let Err(stop) = tick(done, jobs.len()) {
+                given_up.store(true, Ordering::Relaxed);
+                return Err(stop);
+            }
+        }
+        Ok(())
+    });
+    ended.map(|()| found.into_iter().flatten().collect())
+}
+
+/// What moving a source by ±u does, and whether that is smooth: `[up, down]`, and the same at ±u/2 where it was tried. Where
+/// the two sides, or the two sizes of the move, disagree, the largest change stands for it.
+fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, bool) {
+    let (above, below, central) = (up - nominal, nominal - down, 0.5 * (up - down));
+    let halved = half.map_or(central, |[up, down]| up - down);
+    let widest = above.abs().max(below.abs());
+    let rounding = CLOSE * nominal.abs();
+    let one_sided = (above - below).abs() > ONE_SIDED * widest + rounding;
+    let step_dependent = (central - halved).abs() > HALVED * widest + rounding;
+    if one_sided || step_dependent {
+        return (widest.max(central.abs()).max(halved.abs()).copysign(central), false);
+    }
+    (central, true)
+}
+
+/// What the specimen may have done for all the record tells: `find` what each source contributes by each rule, and the most
+/// that any of it makes of a source is told.
+pub(super) fn over_rules(
+    rules: &[Rule],
+    tick: Tick,
+    find: &mut dyn FnMut(Rule, Tick) -> Result<Vec<Vec<Contribution>>, Stop>,
+) -> Result<Vec<Vec<Contribution>>, Stop> {
+    let mut contributions: Vec<Vec<Contribution>> = Vec::new();
+    for (place, rule) in rules.iter().enumerate() {
+        let found = find(*rule, &mut |done, of| tick(place * of + done, rules.len() * of))?;
+        if contributions.is_empty() {
+            contributions = found;
+        } else {
+            for (told, other) in contributions.iter_mut().zip(found) {
+                widen(told, &other);
+            }
+        }
+    }
+    Ok(contributions)
+}
+
+/// Lets `told` be the most of what two suppositions make of one result: source by source of inputs that are moved, the draws
+/// of readings together, for it is their sum that tells. Where the two do not agree, none of them is sure.
+fn widen(told: &mut [Contribution], other: &[Contribution]) {
+    let drawn = |part: &Contribution| matches!(part.source, Source::Readings { .. } | Source::Drawn { .. });
+    let all_drawn =
+        |parts: &[Contribution]| parts.iter().filter(|part| drawn(part)).map(|part| part.amount.powi(2)).sum::<f64>().sqrt();
+    let (draws, of_other) = (all_drawn(told), all_drawn(other));
+    for (told, other) in told.iter_mut().zip(other) {
+        let (one, two, apart) = if drawn(told) {
+            (draws, of_other, (draws - of_other).abs())
+        } else {
+            (told.amount.abs(), other.amount.abs(), (told.amount - other.amount).abs())
+        };
+        let smooth = told.smooth && other.smooth && apart <= AGREED * one.max(two);
+        *told = Contribution { smooth, ..if two > one { *other } else { *told } };
+    }
+}
+
+/// Gives a result that is one number its contributions; one that is not finite is known of nothing.
+pub(super) fn give(result: &mut NamedResult, parts: Vec<Contribution>) {
+    let known = parts.iter().all(|part| part.amount.is_finite());
+    result.contributions = if known { parts.into_iter().filter(|part| part.amount != 0.0).collect() } else { Vec::new() };
+    if let ResultValue::Number { value: Some(_), uncertainty } = &mut result.value {
+        *uncertainty = combined(&result.contributions);
+    }
+}
+
+/// Gives one entry of a list its contributions.
+pub(super) fn give_entry(result: &mut NamedResult, entry: usize, parts: Vec<Contribution>) {
+    if parts.iter().all(|part| part.amount.is_finite()) {
+        let parts = parts.into_iter().filter(|part| part.amount != 0.0);
+        result.contributions.extend(parts.map(|part| Contribution { entry, ..part }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(index: usize) -> Source {
+        Source::StrikerMass(index)
+    }
+
+    /// y = 3a + b², a moved by 0.1, b = 2 by 0.5: half the difference is exact of both; what a quadratic does to either side
+    /// differs by 2·0.25 of 2.25, more than a fifth.
+    #[test]
+    fn a_study_finds_what_each_source_does() {
+        let moves = Effort::of(10, 2, 0, false).moves();
+        let of = |a: f64, b: f64| moves.iter().map(|by| (1.0 + a * by, 2.0 + b * by)).collect::<Vec<(f64, f64)>>();
+        let study = Study { moved: vec![(source(0), of(0.1, 0.0)), (source(1), of(0.0, 0.5))], draws: Vec::new() };
+        let again = |(a, b): &(f64, f64)| Taken { values: vec![3.0 * a + b * b], seen: *a < 1.05 };
+        let found = study.contributions(&[7.0], &again, &mut |_, _| Ok(())).ok().unwrap();
+        assert!((found[0][0].amount - 0.3).abs() < 1e-12 && !found[0][0].smooth, "where nothing is recorded");
+        assert!((found[0][1].amount - 2.25).abs() < 1e-12 && !found[0][1].smooth, "{found:?}");
+    }
+
+    /// Every job is done once, in whatever order, and stands in its place; whoever watches is told of all, and may stop it.
+    #[test]
+    fn jobs_keep_their_places_in_threads() {
+        let jobs: Vec<u64> = (0..500).collect();
+        let mut most = 0;
+        let slow_first = |job: &u64| (0..(500 - job) * 50).fold(*job, |sum, more| sum ^ more << 20 >> 60);
+        let found = in_threads(&jobs, &slow_first, &mut |done, of| {
+            most = most.max(done);
+            assert_eq!(of, 500);
+            Ok(())
+        });
+        assert_eq!(found.ok().unwrap(), jobs);
+        assert_eq!(most, 500);
+        let stop = in_threads(&jobs, &|job| *job, &mut |_, _| Err(Stop::Person { reason: "enough".to_owned() }));
+        assert!(matches!(stop, Err(Stop::Person { .. })));
+    }
+
+    /// However long the run and however many its inputs, a study takes few times as many steps.
+    #[test]
+    fn the_cost_of_a_study_is_bounded() {
+        let runs = |steps, inputs, alike| {
+            let effort = Effort::of(steps, inputs, alike, true);
+            let moved = if effort.together { inputs - alike } else { inputs };
+            moved * effort.moves().len() + usize::from(effort.draws)
+        };
+        assert_eq!(Effort::of(1000, 7, 3, true), Effort { halves: true, together: false, draws: 64 });
+        assert_eq!(Effort::of(1000, 7, 3, false).draws, 0);
+        for steps in [1_u64, 100, 8_000, 52_000, 1_000_000, 10_000_000] {
+            for alike in [0, 3, 320] {
+                let inputs = alike + 8;
+                let bound = (STEPS_OF_DRAWS + STEPS_OF_MOVES).max(steps * (MOVES_OF_ANY + 16));
+                let runs = runs(steps, inputs, alike) as u64;
+                assert!(runs * steps <= bound || inputs * 4 + 64 >= 1300, "{runs} runs of {steps} steps, {inputs} inputs");
+            }
+        }
+        assert_eq!(runs(52_000, 6, 3), 2 * 6 + 9);
+        assert_eq!(runs(10_000_000, 328, 320), 2 * 8 + 16);
+    }
+}
