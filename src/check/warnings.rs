@@ -92,9 +92,8 @@ fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Proc
     }
     let mut used = Vec::new();
     for (_, procedure) in procedures {
-        if let Some(
-            ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(blow), .. }),
-        ) = procedure.as_ref().map(|procedure| &procedure.kind)
+        if let Some(ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(blow), .. })) =
+            procedure.as_ref().map(|procedure| &procedure.kind)
         {
             blow.mass.collect_stated(&mut read);
             used.extend((blow.mass_uncertainty > 0.0).then_some(blow.specimen));

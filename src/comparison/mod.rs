@@ -111,12 +111,10 @@ fn results(summary: &Value) -> Vec<(String, Dimension, Cell)> {
             let unit = quantity["unit"].as_str().unwrap_or_default();
             let dimension = unit::parse(unit).map_or(Dimension::NUMBER, |unit| unit.dimension);
             match &quantity["value"] {
-                Value::Array(entries) => found.extend(
-                    entries.iter().zip(0_usize..).map(|(entry, index)| {
-                        let cell = Cell { value: entry.as_f64(), u: quantity["u"][index].as_f64() };
-                        (format!("{name}[{index}]"), dimension, cell)
-                    }),
-                ),
+                Value::Array(entries) => found.extend(entries.iter().zip(0_usize..).map(|(entry, index)| {
+                    let cell = Cell { value: entry.as_f64(), u: quantity["u"][index].as_f64() };
+                    (format!("{name}[{index}]"), dimension, cell)
+                })),
                 value => found.push((name, dimension, Cell { value: value.as_f64(), u: quantity["u"].as_f64() })),
             }
         }

@@ -80,8 +80,8 @@ mod tests {
             }
             assert!((place.largest()[0] / 2.0 - 1.0).abs() < 6e-4, "{}", place.largest()[0]);
             // A parabola misses a cubic's top by its third derivative, sin(step/2) at most, times step³/(9√3).
-                let within = (0.5 * step).sin() * step.powi(3) / (9.0 * 3.0_f64.sqrt());
-                assert!((peak.largest() / 2.0 - 1.0).abs() < within, "{}", peak.largest());
+            let within = (0.5 * step).sin() * step.powi(3) / (9.0 * 3.0_f64.sqrt());
+            assert!((peak.largest() / 2.0 - 1.0).abs() < within, "{}", peak.largest());
         }
     }
 }

@@ -201,8 +201,7 @@ struct Peaks {
 impl Peaks {
     fn new(floors: usize, time_step: f64) -> Self {
         let nothing = || vec![0.0; floors];
-        let ends =
-            Floors { max_displacement: nothing(), max_drift: nothing(), residual_drift: nothing(), max_base_shear: 0.0 };
+        let ends = Floors { max_displacement: nothing(), max_drift: nothing(), residual_drift: nothing(), max_base_shear: 0.0 };
         Self {
             ends,
             displacement: Extremes::new(floors, time_step),

@@ -393,7 +393,10 @@ mod tests {
             };
             let found = product(first, second) / (product(first, first) * product(second, second)).sqrt();
             // A correlation of 400 pairs is known to (1 − r²)/√400; three of them, and what one fit is off the mean of all.
-            assert!((found - stated).abs() < 3.0 / 20.0 * (1.0 - stated * stated) + 0.02, "pair {index}: {found}, stated {stated}");
+            assert!(
+                (found - stated).abs() < 3.0 / 20.0 * (1.0 - stated * stated) + 0.02,
+                "pair {index}: {found}, stated {stated}"
+            );
         }
     }
 

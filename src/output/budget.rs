@@ -183,11 +183,7 @@ fn storey_of<'a>(
     (&specimen.name, found.map(|found| found.0), found.map(|found| found.1))
 }
 
-fn damping_ratio(
-    run: &Run<'_>,
-    procedure: ProcedureId,
-    mode: usize,
-) -> (String, From, Option<f64>, Option<f64>, Dimension) {
+fn damping_ratio(run: &Run<'_>, procedure: ProcedureId, mode: usize) -> (String, From, Option<f64>, Option<f64>, Dimension) {
     let damping = run.plan.procedures.get(procedure.0).and_then(|planned| match &planned.kind {
         ProcedureKind::Shake(shake) => Some((&planned.name, &shake.damping, shake.damping_uncertainty)),
         ProcedureKind::StoreyImpact(impact) => Some((&planned.name, &impact.damping, impact.damping_uncertainty)),

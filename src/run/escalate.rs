@@ -153,9 +153,10 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
         |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
     // Each as uncertain as that of its blow.
     let known = |name, dimension, of_blow: &str| {
-        let parts = blows.iter().enumerate().flat_map(|(entry, blow)| {
-            contributions(blow, of_blow).into_iter().map(move |part| Contribution { entry, ..part })
-        });
+        let parts = blows
+            .iter()
+            .enumerate()
+            .flat_map(|(entry, blow)| contributions(blow, of_blow).into_iter().map(move |part| Contribution { entry, ..part }));
         NamedResult { contributions: parts.collect(), ..list(name, dimension, of(of_blow)) }
     };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]

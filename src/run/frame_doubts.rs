@@ -4,8 +4,8 @@
 
 use super::inputs::Inputs;
 use super::propagation::{LATE, reading_errors};
-use super::stepping::FrameSteps;
 use super::session::Session;
+use super::stepping::FrameSteps;
 use super::stop::Stop;
 use super::storey_impact::no_frame;
 use super::study::{CLOSE, Effort, Study, give, give_entry, is_alike};
@@ -153,8 +153,7 @@ impl<'run> FrameDoubts<'run> {
         effort: Effort,
         job: impl Fn(Shifts<'_>, FrameDistortion) -> Result<J, String>,
     ) -> Result<Study<J>, String> {
-        let (drawn, moved): (Vec<Source>, Vec<Source>) =
-            sources.iter().partition(|source| effort.together && is_alike(**source));
+        let (drawn, moved): (Vec<Source>, Vec<Source>) = sources.iter().partition(|source| effort.together && is_alike(**source));
         let mut study = Study { moved: Vec::new(), draws: Vec::new() };
         for source in moved {
             let at = |by: &f64| job(&[(source, *by)], self.distortion(&[(source, *by)], Vec::new()));

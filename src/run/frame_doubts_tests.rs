@@ -85,19 +85,19 @@ fn one_storey_is_as_uncertain_as_one_degree_of_freedom() {
     let uncertain = |mut plan: Plan, link: VirtualLink| {
         plan.strikers[0].mass_uncertainty = 0.1;
         plan.strikers[0].velocity_uncertainty = 0.01;
-        plan.rig.calibration =
-            Calibration { force_uncertainty: 0.01, displacement_uncertainty: 0.005, zero_uncertainty: 0.2, ..Calibration::default() };
+        plan.rig.calibration = Calibration {
+            force_uncertainty: 0.01,
+            displacement_uncertainty: 0.005,
+            zero_uncertainty: 0.2,
+            ..Calibration::default()
+        };
         plan.rig.link = Link::Virtual(link);
         plan
     };
     let contact = Contact::Restitution { coefficient: constant(0.3) };
     let alone = |link| {
-        let blow = Impact {
-            mass_uncertainty: 0.02,
-            contact: contact.clone(),
-            stepping: every(1e-3),
-            ..impact(constant(STIFFNESS))
-        };
+        let blow =
+            Impact { mass_uncertainty: 0.02, contact: contact.clone(), stepping: every(1e-3), ..impact(constant(STIFFNESS)) };
         run_unwatched(&uncertain(elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]), link))
     };
     let framed = |link| {
@@ -206,7 +206,10 @@ fn two_elastic_storeys_come_out_by_their_modes() {
             let mass = |by: f64| [0, 1].map(|floor| masses[floor] * moved(1.0, by)[floor]);
             let half = |up: [f64; 5], down: [f64; 5]| 0.5 * (up[index] - down[index]);
             let cases = [
-                (Source::StoreyMass { specimen: 0, storey: axis }, half(at(mass(0.01), [1.0; 2], [1.0; 2]), at(mass(-0.01), [1.0; 2], [1.0; 2]))),
+                (
+                    Source::StoreyMass { specimen: 0, storey: axis },
+                    half(at(mass(0.01), [1.0; 2], [1.0; 2]), at(mass(-0.01), [1.0; 2], [1.0; 2])),
+                ),
                 (Source::ForceScale(axis), half(at(masses, moved(1.0, 0.01), [1.0; 2]), at(masses, moved(1.0, -0.01), [1.0; 2]))),
                 (
                     Source::DisplacementScale(axis),
@@ -242,8 +245,7 @@ fn periods_are_as_uncertain_as_masses_and_stiffnesses() {
     }
     let record = run_unwatched(&rebuilt(plan));
     let periods = |masses: [f64; 2], [lower, upper]: [f64; 2]| {
-        let (half, product) =
-            (0.5 * ((lower + upper) / masses[0] + upper / masses[1]), lower * upper / (masses[0] * masses[1]));
+        let (half, product) = (0.5 * ((lower + upper) / masses[0] + upper / masses[1]), lower * upper / (masses[0] * masses[1]));
         let root = (half * half - product).sqrt();
         [half - root, half + root].map(|squared| std::f64::consts::TAU / squared.sqrt())
     };
@@ -313,12 +315,7 @@ const RUNS: u32 = 150;
 /// The virtual rig run `RUNS` times with inputs as they may be, against what one run of `doubtful` foretells. The standard
 /// deviation of a standard deviation of normal numbers is 1/√(2(n − 1)) of it, and that of the foretold one 1/√(2·64) where it
 /// is drawn: three of both together.
-fn scatters_as_foretold(
-    doubtful: &Plan,
-    names: &[(&str, usize)],
-    drawn: bool,
-    draw: &mut dyn FnMut(&mut Uniform, u64) -> Plan,
-) {
+fn scatters_as_foretold(doubtful: &Plan, names: &[(&str, usize)], drawn: bool, draw: &mut dyn FnMut(&mut Uniform, u64) -> Plan) {
     let told = run_unwatched(doubtful);
     let mut uniform = Uniform(20_060_102);
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
@@ -360,8 +357,14 @@ fn shakes_of_the_true_rig_scatter_as_foretold() {
     }
     doubtful.grounds[0].scale_uncertainty = 0.01;
     shake(&mut doubtful).damping_uncertainty = 0.01;
-    let names =
-        [("max_displacement", 0), ("max_displacement", 1), ("max_drift", 0), ("max_drift", 1), ("residual_drift", 0), ("max_base_shear", 0)];
+    let names = [
+        ("max_displacement", 0),
+        ("max_displacement", 1),
+        ("max_drift", 0),
+        ("max_drift", 1),
+        ("residual_drift", 0),
+        ("max_base_shear", 0),
+    ];
     scatters_as_foretold(&rebuilt(doubtful), &names, false, &mut |uniform, _| {
         let masses = [3.0, 2.0].map(|mass: f64| mass * (1.0 + 0.01 * uniform.normal()));
         let scale = 1.0 + 0.01 * uniform.normal();

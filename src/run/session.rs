@@ -4,8 +4,8 @@
 use super::escalate::most_moves;
 use super::shake;
 use super::stop::Stop;
-use super::study::Unknown;
 use super::storey_impact;
+use super::study::Unknown;
 use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
 use crate::formula::NoResults;
 use crate::mechanics::critical_time_step;

@@ -87,8 +87,7 @@ pub(super) fn propagate(
     let both = Contribution::new(Source::TimeStep { procedure: doubts.procedure }, time_step / 6.0_f64.sqrt());
     parts[DURATION].push(both);
     let lists = ["floor_displacement", "max_drift", "residual_drift", "storey_energy", "periods"].map(|name| (name, floors));
-    let layout: Vec<(&'static str, usize)> =
-        OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1)).chain(lists).collect();
+    let layout: Vec<(&'static str, usize)> = OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1)).chain(lists).collect();
     if path.swung_back() {
         mark_late(&layout, &mut parts);
     }
@@ -122,9 +121,8 @@ fn moved(
     distortion: FrameDistortion,
 ) -> Result<Job, Stop> {
     let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
-    let (properties, law) = doubts.with_inputs(shifts, &mut |inputs| {
-        Ok((stepping::properties(&frame, &damping, inputs)?, law(&plan.contact, inputs)?))
-    })?;
+    let (properties, law) = doubts
+        .with_inputs(shifts, &mut |inputs| Ok((stepping::properties(&frame, &damping, inputs)?, law(&plan.contact, inputs)?)))?;
     let (mut striker, declared) = (setting.striker.clone(), &doubts.whole.strikers[plan.striker]);
     for (source, by) in shifts {
         match source {

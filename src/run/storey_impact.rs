@@ -4,8 +4,8 @@
 
 use super::Performed;
 use super::followed::Followed;
-use super::impact::{law, remark};
 use super::frame_doubts::FrameDoubts;
+use super::impact::{law, remark};
 use super::inputs::Inputs;
 use super::session::Session;
 use super::stepping::{self, FrameSteps};

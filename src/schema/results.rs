@@ -91,7 +91,8 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run").of_storey(),
     ResultKind::measured_list("storey_energy", Dimension::ENERGY, "shear of each storey integrated over its drift, over the run")
         .of_storey(),
-    ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey").of_storey(),
+    ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey")
+        .of_storey(),
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first").of_storey(),
     FLOORS_FOLLOWED[0].of_storey(),
     FLOORS_FOLLOWED[1].of_storey(),
@@ -128,7 +129,11 @@ const FLOORS_FOLLOWED: [ResultKind; 4] = [
 ];
 
 pub(super) const SHAKE: &[ResultKind] = &[
-    ResultKind::measured_list("max_displacement", Dimension::LENGTH, "largest size of each floor's displacement, relative to the ground"),
+    ResultKind::measured_list(
+        "max_displacement",
+        Dimension::LENGTH,
+        "largest size of each floor's displacement, relative to the ground",
+    ),
     ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift"),
     ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run"),
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first"),

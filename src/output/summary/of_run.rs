@@ -170,7 +170,11 @@ fn quantity(value: &ResultValue, entries: &[Option<f64>], dimension: Dimension) 
             (Value::Number(value.and_then(finite)), Uncertainty::Number(known(uncertainty)))
         }
         ResultValue::List(values) => {
-            let u = if entries.is_empty() { Uncertainty::Number(None) } else { Uncertainty::List(entries.iter().map(known).collect()) };
+            let u = if entries.is_empty() {
+                Uncertainty::Number(None)
+            } else {
+                Uncertainty::List(entries.iter().map(known).collect())
+            };
             (Value::List(values.iter().map(|value| finite(*value)).collect()), u)
         }
     };
