@@ -62,7 +62,17 @@ fn read(path: &Path) -> Result<String, String> {
     if bytes.len() > FILE_BYTES {
         return Err(format!("it is larger than {} MiB", FILE_BYTES >> 20));
     }
-    String::from_utf8(bytes).map_err(|error| format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let (line, column) = place(&error.as_bytes()[..at]);
+        format!("it is not UTF-8 text (byte {at}, line {line}, column {column}): save it as UTF-8")
+    })
+}
+
+/// Line and column, from 1, of what comes after these bytes.
+fn place(before: &[u8]) -> (usize, usize) {
+    let line = before.rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
+    (before.split(|byte| *byte == b'\n').count(), String::from_utf8_lossy(line).chars().count() + 1)
 }
 
 /// The system's word for an error, without its number.
@@ -113,7 +123,8 @@ mod tests {
         assert!(refused(&loader, folder.join("a.psd").to_str().unwrap()).contains("plan's folder"));
         assert!(refused(&loader, "out.psd").contains("leads out"));
         assert!(refused(&loader, "lib").contains("regular"));
-        assert!(refused(&loader, "bytes.psd").contains("byte 1"));
+        assert!(refused(&loader, "bytes.psd").contains("(byte 1, line 1, column 2): save it as UTF-8"));
+        assert_eq!(place("a\né".as_bytes()), (2, 2));
         assert!(refused(&loader, "large.psd").contains("1 MiB"));
     }
 }

@@ -32,6 +32,10 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         }
         return Ok(Exit::Wrong);
     };
+    if plan.procedures.is_empty() {
+        return Err(Failure::command_line("the plan has no procedure: nothing would run, and nothing be shown")
+            .help("declarations that other plans `use` are checked with `psd check`"));
+    }
     let attendance = real_rig::named(attendance, plan)?;
     let in_the_plan = |failure: Failure| failure.in_the_plan(|fault| plan_file::place_of_link(&checked, &arguments.plan, fault));
     if arguments.rehearse {

@@ -43,6 +43,15 @@ pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder
     value
 }
 
+/// A plan that cannot be read: an error of no code and no place that an editor could show.
+#[must_use]
+pub fn unreadable(file: &str, message: &str) -> Value {
+    json!({
+        "code": null, "severity": "error", "message": message, "file": file, "line": null, "column": null,
+        "end_line": null, "end_column": null, "span": null, "labels": [], "help": null,
+    })
+}
+
 fn label(label: &Label, sources: &Sources, folder: &str) -> Value {
     let mut value = place(label.span, sources, folder);
     extend(&mut value, json!({ "text": label.text }));

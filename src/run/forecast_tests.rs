@@ -41,8 +41,16 @@ fn shares(plan: &Plan) -> (f64, f64) {
     (foretold(plan, 0).unwrap().foretold.share, number(&record, 0, "tracking_energy_error").0.unwrap())
 }
 
-const LAGGING: VirtualLink =
-    VirtualLink { noise: 0.0, resolution: 0.0, force_resolution: 0.0, lag: 0.1, tracking: 0.0, drift: 0.0, seed: 1 };
+const LAGGING: VirtualLink = VirtualLink {
+    noise: 0.0,
+    resolution: 0.0,
+    force_resolution: 0.0,
+    lag: 0.1,
+    tracking: 0.0,
+    drift: 0.0,
+    seed: 1,
+    foretold: None,
+};
 
 #[test]
 fn a_blow_on_a_lagging_rig_is_foretold() {

@@ -170,7 +170,16 @@ fn a_frame_of_matrices_is_unloaded_as_a_whole() {
 fn one_storey_is_unloaded_as_one_degree_of_freedom() {
     let behaviour = Behaviour::Bilinear { stiffness: 500.0, yield_force: 5.0, hardening: 0.3 };
     let mut frame = elastic_plan(1.0, vec![rest(None)]);
-    let floor = Storey { mass: 1.0, mass_uncertainty: 0.0, stiffness_uncertainty: 0.0, stiffness: 500.0, height: None, behaviour: behaviour.clone(), damping: 0.0, coulomb: 0.2 };
+    let floor = Storey {
+        mass: 1.0,
+        mass_uncertainty: 0.0,
+        stiffness_uncertainty: 0.0,
+        stiffness: 500.0,
+        height: None,
+        behaviour: behaviour.clone(),
+        damping: 0.0,
+        coulomb: 0.2,
+    };
     frame.specimens[0].frame = Some(Frame::of_storeys(vec![floor]));
     let unload = Unload { specimen: 0, stiffness: Constant(500.0), within: None, speed: None };
     let mut single = elastic_plan(1.0, vec![ProcedureKind::Unload(unload)]);

@@ -8,8 +8,16 @@ use crate::plan::{Behaviour, Contact, Impact, Integrator, Link, Mode, Plan, Proc
 use crate::rig::virtual_rig;
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: 50.0 };
-const NOISY: VirtualLink =
-    VirtualLink { noise: 0.005, resolution: 1e-7, force_resolution: 0.0, lag: 0.05, tracking: 0.0, drift: 0.0, seed: 3 };
+const NOISY: VirtualLink = VirtualLink {
+    noise: 0.005,
+    resolution: 1e-7,
+    force_resolution: 0.0,
+    lag: 0.05,
+    tracking: 0.0,
+    drift: 0.0,
+    seed: 3,
+    foretold: None,
+};
 
 fn remarks(mut plan: Plan, link: VirtualLink) -> Vec<String> {
     plan.rig.link = Link::Virtual(link);
