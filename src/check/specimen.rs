@@ -29,7 +29,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         let frame = frame::frame(checker, block)?;
         let mass_uncertainty = frame.total_mass_uncertainty();
         let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
-        return Some(Specimen { frame, mass_uncertainty, ..Specimen::new(&name?.node, mass, None) });
+        return Some(Specimen { mass_uncertainty, frame, ..Specimen::new(&name?.node, mass, None) });
     }
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {

@@ -301,7 +301,9 @@ pub(super) fn give_all(layout: &[(&'static str, usize)], parts: Vec<Vec<Contribu
                 give_entry(result, entry, parts);
             }
         } else {
-            mine.into_iter().for_each(|parts| give(result, parts));
+            for parts in mine {
+                give(result, parts);
+            }
         }
     }
 }

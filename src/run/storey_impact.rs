@@ -79,7 +79,7 @@ pub(super) fn blow(
         let found = storey_doubts::propagate(doubts, plan, setting, &history, &summary.blow(), &mut results, &mut tick);
         stop = session.told_of(found);
     }
-    Blown { results, history, stop }
+    Blown { history, results, stop }
 }
 
 /// Before its first step.

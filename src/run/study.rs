@@ -165,9 +165,8 @@ impl Effort {
     /// The draws of a procedure and their sources: those of its `blow`, from 0, are its own.
     pub fn draws(self, procedure: ProcedureId, blow: u16) -> impl Iterator<Item = (u16, Source)> {
         let first = blow.saturating_mul(MOST_DRAWS);
-        let source = move |draw| match self.together {
-            false => Source::Readings { procedure, draw },
-            true => Source::Drawn { procedure, draw },
+        let source = move |draw| {
+            if self.together { Source::Drawn { procedure, draw } } else { Source::Readings { procedure, draw } }
         };
         (first..first.saturating_add(self.draws)).map(move |draw| (draw, source(draw)))
     }
@@ -229,12 +228,15 @@ fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, b
     (central, true)
 }
 
+/// What each source contributes to each number, if the specimen keeps to a rule.
+pub(super) type Find<'a> = &'a mut dyn FnMut(Rule, Tick) -> Result<Vec<Vec<Contribution>>, Stop>;
+
 /// What the specimen may have done for all the record tells: `find` what each source contributes by each rule, and the most
 /// that any of it makes of a source is told.
 pub(super) fn over_rules(
     rules: &[Rule],
     tick: Tick,
-    find: &mut dyn FnMut(Rule, Tick) -> Result<Vec<Vec<Contribution>>, Stop>,
+    find: Find,
 ) -> Result<Vec<Vec<Contribution>>, Stop> {
     let mut contributions: Vec<Vec<Contribution>> = Vec::new();
     for (place, rule) in rules.iter().enumerate() {
