@@ -24,7 +24,7 @@ striker hammer {
 impact hit {
   striker   = hammer
   time_step = 10 ms
-  duration  = 50 ms
+  duration  = 400 ms
 }
 
 require "stays in travel" hit.max_displacement < 0.16 m
@@ -219,6 +219,9 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     bench.ends(0, &["verify", "run-amended-2"]);
     bench.ends(0, &["keygen", "key", "--no-password"]);
     bench.ends(0, &["sign", "run-amended-2", "--key", "key", "--role", "Quality"]);
+    assert!(bench.ends(0, &["verify", "run-amended-2"]).contains("Test engineer has not signed"));
+    assert!(bench.ends(3, &["verify", "run-amended-2", "--key", "key.pub"]).contains("Test engineer has not signed"));
+    bench.ends(0, &["sign", "run-amended-2", "--key", "key", "--role", "Test engineer"]);
     bench.ends(0, &["verify", "run-amended-2", "--key", "key.pub"]);
     let signature = fs::read(bench.path("run-amended-2/manifest.sha256.quality.minisig")).unwrap();
     fs::write(bench.path("run/manifest.sha256.quality.minisig"), signature).unwrap();
