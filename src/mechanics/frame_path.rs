@@ -310,8 +310,8 @@ mod tests {
                 again.move_to(&off);
                 let places: Vec<f64> = off.iter().zip(&distortion.displacement_scale).map(|(off, scale)| off / scale).collect();
                 let by_hand = elastic(&places).force;
-                for axis in 0..3 {
-                    let expected = distortion.force_scale[axis] * by_hand[axis] + distortion.zero[axis];
+                for (axis, by_hand) in by_hand.iter().enumerate() {
+                    let expected = distortion.force_scale[axis] * by_hand + distortion.zero[axis];
                     // The other frame is 0.5 N/m stiffer off its way, of at most 50 mm.
                     let within = if storeys { 1e-9 } else { 0.5 * 0.05 * 1.2 };
                     assert!((again.force()[axis] - expected).abs() < within, "step {step}, axis {axis}");

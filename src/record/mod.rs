@@ -108,7 +108,6 @@ pub struct NamedResult {
 
 /// What was recorded step by step.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "a run has a few of them")]
 pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),

@@ -233,11 +233,7 @@ pub(super) type Find<'a> = &'a mut dyn FnMut(Rule, Tick) -> Result<Vec<Vec<Contr
 
 /// What the specimen may have done for all the record tells: `find` what each source contributes by each rule, and the most
 /// that any of it makes of a source is told.
-pub(super) fn over_rules(
-    rules: &[Rule],
-    tick: Tick,
-    find: Find,
-) -> Result<Vec<Vec<Contribution>>, Stop> {
+pub(super) fn over_rules(rules: &[Rule], tick: Tick, find: Find) -> Result<Vec<Vec<Contribution>>, Stop> {
     let mut contributions: Vec<Vec<Contribution>> = Vec::new();
     for (place, rule) in rules.iter().enumerate() {
         let found = find(*rule, &mut |done, of| tick(place * of + done, rules.len() * of))?;

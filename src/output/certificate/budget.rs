@@ -134,10 +134,11 @@ fn note(budgets: &[Budget<'_>]) -> String {
     if let Some(draws) = draws.filter(|draws| *draws < usize::from(MOST_DRAWS)) {
         #[expect(clippy::cast_precision_loss, reason = "a few")]
         let known = 1.0 / (2.0 * draws as f64).sqrt();
-        text += &format!(
-            " The run is long, and they were drawn {draws} times only: their share of u is known to {}.",
-            percent(known)
-        );
+        text += " The run is long, and they were drawn ";
+        text += &draws.to_string();
+        text += " times only: their share of u is known to ";
+        text += &percent(known);
+        text += ".";
     }
     if told.iter().any(|line| !line.smooth) {
         text += " † The result does not follow this input smoothly: the differences to either side, or at half the size, disagree; \

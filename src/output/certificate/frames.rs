@@ -206,14 +206,11 @@ fn entries(result: &NamedResult) -> &[f64] {
 pub(super) fn entry(result: &NamedResult, place: usize) -> Text {
     let values = entries(result);
     let Some(value) = values.get(place) else { return "—".into() };
-    match result.entry_uncertainties().get(place) {
-        Some(Some(u)) => number::with_uncertainty(*value, Some(*u), result.dimension),
-        _ => {
-            let whole = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-            number::text_beside(*value, whole, result.dimension)
-        }
+    if let Some(Some(u)) = result.entry_uncertainties().get(place) {
+        return number::with_uncertainty(*value, Some(*u), result.dimension).into();
     }
-    .into()
+    let whole = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    number::text_beside(*value, whole, result.dimension).into()
 }
 
 /// Where the storeys of a frame came to rest: what stayed of it is permanent.
