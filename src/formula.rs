@@ -233,6 +233,19 @@ impl Formula {
         !stated.is_empty()
     }
 
+    /// Everything in it that is no constant and no list.
+    #[must_use]
+    pub fn terms(&self) -> usize {
+        match self {
+            Self::Constant(_) => 0,
+            Self::Stated(_) | Self::Result(_) | Self::CriticalTimeStep => 1,
+            Self::Negate(inner) | Self::Index(inner, _) => 1 + inner.terms(),
+            Self::Binary(_, left, right) => 1 + left.terms() + right.terms(),
+            Self::Call(_, parts) => 1 + parts.iter().map(Self::terms).sum::<usize>(),
+            Self::List(parts) => parts.iter().map(Self::terms).sum(),
+        }
+    }
+
     /// Whether `critical` stands in it.
     #[must_use]
     pub fn reads_critical_time_step(&self) -> bool {

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::Loader;
 use super::data::DataFile;
-use super::faults::names as fault;
+use super::faults::{names as fault, values};
 use super::scope::Scope;
 use crate::diagnostic::Diagnostic;
 use crate::formula::{Formula, ProcedureId};
@@ -81,7 +81,15 @@ pub struct Checker<'a> {
     /// The rig of the run, where it is one that moves a specimen.
     pub real_rig: Option<usize>,
     stack: Vec<Node>,
+    /// Whether it was said that values need one another too deep.
+    too_deep: bool,
 }
+
+/// Values that need one another, one inside another, before they are worked out: each takes of the stack.
+pub const DEEPEST_VALUES: usize = 100;
+/// Results and operators of one value that is known after the run only, those of the values it names counted in: such a value
+/// is copied wherever it is named, and `let b = a + a` doubles it.
+pub const MOST_TERMS: usize = 1_000;
 
 impl<'a> Checker<'a> {
     pub fn new(
@@ -94,7 +102,21 @@ impl<'a> Checker<'a> {
     ) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
         let (data, frames) = (Vec::new(), BTreeMap::new());
-        Self { sources, scope, loader, data, frames, faults, names_lost, unread, known, used, real_rig: None, stack }
+        Self {
+            sources,
+            scope,
+            loader,
+            data,
+            frames,
+            faults,
+            names_lost,
+            unread,
+            known,
+            used,
+            real_rig: None,
+            stack,
+            too_deep: false,
+        }
     }
 
     /// Notes a fault; returns None, so that a caller can leave with it.
@@ -113,10 +135,17 @@ impl<'a> Checker<'a> {
             return known.clone();
         }
         self.guarded(node, asked_at, |checker| {
-            let value = work(checker);
+            let value = work(checker).and_then(|typed| checker.of_bounded_size(typed));
             checker.known.insert(node, value.clone());
             value
         })
+    }
+
+    fn of_bounded_size(&mut self, typed: Typed) -> Option<Typed> {
+        if typed.formula.terms() <= MOST_TERMS {
+            return Some(typed);
+        }
+        self.fail(values::too_many_terms(typed.span, MOST_TERMS))
     }
 
     /// Does `work` for a node, unless it is being done already further up.
@@ -127,6 +156,14 @@ impl<'a> Checker<'a> {
                 self.known.insert(node, None);
             }
             return self.fail(fault::cycle(&ring, asked_at));
+        }
+        if self.stack.len() >= DEEPEST_VALUES {
+            // Once: where one chain is too deep, each of its pieces is.
+            if !std::mem::replace(&mut self.too_deep, true) {
+                self.faults.push(values::too_deep(asked_at, DEEPEST_VALUES));
+            }
+            self.known.insert(node, None);
+            return None;
         }
         self.stack.push(node);
         let value = work(self);

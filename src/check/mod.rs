@@ -54,6 +54,7 @@ pub mod tracking;
 mod unload;
 mod warnings;
 
+pub use checker::{DEEPEST_VALUES, MOST_TERMS};
 pub use ground_record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
 pub use imports::{DEEPEST, MOST_FILES};
 pub use literal::MOST_ENTRIES;

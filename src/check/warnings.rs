@@ -84,7 +84,7 @@ fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     }
 }
 
-/// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own.
+/// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own, and the damping ratio of a sweep.
 fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
     let mut read = Vec::new();
     for condition in requirements.iter().flat_map(|requirement| &requirement.conditions) {
@@ -92,6 +92,9 @@ fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Proc
     }
     let mut used = Vec::new();
     for (_, procedure) in procedures {
+        if let Some(ProcedureKind::DampingSweep(sweep)) = procedure.as_ref().map(|procedure| &procedure.kind) {
+            used.push(sweep.specimen);
+        }
         if let Some(ProcedureKind::Impact(blow) | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(blow), .. })) =
             procedure.as_ref().map(|procedure| &procedure.kind)
         {

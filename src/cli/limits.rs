@@ -25,6 +25,8 @@ pub fn limits() -> Result<Exit, Failure> {
         (journal::LINE_BYTES, "bytes of one record of a run, its newline included"),
         (check::MOST_FILES, "files of one plan, the plan included"),
         (check::DEEPEST, "files that use files, one inside another"),
+        (check::DEEPEST_VALUES, "values that need one another, one inside another"),
+        (check::MOST_TERMS, "results and operators of one value, those of the values it names counted in"),
         (check::MOST_ENTRIES, "entries of one list or range"),
         (check::MOST_GROUND_SAMPLES, "samples of one ground motion"),
         (plan::MOST_STOREYS, "storeys of one frame"),

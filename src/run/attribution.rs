@@ -6,7 +6,7 @@ use super::inputs::Inputs;
 use crate::formula::{Formula, ProcedureId, ResultValue};
 use crate::mechanics::backbone::SHARED;
 use crate::mechanics::multilinear_fit::{CurveShares, MultilinearFit};
-use crate::plan::{Calibration, ProcedureKind};
+use crate::plan::{Calibration, Plan, ProcedureKind};
 use crate::quantity::Dimension;
 use crate::record::{BilinearFit, History, NamedResult};
 use crate::uncertainty::{Contribution, Source, combined, share};
@@ -18,13 +18,8 @@ const LINES: [(&str, &str); 2] = [("stiffness", "intercept_force"), ("damping", 
 const SHIFTED: [&str; 3] = ["intercept_force", "yield_force", "break_forces"];
 
 /// Says of every identified result what its uncertainty is made of.
-pub(super) fn attribute(
-    kind: &ProcedureKind,
-    history: &History,
-    calibration: &Calibration,
-    inputs: &Inputs<'_>,
-    results: &mut [NamedResult],
-) {
+pub(super) fn attribute(kind: &ProcedureKind, history: &History, plan: &Plan, inputs: &Inputs<'_>, results: &mut [NamedResult]) {
+    let calibration = &plan.rig.calibration_of(0);
     let (line, bilinear, curve) = match history {
         History::Ramp(ramp) => (ramp.fit, ramp.bilinear.as_ref(), ramp.multilinear.as_deref()),
         History::Sweep(sweep) => (sweep.fit, None, None),
@@ -47,7 +42,9 @@ pub(super) fn attribute(
         of_lists(procedure, fit, calibration, results);
     }
     if let (ProcedureKind::DampingSweep(sweep), History::Sweep(_)) = (kind, history) {
-        damping_ratio(results, &sweep.stiffness, inputs);
+        let specimen = plan.specimens.get(sweep.specimen);
+        let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);
+        damping_ratio(results, &sweep.stiffness, (Source::SpecimenMass(sweep.specimen), uncertain), inputs);
     }
     for result in results.iter_mut() {
         // A fit alone keeps its standard error as it is, to the bit.
@@ -138,8 +135,9 @@ fn of_calibration(result: &NamedResult, value: f64, calibration: &Calibration) -
     parts.into_iter().filter(|(_, amount)| *amount != 0.0).map(|(source, amount)| Contribution::new(source, amount)).collect()
 }
 
-/// ζ = c/(2√(KM)): by first order, ζ/c of what is in c and −ζ/(2K) of what is in K.
-fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, inputs: &Inputs<'_>) {
+/// ζ = c/(2√(KM)): by first order, ζ/c of what is in c, −ζ/(2K) of what is in K and −ζ/(2M) of what is in M; `mass` is what
+/// the mass hangs on and its relative uncertainty.
+fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, mass: (Source, f64), inputs: &Inputs<'_>) {
     let number = |name: &str| match results.iter().find(|result| result.name == name)?.value {
         ResultValue::Number { value, .. } => value,
         ResultValue::List(_) => None,
@@ -157,6 +155,9 @@ fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, inputs: &Inpu
     }
     for part in in_stiffness {
         share(&mut parts, Contribution::new(part.source, -0.5 * ratio / known.value * part.amount));
+    }
+    if mass.1 > 0.0 {
+        share(&mut parts, Contribution::new(mass.0, -0.5 * ratio * mass.1));
     }
     if let Some(result) = results.iter_mut().find(|result| result.name == "damping_ratio")
         && parts.iter().all(|part| part.amount.is_finite())

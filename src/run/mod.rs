@@ -262,7 +262,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
-        attribution::attribute(&procedure.kind, &history, &plan.rig.calibration_of(0), &inputs, &mut results);
+        attribution::attribute(&procedure.kind, &history, plan, &inputs, &mut results);
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),

@@ -49,6 +49,18 @@ fn sweep_steps(history: &History) -> &[SweepStep] {
     }
 }
 
+/// ζ = c/(2√(KM)) with nothing uncertain but M: u(ζ) = ζ u(M)/(2M).
+#[test]
+fn the_mass_of_the_specimen_is_in_its_damping_ratio() {
+    let mut plan = ramp_then_sweep();
+    plan.specimens[0].mass_uncertainty = 0.04;
+    let record = run_unwatched(&plan);
+    let (ratio, uncertainty) = number(&record, 1, "damping_ratio");
+    let expected = 0.5 * 0.08 * ratio.unwrap();
+    assert!((uncertainty.unwrap() / expected - 1.0).abs() < 1e-6, "{uncertainty:?} is not {expected}");
+    assert!(number(&record, 1, "damping").1.unwrap() < 1e-6, "c does not hang on it");
+}
+
 #[test]
 fn an_ideal_ramp_and_sweep_give_back_the_specimen() {
     let record = run_unwatched(&ramp_then_sweep());

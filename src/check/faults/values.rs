@@ -181,6 +181,23 @@ pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Di
         .help(help)
 }
 
+/// Values that need values, one inside another.
+pub fn too_deep(span: Span, most: usize) -> Diagnostic {
+    Diagnostic::new(Code::TooMany, format!("values need one another more than {most} deep"))
+        .at(span, "one too many")
+        .help("declare a value before those that use it, or write fewer steps between them")
+}
+
+/// A value that is copied wherever it is named.
+pub fn too_many_terms(span: Span, most: usize) -> Diagnostic {
+    Diagnostic::new(
+        Code::TooMany,
+        format!("a value of results has at most {most} results and operators, those of the values it names counted in"),
+    )
+    .at(span, "too many")
+    .help("name each result once, and calculate with fewer of them")
+}
+
 pub fn not_finite(span: Span) -> Diagnostic {
     Diagnostic::new(Code::NotFinite, "this is not a finite number")
         .at(span, "a division by zero, a root of a negative number, or too large")

@@ -1,5 +1,6 @@
 //! The check, on whole plans: what a right plan becomes, and what is said of a wrong one and where.
 
+mod bounds;
 mod faults;
 mod plan;
 mod real_rig;
