@@ -132,6 +132,8 @@ impl Results for NoResults {
 pub enum FormulaError {
     #[error("the result `{0}` does not exist in this run")]
     Missing(&'static str),
+    #[error("the uncertainty of `{0}` is not known in this run")]
+    NoUncertainty(&'static str),
     #[error("the value is not a finite number")]
     NotFinite,
     #[error("a list stands where one number is wanted")]
@@ -281,13 +283,13 @@ impl Formula {
                     (ResultValue::List(values), Part::Uncertainty) => {
                         let entries = combined_entries(&results.contributions(*reference), values.len());
                         let known: Option<Vec<f64>> = entries.into_iter().collect();
-                        Value::List(known.ok_or(FormulaError::Missing(reference.name))?)
+                        Value::List(known.ok_or(FormulaError::NoUncertainty(reference.name))?)
                     }
                     (ResultValue::Number { value, .. }, Part::Value) => {
                         Value::Number(value.ok_or(FormulaError::Missing(reference.name))?)
                     }
                     (ResultValue::Number { uncertainty, .. }, Part::Uncertainty) => {
-                        Value::Number(uncertainty.ok_or(FormulaError::Missing(reference.name))?)
+                        Value::Number(uncertainty.ok_or(FormulaError::NoUncertainty(reference.name))?)
                     }
                 }
             }

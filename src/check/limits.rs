@@ -67,7 +67,7 @@ impl<'a> Checker<'a> {
             let bare = found == Dimension::NUMBER && dimension != Dimension::NUMBER;
             let typed = Typed { bare, ..Typed::number(Formula::Constant(interval.high), found, written.span) };
             self.expect(typed, dimension, field.name, written)?;
-            return Some(interval);
+            return self.moves_at_all(field.name, interval, written.span);
         }
         let typed = self.single(written, place)?;
         let typed = self.expect(typed, dimension, field.name, written)?;
@@ -75,7 +75,16 @@ impl<'a> Checker<'a> {
         if bound < 0.0 {
             return self.fail(values::negative_bound(field.name, written.span, self.text(written.span), symmetric));
         }
-        Some(Interval { low: if symmetric { -bound } else { 0.0 }, high: bound })
+        let interval = Interval { low: if symmetric { -bound } else { 0.0 }, high: bound };
+        self.moves_at_all(field.name, interval, written.span)
+    }
+
+    /// An actuator that may have no speed never arrives.
+    fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
+        if field == "speed" && interval.high <= 0.0 {
+            return self.fail(values::no_speed(span));
+        }
+        Some(interval)
     }
 
     /// One `limits` block.

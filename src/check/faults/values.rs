@@ -181,6 +181,13 @@ pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Di
         .help(help)
 }
 
+/// A limit on the speed that leaves none.
+pub fn no_speed(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, "the bound on `speed` must be greater than 0")
+        .at(span, "nothing moves")
+        .help("write the largest speed of the actuator, as in `10 mm/s`")
+}
+
 /// Values that need values, one inside another.
 pub fn too_deep(span: Span, most: usize) -> Diagnostic {
     Diagnostic::new(Code::TooMany, format!("values need one another more than {most} deep"))
