@@ -68,7 +68,9 @@ fn write_run(tokens: &Tokens, run: &[Row], lines: &mut Vec<String>) {
     let written: Vec<Vec<String>> = run.iter().map(|row| row_lines(tokens, row, &widths, several)).collect();
     // A value over several lines stays out of the column: its comment follows its last bracket.
     let commented = run.iter().zip(&written).filter(|(row, lines)| row.comment.is_some() && lines.len() == 1);
-    let column = commented.map(|(_, lines)| lines[0].chars().count()).max().unwrap_or(0);
+    let widths = commented.map(|(_, lines)| lines[0].chars().count());
+    // A long row pushes nobody's comment out of sight: its own follows it.
+    let column = widths.filter(|width| *width <= WIDTH).max().unwrap_or(0);
     for (row, mut row_lines) in run.iter().zip(written) {
         let single = row_lines.len() == 1;
         if let (Some(comment), Some(last)) = (&row.comment, row_lines.last_mut()) {

@@ -19,6 +19,17 @@ fn formatted(text: &str) -> String {
     once
 }
 
+/// A line of 4 kB may stand in a plan; a comment at its end stands there, and no other is pushed after it.
+#[test]
+fn a_long_row_pushes_no_comment_out_of_sight() {
+    let name = "x".repeat(200);
+    let text = formatted(&format!(
+        "plan \"P\" {{\n  customer = \"{name}\" # long\n  operator = \"A\" # short\n  revision = \"12\" # too\n}}\n"
+    ));
+    let said = format!("  customer = \"{name}\"  # long\n  operator = \"A\"   # short\n  revision = \"12\"  # too\n");
+    assert!(text.contains(&said), "{text}");
+}
+
 #[test]
 fn the_sample_plans_stand_in_columns() {
     let text = formatted(IMPACT);
