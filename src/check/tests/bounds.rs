@@ -9,20 +9,19 @@ const BLOW: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffn
 
 /// `let a3 = a2 + 1`, `let a2 = a1 + 1`, …: each needs the one after it, `count` in all.
 fn from_below(count: usize) -> String {
-    let mut text = BLOW.to_owned();
-    for value in (1..count).rev() {
-        text += &format!("let a{value} = a{} + 1 mm\n", value - 1);
-    }
-    text + &format!("let a0 = 1 mm\nrequire \"low\" hit.max_displacement < a{}\n", count - 1)
+    let values = (1..count).rev().map(|value| format!("let a{value} = a{} + 1 mm\n", value - 1));
+    BLOW.to_owned()
+        + &values.collect::<String>()
+        + &format!("let a0 = 1 mm\nrequire \"low\" hit.max_displacement < a{}\n", count - 1)
 }
 
 /// `let a1 = a0 + a0`, …, a0 a result: 2ⁿ⁺¹ − 1 terms after n doublings.
 fn doubled(doublings: usize) -> String {
-    let mut text = BLOW.to_owned() + "let a0 = hit.max_displacement\n";
-    for value in 1..=doublings {
-        text += &format!("let a{value} = a{0} + a{0}\n", value - 1);
-    }
-    text + &format!("require \"low\" a{doublings} < 1 km\n")
+    let values = (1..=doublings).map(|value| format!("let a{value} = a{0} + a{0}\n", value - 1));
+    BLOW.to_owned()
+        + "let a0 = hit.max_displacement\n"
+        + &values.collect::<String>()
+        + &format!("require \"low\" a{doublings} < 1 km\n")
 }
 
 #[test]
