@@ -1,10 +1,10 @@
 //! Requirements against the record. In: a [`Plan`] and a [`Record`]. Out: an [`Assessment`], every requirement with
 //! value, limit, margin and, under the guarded rule, guard band. A missed requirement is a verdict, never an error.
 
-use crate::formula::{Formula, FormulaError, Operator, Results};
+use crate::formula::{Formula, FormulaError, Operator, ResultReference, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
-use crate::record::{Beyond, History, Outcome, Record};
+use crate::record::{Beyond, History, Outcome, ProcedureRecord, Record};
 use crate::rig::failpoint::{self, Guarding};
 
 /// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
@@ -103,26 +103,36 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
 fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
     let assess = |condition: &Condition| {
         let outcome = assess_condition(condition, rule, record);
-        drifted(condition, no_peak(condition, cut_short(condition, outcome, record), record), record)
+        unless_doubtful(condition, outcome, record)
     };
     let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
     RequirementOutcome { label: requirement.label.clone(), verdict, conditions }
 }
 
-/// What a procedure came to that did not run to its end decides nothing: a largest value may still have grown.
-fn cut_short(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
+/// A result that a condition reads: of which procedure, and its name.
+type Read<'a> = (&'a ProcedureRecord, &'static str);
+
+/// What was reckoned and yet decides nothing is inconclusive, and says why.
+fn unless_doubtful(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
-    let read = references.iter().filter_map(|reference| record.procedures.get(reference.procedure.0));
-    match read.into_iter().find(|procedure| !procedure.complete) {
-        Some(procedure) => ConditionOutcome {
-            verdict: Verdict::Inconclusive,
-            reason: outcome.reason.or_else(|| Some(format!("{} did not run to its end", procedure.name))),
-            ..outcome
-        },
+    let procedure = |reference: &ResultReference| Some((record.procedures.get(reference.procedure.0)?, reference.name));
+    let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
+    let unfinished = || {
+        let why = cut_short(&read).or_else(|| no_peak(&read, &outcome))?;
+        Some(outcome.reason.clone().unwrap_or(why))
+    };
+    match drifted(&read, record).or_else(unfinished) {
+        Some(reason) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(reason), ..outcome },
         None => outcome,
     }
+}
+
+/// What a procedure came to that did not run to its end decides nothing: a largest value may still have grown.
+fn cut_short(read: &[Read<'_>]) -> Option<String> {
+    let (procedure, _) = read.iter().find(|(procedure, _)| !procedure.complete)?;
+    Some(format!("{} did not run to its end", procedure.name))
 }
 
 /// Results of an impact that would be larger had it gone on.
@@ -130,46 +140,29 @@ const GROWING: [&str; 3] = ["max_displacement", "time_of_max_displacement", "abs
 
 /// A largest displacement that was still growing as the run ended is no peak: that it keeps below a bound proves nothing, that it
 /// is past one does.
-fn no_peak(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
-    let decided = match (outcome.bound, outcome.verdict) {
-        (Some(Bound::Compare { comparison: Comparison::Greater | Comparison::GreaterEqual, .. }), verdict) => {
-            verdict == Verdict::Pass
-        }
-        (Some(Bound::Compare { comparison: Comparison::Less | Comparison::LessEqual, .. }), verdict) => verdict == Verdict::Fail,
-        _ => false,
+fn no_peak(read: &[Read<'_>], outcome: &ConditionOutcome) -> Option<String> {
+    let past_it = match outcome.bound {
+        Some(Bound::Compare { comparison: Comparison::Greater | Comparison::GreaterEqual, .. }) => Some(Verdict::Pass),
+        Some(Bound::Compare { comparison: Comparison::Less | Comparison::LessEqual, .. }) => Some(Verdict::Fail),
+        _ => None,
     };
-    let mut references = Vec::new();
-    condition.collect_references(&mut references);
-    let mut read = references.iter().filter(|reference| GROWING.contains(&reference.name));
-    let growing = read.find_map(|reference| {
-        let procedure = record.procedures.get(reference.procedure.0)?;
-        matches!(&procedure.history, History::Impact(history) if history.still_rising()).then_some(&procedure.name)
-    });
-    match growing {
-        Some(name) if !decided => ConditionOutcome {
-            verdict: Verdict::Inconclusive,
-            reason: outcome.reason.or_else(|| {
-                Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))
-            }),
-            ..outcome
-        },
-        _ => outcome,
+    if past_it == Some(outcome.verdict) {
+        return None;
     }
+    let growing = |(procedure, result): &&Read<'_>| {
+        GROWING.contains(result) && matches!(&procedure.history, History::Impact(history) if history.still_rising())
+    };
+    let (procedure, _) = read.iter().find(growing)?;
+    let name = &procedure.name;
+    Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))
 }
 
 /// What readings entered whose zero drifted farther than the rig allows decides nothing: they were not of what they seemed to be.
-fn drifted(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
-    let mut references = Vec::new();
-    condition.collect_references(&mut references);
-    let mut read = references.iter().filter_map(|reference| {
-        let procedure = record.procedures.get(reference.procedure.0)?;
-        Some((procedure.kind, reference.name))
-    });
-    let entered = read.find_map(|(kind, result)| beyond(record, |beyond| enters(beyond.of_force, kind, result)));
-    match entered {
-        Some(Beyond { reason, .. }) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(reason), ..outcome },
-        None => outcome,
-    }
+fn drifted(read: &[Read<'_>], record: &Record) -> Option<String> {
+    let reason = |(procedure, result): &Read<'_>| {
+        beyond(record, |beyond| enters(beyond.of_force, procedure.kind, result)).map(|beyond| beyond.reason)
+    };
+    read.iter().find_map(reason)
 }
 
 /// The first drift beyond what the rig allows that is `of_interest`.
