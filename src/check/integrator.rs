@@ -5,7 +5,7 @@ use super::checker::Checker;
 use super::faults::methods as fault;
 use super::impact::time_step_before_the_run;
 use crate::mechanics::method::longest_stable_step;
-use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen};
+use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen, Striker};
 
 /// The integrator a block names. Else the tangent form; in continuous mode, where the secant of two readings would take
 /// what a damper does for stiffness, explicit Newmark, as far as the contact law can do without the tangent.
@@ -43,8 +43,8 @@ pub fn meets_the_contact(checker: &mut Checker, block: usize, integrator: Integr
 
 /// The longest stable step against the plan's, as far as both are known before the run: of the stiffness the procedure
 /// starts from, and of what a virtual specimen is.
-pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Option<&Specimen>) {
-    let (Some(step), Some(mass)) = (time_step_before_the_run(impact), impact.mass.constant()) else { return };
+pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker, specimen: Option<&Specimen>) {
+    let (Some(step), Some(mass)) = (time_step_before_the_run(impact, striker), impact.mass.constant()) else { return };
     let virtual_rig = checker.real_rig.is_none();
     let specimen = specimen.filter(|_| virtual_rig).and_then(|specimen| specimen.behaviour.as_ref());
     let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);

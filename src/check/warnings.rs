@@ -9,16 +9,16 @@ use crate::source::{FileId, Span};
 use crate::uncertainty::Source;
 
 /// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
-pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Option<&Striker>) {
+pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker) {
     let head = checker.scope.blocks[block].block.head;
     let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
-    let Some(step) = time_step_before_the_run(impact) else { return };
-    if let Some(critical) = critical_before_the_run(impact)
+    let Some(step) = time_step_before_the_run(impact, striker) else { return };
+    if let Some(critical) = critical_before_the_run(impact, striker)
         && step > critical
     {
         checker.faults.push(fault::step_above_critical(at, step, critical));
     }
-    if let (Contact::Limit { force }, Some(mass), Some(striker)) = (&impact.contact, impact.mass.constant(), striker)
+    if let (Contact::Limit { force }, Some(mass)) = (&impact.contact, impact.mass.constant())
         && let Some(force) = force.constant()
     {
         limit_force(checker, at, step, (mass, force), striker);

@@ -1,5 +1,6 @@
 //! Pure numerics: integrator, contact, specimen models, identification, energy. SI throughout; no rig, no plan text.
 
+pub mod approach;
 pub mod backbone;
 pub mod beam;
 pub mod breaks;

@@ -11,8 +11,8 @@ use super::stepping::stable;
 use super::stop::Stop;
 use super::strike::Strike;
 use crate::formula::Estimate;
+use crate::mechanics::approach::Approach;
 use crate::mechanics::contact::ContactLaw;
-use crate::mechanics::critical_time_step;
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::method::longest_stable_step;
 use crate::mechanics::structure::Structure;
@@ -68,6 +68,10 @@ pub(super) fn blow(plan: &Impact, setting: &Setting, doubts: &Doubts<'_>, before
 #[derive(Clone, Copy)]
 pub(super) struct Setting {
     pub input: ImpactInput,
+    /// What the critical time step was found for: of several blows the fastest.
+    pub approach: Approach,
+    /// Its striker before it falls, m/s.
+    pub fastest: f64,
     /// s
     pub critical_time_step: f64,
     pub steps: u64,
@@ -88,7 +92,8 @@ impl Setting {
         let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));
         let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
         let law = law(&plan.contact, inputs)?;
-        let critical_time_step = critical_time_step(mass, stiffness);
+        let approach = Approach::of(striker, law.stiffness());
+        let critical_time_step = approach.critical_time_step(mass, stiffness);
         let stepping = &plan.stepping;
         let critical = Some(critical_time_step);
         let time_step = inputs.positive_estimate("time_step", &stepping.time_step, Dimension::TIME, critical)?.value;
@@ -116,13 +121,13 @@ impl Setting {
             resolution: noise.resolution,
         };
         let input = structure.struck_by(striker, stepping);
-        Ok(Self { input, critical_time_step, steps: step_count(duration, time_step), pause })
+        Ok(Self { input, approach, fastest: striker.velocity, critical_time_step, steps: step_count(duration, time_step), pause })
     }
 
     /// With more mass of the structure, kg.
     pub(super) fn heavier(&mut self, mass: f64) {
         self.input.mass += mass;
-        self.critical_time_step = critical_time_step(self.input.mass, self.input.stiffness);
+        self.critical_time_step = self.approach.critical_time_step(self.input.mass, self.input.stiffness);
     }
 }
 
