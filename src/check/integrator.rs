@@ -2,9 +2,9 @@
 //! integrator, or why it cannot be.
 
 use super::checker::Checker;
-use super::faults::methods as fault;
+use super::faults::{frames, methods as fault};
 use super::impact::time_step_before_the_run;
-use crate::mechanics::method::longest_stable_step;
+use crate::mechanics::stability::{Met, longest_stable_step};
 use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen, Striker};
 
 /// The integrator a block names. Else the tangent form; in continuous mode, where the secant of two readings would take
@@ -50,8 +50,8 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, striker: &St
     let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);
     let assumed = impact.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
-    let shortfall = assumed.map_or(0.0, |assumed| behaves - assumed);
-    let limit = longest_stable_step(impact.stepping.integrator, stiffest / mass, shortfall / mass);
+    let met = Met::one(mass, impact.damping.constant().unwrap_or(0.0), stiffest, assumed.unwrap_or(stiffest));
+    let limit = longest_stable_step(impact.stepping.integrator, &met);
     if let (Integrator::AlphaOs { .. }, Some(assumed)) = (impact.stepping.integrator, assumed)
         && behaves > assumed * (1.0 + 1e-9)
         && step <= limit
@@ -68,10 +68,14 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, striker: &St
         let at = checker.given(block, "stiffness").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
     }
-    if step <= limit || impact.stepping.allow_unstable {
+    if step <= limit {
         return;
     }
     let head = checker.scope.blocks[block].block.head;
     let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
-    checker.faults.push(fault::unstable(at, impact.stepping.integrator, step, limit));
+    checker.faults.push(if impact.stepping.allow_unstable {
+        frames::unstable_though(at, step, limit)
+    } else {
+        fault::unstable(at, impact.stepping.integrator, step, limit)
+    });
 }

@@ -8,7 +8,7 @@ use super::frame::BandFactor;
 use super::frame::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand, damping_matrix, modes, storey_stiffness,
 };
-use super::method::longest_stable_step;
+use super::stability::{Met, longest_stable_step};
 use crate::plan::{Frame, Integrator};
 
 /// A frame, ready to be integrated.
@@ -99,20 +99,21 @@ impl FrameProperties {
     /// bend, which may be stiffer than what the plan integrates with.
     #[must_use]
     pub fn longest_stable_step(&self, integrator: Integrator, virtual_specimen: Option<&Frame>) -> f64 {
-        let mut highest = self.highest(&self.matrices.stiffness);
-        let mut shortfall = 0.0;
+        let own = self.highest(&self.matrices.stiffness);
+        let mut met = Met { highest: own, shortfall: 0.0, share: 0.0, damping_ratio: 0.0 };
         if let Some(frame) = virtual_specimen.filter(|frame| !frame.storeys.is_empty()) {
             let behaves: Vec<f64> = frame.storeys.iter().map(|storey| storey.behaviour.largest_stiffness()).collect();
-            highest = highest.max(self.highest(&storey_stiffness(&behaves)));
-            if frame.storeys.iter().zip(&behaves).any(|(storey, behaves)| *behaves > storey.stiffness) {
+            met.highest = own.max(self.highest(&storey_stiffness(&behaves)));
+            let storeys = || frame.storeys.iter().zip(&behaves);
+            met.share = storeys().map(|(storey, behaves)| 1.0 - storey.stiffness / behaves).fold(0.0, f64::max);
+            if met.share > 0.0 {
                 // Storeys that are softer count as a trifle: the bound is then a little low, never high.
                 let trifle = |behaves: f64| 1e-12 * behaves;
-                let beyond = frame.storeys.iter().zip(&behaves);
-                let beyond: Vec<f64> = beyond.map(|(storey, b)| (b - storey.stiffness).max(trifle(*b))).collect();
-                shortfall = self.highest(&storey_stiffness(&beyond));
+                let beyond: Vec<f64> = storeys().map(|(storey, b)| (b - storey.stiffness).max(trifle(*b))).collect();
+                met.shortfall = self.highest(&storey_stiffness(&beyond));
             }
         }
-        longest_stable_step(integrator, highest, shortfall)
+        longest_stable_step(integrator, &met)
     }
 
     /// ω² of the highest mode with another stiffness, rad²/s².

@@ -34,6 +34,7 @@ pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
+pub mod stability;
 pub mod structure;
 pub mod summary;
 pub mod tangent;

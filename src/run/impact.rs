@@ -14,7 +14,7 @@ use crate::formula::Estimate;
 use crate::mechanics::approach::Approach;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::impact::ImpactInput;
-use crate::mechanics::method::longest_stable_step;
+use crate::mechanics::stability::{Met, longest_stable_step};
 use crate::mechanics::structure::Structure;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until, step_count, steps_in};
@@ -108,7 +108,7 @@ impl Setting {
             });
         }
         // What `check` could not know yet: the stability limit by the stiffness of an earlier procedure.
-        stable(stepping, time_step, longest_stable_step(stepping.integrator, stiffness / mass, 0.0))?;
+        stable(stepping, time_step, longest_stable_step(stepping.integrator, &Met::one(mass, damping, stiffness, stiffness)))?;
         let structure = Structure {
             mass,
             damping,
