@@ -35,6 +35,10 @@ pub enum Source {
         specimen: usize,
         storey: usize,
     },
+    /// The factor on the matrix of the masses of a frame, as a whole.
+    MassMatrix(usize),
+    /// The factor on the matrix of its stiffnesses, as a whole.
+    StiffnessMatrix(usize),
     /// The computed damping ratio of one mode of a frame, from 0; of Rayleigh damping the one ratio that it has.
     DampingRatio {
         procedure: ProcedureId,
@@ -57,6 +61,18 @@ pub enum Source {
     Drawn {
         procedure: ProcedureId,
         draw: u16,
+    },
+    /// One of the readings by which the place was found where a specimen rests after a blow of a procedure, from 0, or after
+    /// none.
+    RestReading {
+        procedure: ProcedureId,
+        blow: u16,
+        reading: u16,
+    },
+    /// What it still carries there beyond what readings can tell from none.
+    RestLoad {
+        procedure: ProcedureId,
+        blow: u16,
     },
     /// Times are told to a whole step.
     TimeStep {

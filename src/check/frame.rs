@@ -18,6 +18,9 @@ use crate::syntax::ast::ExprKind;
 /// Fields that make a specimen a frame.
 pub const FIELDS: [&str; 3] = ["storeys", "mass_matrix", "stiffness_matrix"];
 
+/// Uncertainties of the matrices, and what they are of.
+const MATRIX_UNCERTAINTIES: [&str; 2] = ["mass_matrix_uncertainty", "stiffness_matrix_uncertainty"];
+
 /// Fields of a specimen of one degree of freedom, which a frame has none of.
 const OF_ONE: [&str; 8] = ["mass", "mass_uncertainty", "length", "area", "density", "behaviour", "damping", "coulomb"];
 
@@ -46,7 +49,8 @@ fn said_once(checker: &mut Checker, block: usize) -> Option<()> {
     let storeys = checker.given(block, "storeys");
     let matrices = ["mass_matrix", "stiffness_matrix"].map(|field| checker.given(block, field));
     let first = storeys.or(matrices[0]).or(matrices[1])?.1;
-    let beside_storeys = matrices.into_iter().flatten().filter(|_| storeys.is_some());
+    let of_matrices = MATRIX_UNCERTAINTIES.map(|field| checker.given(block, field));
+    let beside_storeys = matrices.into_iter().chain(of_matrices).flatten().filter(|_| storeys.is_some());
     let of_one = OF_ONE.iter().filter_map(|field| checker.given(block, field));
     let other = beside_storeys.chain(of_one).map(|(_, entry)| &entry.key).next();
     if let Some(other) = other {
@@ -57,6 +61,16 @@ fn said_once(checker: &mut Checker, block: usize) -> Option<()> {
         (None, [None, Some((_, stiffness))]) => checker.fail(fault::matrix_alone(&stiffness.key, "mass_matrix")),
         _ => Some(()),
     }
+}
+
+/// Of one degree of freedom there are no matrices to be uncertain.
+pub fn no_matrix_uncertainties(checker: &mut Checker, block: usize) -> Option<()> {
+    for (field, matrix) in MATRIX_UNCERTAINTIES.into_iter().zip(["mass_matrix", "stiffness_matrix"]) {
+        if let Some((_, entry)) = checker.given(block, field) {
+            return checker.fail(fault::matrix_alone(&entry.key, matrix));
+        }
+    }
+    Some(())
 }
 
 fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
@@ -131,7 +145,10 @@ fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
         let fault = fault::matrices_of_two_sizes(&stiffness_file, stiffness.len(), mass.len(), written.value.span);
         return checker.fail(fault);
     }
-    Some(Frame { storeys: Vec::new(), mass, stiffness, files: Some([mass_file, stiffness_file]) })
+    let matrix_uncertainty = MATRIX_UNCERTAINTIES.map(|field| checker.constant(block, field));
+    let [Some(of_mass), Some(of_stiffness)] = matrix_uncertainty else { return None };
+    let files = Some([mass_file, stiffness_file]);
+    Some(Frame { storeys: Vec::new(), mass, stiffness, files, matrix_uncertainty: [of_mass, of_stiffness] })
 }
 
 fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String, Vec<Vec<f64>>)> {

@@ -46,6 +46,7 @@ mod propagation;
 mod propagation_tests;
 pub mod rehearsal;
 mod request;
+mod rest_doubts;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
@@ -313,7 +314,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
-        ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
+        ProcedureKind::Unload(unload) => unload::perform(unload, plan, inputs, session),
         ProcedureKind::FrameUnload(unload) => unload::perform_frame(unload, plan, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),
