@@ -47,6 +47,8 @@ mod propagation_tests;
 pub mod rehearsal;
 mod request;
 mod rest_doubts;
+#[cfg(test)]
+mod rest_doubts_tests;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
