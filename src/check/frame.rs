@@ -18,6 +18,12 @@ use crate::syntax::ast::ExprKind;
 /// Fields that make a specimen a frame.
 pub const FIELDS: [&str; 3] = ["storeys", "mass_matrix", "stiffness_matrix"];
 
+/// A stiffness is that of its behaviour to so much of it: the last digits of a sum or a quotient.
+const SAME: f64 = 1e-9;
+
+/// And may be off by so many of its standard uncertainties, where the plan states one.
+const WITHIN: f64 = 3.0;
+
 /// Uncertainties of the matrices, and what they are of.
 const MATRIX_UNCERTAINTIES: [&str; 2] = ["mass_matrix_uncertainty", "stiffness_matrix_uncertainty"];
 
@@ -120,8 +126,16 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
         (None, None, Some(behaviour)) => behaviour.initial_stiffness(),
         (None, None, None) => return checker.fail(fault::storey_without_stiffness(number, at)),
     };
-    let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
     let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
+    if let Some(initial) = behaviour.as_ref().map(Behaviour::initial_stiffness)
+        && (stiffness - initial).abs() > SAME * stiffness.max(initial) + WITHIN * stiffness_uncertainty
+    {
+        let said = ["stiffness", "column_stiffness"].into_iter().find_map(|field| Some((field, chosen.span(field)?)));
+        let (field, said) = said.unwrap_or(("stiffness", at));
+        let bends = chosen.span("behaviour").unwrap_or(at);
+        return checker.fail(fault::storey_bends_otherwise(number, (field, stiffness, said), (initial, bends)));
+    }
+    let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
     let stated = [
         ("mass_uncertainty", mass_uncertainty, mass, Dimension::MASS),
         ("stiffness_uncertainty", stiffness_uncertainty, stiffness, Dimension::STIFFNESS),
