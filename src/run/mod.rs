@@ -3,6 +3,8 @@
 mod attribution;
 mod axes;
 mod blow;
+#[cfg(test)]
+mod contacts_tests;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -35,6 +37,8 @@ mod impact;
 mod impact_tests;
 mod inputs;
 mod inspect;
+#[cfg(test)]
+mod matrix_doubts_tests;
 mod move_to;
 pub mod need;
 #[cfg(test)]
