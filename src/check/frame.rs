@@ -73,7 +73,7 @@ fn said_once(checker: &mut Checker, block: usize) -> Option<()> {
 pub fn no_matrix_uncertainties(checker: &mut Checker, block: usize) -> Option<()> {
     for (field, matrix) in MATRIX_UNCERTAINTIES.into_iter().zip(["mass_matrix", "stiffness_matrix"]) {
         if let Some((_, entry)) = checker.given(block, field) {
-            return checker.fail(fault::matrix_alone(&entry.key, matrix));
+            return checker.fail(fault::matrix_uncertainty_alone(&entry.key, matrix));
         }
     }
     Some(())

@@ -79,6 +79,12 @@ pub fn matrix_alone(given: &Ident, missing: &str) -> Diagnostic {
         .help(format!("add a line `{missing} = \"{}.csv\"`", &missing[..1]))
 }
 
+pub fn matrix_uncertainty_alone(given: &Ident, matrix: &str) -> Diagnostic {
+    Diagnostic::new(Code::SpecimenTwice, format!("`{}` stands without `{matrix}`", given.node))
+        .at(given.span, "uncertain of what?")
+        .help(format!("remove it: it is the uncertainty of a frame's `{matrix}`, read from a file"))
+}
+
 pub fn no_storeys(specimen: &str, span: Span, declared: Span) -> Diagnostic {
     Diagnostic::new(Code::NoStoreys, format!("specimen `{specimen}` has no storeys, and `shake` moves the ground under some"))
         .at(span, "shakes it")
