@@ -170,11 +170,18 @@ impl Formula {
         self.collect_references(&mut references);
         let mut sources = sources_of(&references, results);
         self.collect_stated(&mut sources);
+        if sources.is_empty() {
+            return Ok(Vec::new());
+        }
+        let value = self.number(results, critical)?;
         let effect = |source| {
             // Half the effect of moving the source by ±u: exact for a linear formula.
             let up = self.number(&Moved { results, source, by: 1.0 }, critical)?;
             let down = self.number(&Moved { results, source, by: -1.0 }, critical)?;
-            Ok(Contribution::new(source, 0.5 * (up - down)))
+            let (above, below) = (up - value, value - down);
+            // Both sides move it the same way: it folds there, as `abs` does about 0, and the halves would cancel.
+            let folds = above * below < 0.0;
+            Ok(Contribution::new(source, if folds { above.abs().max(below.abs()).copysign(above) } else { 0.5 * (up - down) }))
         };
         sources.into_iter().map(effect).collect()
     }
