@@ -399,6 +399,16 @@ mod tests {
         assert_eq!(of(Source::StrikerMass(0), 20.0, 0.0), Formula::Constant(20.0));
     }
 
+    /// |K − 99.9| with K = 100 ± 2: one way and the other it grows by nearly 2, and half of their difference is nearly nothing.
+    #[test]
+    fn what_folds_within_its_uncertainty_is_as_uncertain_as_what_is_folded() {
+        let off = |by: f64| {
+            let off = Formula::Binary(Operator::Subtract, Box::new(stiffness()), Box::new(Formula::Constant(by)));
+            Formula::Call(Function::Abs, vec![off]).evaluate(&One, None).unwrap().uncertainty.unwrap()
+        };
+        assert!((off(99.9) - 2.0).abs() < 1e-12 && (off(100.0) - 2.0).abs() < 1e-12 && (off(90.0) - 2.0).abs() < 1e-12);
+    }
+
     #[test]
     fn a_result_that_does_not_exist_is_an_error_and_so_is_a_division_by_zero() {
         assert_eq!(stiffness().evaluate(&NoResults, None), Err(FormulaError::Missing("stiffness")));

@@ -161,7 +161,9 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
         Source::MassMatrix(index) => of_matrix(plan, index, "mass_matrix", 0),
         Source::StiffnessMatrix(index) => of_matrix(plan, index, "stiffness_matrix", 1),
         Source::RestLoad { .. } => ("load that was left".to_owned(), From::Program, None, None, Dimension::FORCE),
-        Source::Readings { .. } | Source::RestReading { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
+        Source::Readings { .. } | Source::RestReading { .. } => {
+            ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::Drawn { .. } => {
             let name = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
             (name.to_owned(), From::Rig, None, None, Dimension::FORCE)

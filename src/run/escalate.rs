@@ -164,8 +164,9 @@ fn told(name: &'static str, dimension: Dimension, value: Option<f64>, contributi
 fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let blows = &history.blows;
     // Each as uncertain as that of its blow.
-    let known =
-        |name, dimension, of_blow: &str| list(name, dimension, of(blows, of_blow), by_blow(blows, |blow| contributions(blow, of_blow)));
+    let known = |name, dimension, of_blow: &str| {
+        list(name, dimension, of(blows, of_blow), by_blow(blows, |blow| contributions(blow, of_blow)))
+    };
     let unknown = |name, dimension, of_blow: &str| list(name, dimension, of(blows, of_blow), Vec::new());
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
     let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;

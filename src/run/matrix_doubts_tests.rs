@@ -59,7 +59,10 @@ fn a_matrix_moves_as_a_whole() {
             let found = 0.5 * (entry(&up, name, place).0 - entry(&down, name, place).0);
             let foretold = from(&parts, source);
             // The ends of steps are told of the reruns, what is between them here.
-            assert!((found - foretold).abs() < 2e-4 * value.abs(), "{name}[{place}] by {source:?}: {foretold}, of reruns {found}");
+            assert!(
+                (found - foretold).abs() < 2e-4 * value.abs(),
+                "{name}[{place}] by {source:?}: {foretold}, of reruns {found}"
+            );
             compared += usize::from(found.abs() > 2e-3 * value.abs());
         }
     }
@@ -107,10 +110,8 @@ fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
     // The striker's stated velocity is 1 m/s: each blow is as uncertain in proportion.
     let faster = |by: f64| run_unwatched(&row(&velocities.map(|velocity| velocity * (1.0 + by)), 10.0));
     let heavier = |by: f64| run_unwatched(&row(&velocities, 10.0 + by));
-    let moved = [
-        (Source::StrikerVelocity(0), [faster(0.01), faster(-0.01)]),
-        (Source::StrikerMass(0), [heavier(0.1), heavier(-0.1)]),
-    ];
+    let moved =
+        [(Source::StrikerVelocity(0), [faster(0.01), faster(-0.01)]), (Source::StrikerMass(0), [heavier(0.1), heavier(-0.1)])];
     let lists = [
         ("velocities", 3),
         ("blow_energies", 3),
@@ -131,7 +132,10 @@ fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
                 let foretold = from(&parts, *source);
                 let smooth = parts.iter().all(|part| part.smooth || part.amount.abs() < 1e-3 * value.abs());
                 let within = if smooth { 1e-3 } else { 1e-2 };
-                assert!((found - foretold).abs() < within * value.abs(), "{name}[{place}] by {source:?}: {foretold}, of reruns {found}");
+                assert!(
+                    (found - foretold).abs() < within * value.abs(),
+                    "{name}[{place}] by {source:?}: {foretold}, of reruns {found}"
+                );
                 compared += usize::from(found.abs() > 2e-3 * value.abs());
             }
         }

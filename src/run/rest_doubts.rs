@@ -52,8 +52,8 @@ impl<'run> RestDoubts<'run> {
         let exact = rest.of_displacement.iter().chain(&rest.of_force).all(Vec::is_empty);
         for (axis, (force_error, _)) in errors.iter().enumerate() {
             let zero = self.whole.rig.calibration_of(axis).zero();
-            self.moves(rest, &unloading, Source::ForceZero(axis), &alone(axis, zero, floors));
-            self.moves(rest, &unloading, self.reading(2 * floors + axis), &alone(axis, *force_error, floors));
+            moves(rest, &unloading, Source::ForceZero(axis), &alone(axis, zero, floors));
+            moves(rest, &unloading, self.reading(2 * floors + axis), &alone(axis, *force_error, floors));
         }
         let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));
         let told = NOISE * most(&mut errors.iter().map(|error| error.0));
@@ -61,7 +61,7 @@ impl<'run> RestDoubts<'run> {
         if !exact && most(&mut rest.force.iter().copied()) > told {
             let RestDoubts { procedure, blow, .. } = *self;
             let force = rest.force.clone();
-            self.moves(rest, &unloading, Source::RestLoad { procedure, blow }, &force);
+            moves(rest, &unloading, Source::RestLoad { procedure, blow }, &force);
         }
     }
 
@@ -102,12 +102,12 @@ impl<'run> RestDoubts<'run> {
         }
         (rest.of_displacement, rest.of_force) = (of_displacement, of_force);
     }
+}
 
-    /// Forces (N) that a source makes of the floors move the place where none is left.
-    fn moves(&self, rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) {
-        for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.way(force)) {
-            parts.extend((amount != 0.0).then(|| Contribution::new(source, amount)));
-        }
+/// Forces (N) that a source makes of the floors move the place where none is left.
+fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) {
+    for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.way(force)) {
+        parts.extend((amount != 0.0).then(|| Contribution::new(source, amount)));
     }
 }
 

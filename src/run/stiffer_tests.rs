@@ -94,9 +94,10 @@ fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
 /// 2/√200 s = 0.1414 s, turn at every step.
 #[test]
 fn a_response_that_turns_at_every_step_is_told() {
-    for (integrator, told_of) in
-        [(Integrator::Explicit, "stable up to 0.1155 s"), (Integrator::AlphaOs { alpha: 0.0 }, "stable up to 0.1414 s only, which it is beyond")]
-    {
+    for (integrator, told_of) in [
+        (Integrator::Explicit, "stable up to 0.1155 s"),
+        (Integrator::AlphaOs { alpha: 0.0 }, "stable up to 0.1414 s only, which it is beyond"),
+    ] {
         let of = |stated: f64| {
             let blow = impact(Constant(stated));
             let stepping = Stepping { integrator, time_step: Constant(0.15), ..blow.stepping };

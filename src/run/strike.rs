@@ -47,8 +47,7 @@ impl Strike {
         let start = session.commanded();
         let (measured, restoring_force) = session.read()?;
         let mut solver = ImpactSolver::new(&input, start, restoring_force);
-        let mut monitor =
-            Monitor::new_as(start, measured, restoring_force, solver.taken_at(start, measured, restoring_force));
+        let mut monitor = Monitor::new_as(start, measured, restoring_force, solver.taken_at(start, measured, restoring_force));
         let first = ImpactState { measured_displacement: measured, ..*solver.state() };
         self.take(&first, monitor.tracking(), session);
         let mut stiffer = self.stiffer(&plan.stepping, (measured, restoring_force), session);

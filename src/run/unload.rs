@@ -30,7 +30,7 @@ const ROUNDING: f64 = 8.0;
 pub(super) fn perform(plan: &Unload, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut steps = Vec::new();
     let outcome = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS).and_then(|stiffness| {
-        asked((plan.within.as_ref(), plan.speed.as_ref()), Unloading::of_one(stiffness), whole, inputs, session, &mut steps)
+        asked((plan.within.as_ref(), plan.speed.as_ref()), &Unloading::of_one(stiffness), whole, inputs, session, &mut steps)
     });
     let results = of_farthest(outcome.as_ref().ok());
     // The start is no move.
@@ -58,8 +58,8 @@ pub(super) fn perform_frame(plan: &FrameUnload, whole: &Plan, inputs: &mut Input
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
     let known = frame.map_or_else(|| Err(no_frame()), of_frame);
-    let outcome =
-        known.and_then(|unloading| asked((plan.within.as_ref(), plan.speed.as_ref()), unloading, whole, inputs, session, &mut steps));
+    let outcome = known
+        .and_then(|unloading| asked((plan.within.as_ref(), plan.speed.as_ref()), &unloading, whole, inputs, session, &mut steps));
     let results = frame_results(outcome.as_ref().ok());
     Performed { history: History::FrameUnload(steps), results, stop: outcome.err() }
 }
@@ -115,7 +115,7 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
 /// Takes the load off as a block asks for it.
 fn asked(
     (within, speed): (Option<&Formula>, Option<&Formula>),
-    unloading: Unloading,
+    unloading: &Unloading,
     whole: &Plan,
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
@@ -124,7 +124,7 @@ fn asked(
     let within = within.map(|within| inputs.positive("within", within, Dimension::FORCE)).transpose()?;
     let speed = inputs.speed(speed)?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
-    RestDoubts::new(whole, inputs, session).unloaded(&mut rest, &unloading, steps);
+    RestDoubts::new(whole, inputs, session).unloaded(&mut rest, unloading, steps);
     Ok(rest)
 }
 

@@ -98,7 +98,11 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ResultKind::measured_list("velocities", Dimension::VELOCITY, "velocity of the striker in each blow"),
         ResultKind::measured_list("blow_energies", Dimension::ENERGY, "energy of the striker in each blow"),
         ResultKind::measured_list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
-        ResultKind::measured_list("residual_displacements", Dimension::LENGTH, "where the specimen was brought to after each blow"),
+        ResultKind::measured_list(
+            "residual_displacements",
+            Dimension::LENGTH,
+            "where the specimen was brought to after each blow",
+        ),
         ResultKind::measured_list(
             "absorbed_energies",
             Dimension::ENERGY,
@@ -106,11 +110,20 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ),
         ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each blow"),
         ResultKind::list("energy_errors", Dimension::NUMBER, "what the energy balance of each blow misses, over its input"),
-        ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift over all blows").of_storey(),
-        ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift where it was brought to after the last blow")
+        ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift over all blows")
             .of_storey(),
-        ResultKind::measured_list("storey_energy", Dimension::ENERGY, "what each storey took in all blows, its shear over its drift")
-            .of_storey(),
+        ResultKind::measured_list(
+            "residual_drift",
+            Dimension::LENGTH,
+            "each storey's drift where it was brought to after the last blow",
+        )
+        .of_storey(),
+        ResultKind::measured_list(
+            "storey_energy",
+            Dimension::ENERGY,
+            "what each storey took in all blows, its shear over its drift",
+        )
+        .of_storey(),
     ],
     example: "escalate rising {\n  striker  = pendulum\n  speeds   = [0.5, 1, 1.5] m/s\n  while    = max_displacement < 20 mm\n  duration = 50 ms\n}",
     doc: "Blows of rising energy on one specimen, or on one storey of a frame, until a condition on the last blow no longer holds or the list ends",

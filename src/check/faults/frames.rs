@@ -50,7 +50,11 @@ pub fn storey_stiffness_twice(number: usize, span: Span) -> Diagnostic {
 }
 
 /// A stiffness (N/m, by the name of its field) beside a behaviour that begins with another (N/m).
-pub fn storey_bends_otherwise(number: usize, (field, stated, said): (&str, f64, Span), (initial, bends): (f64, Span)) -> Diagnostic {
+pub fn storey_bends_otherwise(
+    number: usize,
+    (field, stated, said): (&str, f64, Span),
+    (initial, bends): (f64, Span),
+) -> Diagnostic {
     let (stated, initial) = (shown(stated, Dimension::STIFFNESS), shown(initial, Dimension::STIFFNESS));
     Diagnostic::new(Code::StoreyBendsOtherwise, format!("storey {number} is said to have {stated}, and its behaviour begins with {initial}"))
         .at(said, format!("the run integrates with {stated}"))

@@ -92,12 +92,7 @@ impl Unloading {
     }
 
     /// The same, where `sure` of a storey, from 0, the stiffness that is expected of it (N/m) and its change of drift (m).
-    pub fn learn_where(
-        &mut self,
-        from: Loaded<'_>,
-        to: Loaded<'_>,
-        sure: &dyn Fn(usize, f64, f64) -> bool,
-    ) -> Vec<Option<f64>> {
+    pub fn learn_where(&mut self, from: Loaded<'_>, to: Loaded<'_>, sure: &dyn Fn(usize, f64, f64) -> bool) -> Vec<Option<f64>> {
         let nothing = vec![0.0; from.force.len()];
         let (mut moved, mut changed) = (nothing.clone(), nothing.clone());
         let less = |to: &[f64], from: &[f64]| -> Vec<f64> { to.iter().zip(from).map(|(to, from)| to - from).collect() };

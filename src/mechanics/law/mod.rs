@@ -4,8 +4,8 @@ mod hertz;
 mod impulse;
 mod restitution;
 
-pub use hertz::HertzContact;
 pub(crate) use hertz::Closing;
+pub use hertz::HertzContact;
 pub use impulse::ImpulseContact;
 pub use restitution::RestitutionContact;
 pub(crate) use restitution::{MOST_BOUNCES, SHORTEST_FLIGHT, locate};
