@@ -34,6 +34,7 @@ pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod structure;
+pub mod student;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]

@@ -12,6 +12,8 @@ mod cycle_doubts;
 #[cfg(test)]
 mod cycle_tests;
 mod damping_sweep;
+#[cfg(test)]
+mod degrees_tests;
 pub mod driven;
 mod escalate;
 #[cfg(test)]
