@@ -6,7 +6,7 @@ use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
 use crate::record::{Beyond, History, Outcome, ProcedureRecord, Record};
 use crate::rig::failpoint::{self, Guarding};
-use crate::uncertainty::{Known, known};
+use crate::uncertainty::{FEW, Known, known};
 
 /// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -202,7 +202,7 @@ pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record
         None => Verdict::Inconclusive,
     };
     let missing = value.as_ref().err().or(bound.as_ref().err()).map(ToString::to_string);
-    let too_near = || (verdict == Verdict::Inconclusive).then(|| "the limit is nearer than the guard band w = U".to_owned());
+    let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_known));
     ConditionOutcome {
         text: condition.text.clone(),
         verdict,
@@ -216,6 +216,13 @@ pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record
         margin_degrees: margin_known.map_or(f64::INFINITY, |known| known.degrees),
         reason: missing.or_else(too_near),
     }
+}
+
+/// Why a limit within the guard band decides nothing, and why the band is wide where few readings made it so.
+fn near(margin: Option<Known>) -> String {
+    let few = margin.filter(|known| known.degrees < f64::from(FEW));
+    let why = few.map(|known| format!(" = {:.2} u, of {:.1} degrees of freedom", known.coverage(), known.degrees));
+    "the limit is nearer than the guard band w = U".to_owned() + &why.unwrap_or_default()
 }
 
 /// How well a formula is known, with its degrees of freedom.

@@ -78,8 +78,8 @@ fn a_guard_band_has_the_degrees_of_freedom_of_its_ramp() {
     assert!((condition.margin_known().unwrap().standard / known.standard - 1.0).abs() < 1e-12);
     let verdict = |errors: f64| of_limit(value - errors * known.standard).2.verdict;
     let found = [3.0, 13.9, 14.0, -3.0, -14.0].map(verdict);
-    use Verdict::{Fail, Inconclusive, Pass};
-    assert_eq!(found, [Inconclusive, Inconclusive, Pass, Inconclusive, Fail]);
+    let undecided = Verdict::Inconclusive;
+    assert_eq!(found, [undecided, undecided, Verdict::Pass, undecided, Verdict::Fail]);
 }
 
 /// Twice as far, ten times as heavy: what is reckoned from K has its degrees of freedom, and what is reckoned from two ramps

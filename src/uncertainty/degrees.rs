@@ -10,7 +10,7 @@ use crate::mechanics::student;
 pub const MOST_DRAWS: u16 = 64;
 
 /// Fewer effective degrees of freedom than this are worth a word: U is then more than 3.3 times u.
-pub const FEW: f64 = 3.0;
+pub const FEW: u8 = 3;
 
 /// How well a number is known.
 #[derive(Clone, Copy, Debug, PartialEq)]

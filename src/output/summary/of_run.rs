@@ -165,16 +165,19 @@ fn result(run: &Run<'_>, index: usize, kind: &str, result: &NamedResult) -> Quan
     }
 }
 
+/// Something of how well a number is known.
+type Read = fn(Known) -> f64;
+
 /// The same with what its uncertainty is worth.
 fn expanded(quantity: Quantity, run: &Run<'_>, index: usize, result: &NamedResult) -> Quantity {
     let reference = ResultReference { procedure: ProcedureId(index), name: result.name, part: Part::Value };
     let parts = result.contributions_of(reference);
-    let told = |all: &[Option<Known>], of: fn(Known) -> f64| {
+    let told = |all: &[Option<Known>], of: Read| {
         let each = all.iter().map(|known| known.filter(|known| expansion::degrees(*known).is_some()).map(of));
         let each: Vec<Option<f64>> = each.collect();
         each.iter().any(Option::is_some).then_some(each)
     };
-    let (degrees, k): (fn(Known) -> f64, fn(Known) -> f64) = (|known| known.degrees, Known::coverage);
+    let (degrees, k): (Read, Read) = (|known| known.degrees, Known::coverage);
     let (degrees_of_freedom, k) = match &result.value {
         ResultValue::Number { .. } => {
             let one = [known(&parts, run.record)];
