@@ -61,6 +61,13 @@ pub enum Source {
         procedure: ProcedureId,
         draw: u16,
     },
+    /// What the rounding of a procedure's readings leaves open of a fitted result, or of an entry of a list, beyond what its scatter
+    /// shows.
+    Rounding {
+        procedure: ProcedureId,
+        result: &'static str,
+        entry: usize,
+    },
     /// Times are told to a whole step.
     TimeStep {
         procedure: ProcedureId,

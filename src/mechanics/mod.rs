@@ -29,6 +29,7 @@ pub mod relaxation;
 #[cfg(test)]
 mod relaxation_tests;
 pub mod rerun;
+pub mod rounding;
 pub mod scheme;
 pub mod self_test;
 pub mod specimen;

@@ -181,6 +181,10 @@ pub struct SweepHistory {
     /// What the fit is of: velocity (m/s), and half the difference of `F_d` (N) between the way out and the way back at
     /// one place.
     pub pairs: Vec<(f64, f64)>,
+    /// Of each pair, the place (m) and the mean of its two forces (N).
+    pub middles: Vec<[f64; 2]>,
+    /// K that the damping forces were told with, N/m.
+    pub stiffness: Option<f64>,
     /// F_d = intercept·sign v + slope·v: intercept is the Coulomb force.
     pub fit: Option<LineFit>,
 }

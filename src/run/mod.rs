@@ -49,6 +49,9 @@ mod propagation_tests;
 pub mod rehearsal;
 mod request;
 mod results;
+mod rounding_doubts;
+#[cfg(test)]
+mod rounding_doubts_tests;
 #[cfg(test)]
 mod rig_fault_tests;
 mod samples;
@@ -264,7 +267,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
-        attribution::attribute(&procedure.kind, &history, plan, &inputs, &mut results);
+        attribution::attribute(&procedure.kind, &history, plan, (&inputs, session.guard.declared_noise()), &mut results);
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),

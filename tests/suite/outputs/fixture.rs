@@ -83,6 +83,8 @@ pub fn finished() -> Finished {
         ],
         history: History::Sweep(SweepHistory {
             pairs: sweep_pairs(&sweep_steps()),
+            middles: Vec::new(),
+            stiffness: Some(327.72),
             steps: sweep_steps(),
             fit: Some(line(4.02, 0.08, 0.31, 0.02)),
         }),
