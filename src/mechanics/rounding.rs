@@ -144,12 +144,11 @@ mod tests {
             (12, 3.0, 0.0, 1),
             (12, 0.7, 0.1, 1),
             (12, 5.4, 0.3, 4),
-            (40, 127.3, 0.0, 1),
+            (40, 121.7, 0.0, 1),
             (40, 2.2, 0.05, 9),
         ] {
             let x = even(count);
-            let rounded =
-                Rounded { places: x.iter().map(|x| rise * x).collect(), open: Vec::new(), noise, samples };
+            let rounded = Rounded { places: x.iter().map(|x| rise * x).collect(), open: Vec::new(), noise, samples };
             let [weights, _] = line_weights(&x);
             let noisy = noise * noise / f64::from(samples) * weights.iter().map(|weight| weight * weight).sum::<f64>();
             let foretold = (rounded.variance(&weights) + noisy).sqrt();
@@ -165,7 +164,8 @@ mod tests {
     fn in_step_with_the_grid_all_are_off_alike_and_anyhow_each_by_itself() {
         let x = even(10);
         let [slope, intercept] = line_weights(&x);
-        let of = |rise: f64, noise: f64| Rounded { places: x.iter().map(|x| rise * x).collect(), open: Vec::new(), noise, samples: 1 };
+        let of =
+            |rise: f64, noise: f64| Rounded { places: x.iter().map(|x| rise * x).collect(), open: Vec::new(), noise, samples: 1 };
         let alone: f64 = slope.iter().map(|weight| weight * weight).sum::<f64>() / 12.0;
         // But for the harmonics that are not summed.
         assert!(of(20.0, 0.0).variance(&slope) < 0.075 * alone);

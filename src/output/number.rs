@@ -85,10 +85,9 @@ pub(super) fn parts(value: f64, known: Option<Known>, dimension: Dimension) -> P
             minus(&format!("{scaled:.decimals$}")),
             [uncertainty, expanded].map(|uncertainty| format!("{uncertainty:.decimals$}")),
         ),
-        None => (
-            digits(value, factor, dimension),
-            [uncertainty, expanded].map(|uncertainty| minus(&significant(uncertainty, 2))),
-        ),
+        None => {
+            (digits(value, factor, dimension), [uncertainty, expanded].map(|uncertainty| minus(&significant(uncertainty, 2))))
+        }
     };
     Parts { value, standard: Some(standard), expanded: Some(expanded), unit: set }
 }

@@ -9,8 +9,8 @@ use crate::mechanics::backbone::SHARED;
 use crate::mechanics::multilinear_fit::{CurveShares, MultilinearFit};
 use crate::plan::{Calibration, Plan, ProcedureKind};
 use crate::quantity::Dimension;
-use crate::rig::DeclaredNoise;
 use crate::record::{BilinearFit, History, NamedResult};
+use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Source, combined, share};
 
 /// Results of a fit that lie on one line, slope first.

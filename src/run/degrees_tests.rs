@@ -92,7 +92,8 @@ fn what_follows_from_a_fit_has_its_degrees_of_freedom() {
         plan
     };
     let record = run_unwatched(&second(plan(6, 1)));
-    let of = |procedure| Formula::Result(ResultReference { procedure: ProcedureId(procedure), name: "stiffness", part: Part::Value });
+    let of =
+        |procedure| Formula::Result(ResultReference { procedure: ProcedureId(procedure), name: "stiffness", part: Part::Value });
     let degrees = |formula: &Formula| known(&formula.contributions(&record, None).unwrap(), &record).unwrap().degrees;
     let root = Formula::Call(crate::formula::Function::Sqrt, vec![of(0)]);
     assert!((degrees(&root) - 4.0).abs() < 1e-6);

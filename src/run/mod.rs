@@ -49,11 +49,11 @@ mod propagation_tests;
 pub mod rehearsal;
 mod request;
 mod results;
+#[cfg(test)]
+mod rig_fault_tests;
 mod rounding_doubts;
 #[cfg(test)]
 mod rounding_doubts_tests;
-#[cfg(test)]
-mod rig_fault_tests;
 mod samples;
 #[cfg(test)]
 mod sequence_tests;

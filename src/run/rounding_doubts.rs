@@ -147,9 +147,10 @@ impl Doubts {
         // A displacement that is off by e puts its force off the curve by the slope there times e.
         let slopes: Vec<f64> = read.iter().map(|x| curve.slope(*x)).collect();
         for (name, entry, effect, own) in curve.numbers() {
-            let of_force: Vec<f64> = (0..read.len()).map(|reading| curve.weight(&effect, &weights, reading)).collect();
+            let of_force: Vec<f64> = (0..read.len()).map(|reading| weight(&effect, &weights, reading)).collect();
             let of_displacement: Vec<f64> = of_force.iter().zip(&slopes).map(|(weight, slope)| weight * slope).collect();
-            let variance = newtons * newtons * force.variance(&of_force) + metres * metres * displacement.variance(&of_displacement);
+            let variance =
+                newtons * newtons * force.variance(&of_force) + metres * metres * displacement.variance(&of_displacement);
             self.add(results, name, entry, &[(name, (variance - own * own).max(0.0).sqrt())]);
         }
     }
@@ -161,7 +162,7 @@ impl Doubts {
             return;
         }
         let procedure = self.procedure;
-        let told = parts.iter().filter(|(_, amount)| *amount > 0.0 || *amount < 0.0);
+        let told = parts.iter().filter(|(_, amount)| *amount != 0.0);
         result.contributions.extend(told.map(|(of, amount)| Contribution {
             entry,
             ..Contribution::new(Source::Rounding { procedure, result: of, entry }, *amount)
@@ -191,7 +192,9 @@ fn smooth(sweep: &SweepHistory) -> Vec<[f64; 2]> {
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_SAMPLES")]
         let order: Vec<f64> = (0..middles.len()).map(|place| place as f64).collect();
         let lines = [0, 1].map(|part: usize| fit_line(&order, &middles.iter().map(|middle| middle[part]).collect::<Vec<f64>>()));
-        let on = |place: usize, part: usize| lines[part].map_or(middles[place][part], |line| line.intercept + line.slope * order[place]);
+        let on = |place: usize, part: usize| {
+            lines[part].map_or(middles[place][part], |line| line.intercept + line.slope * order[place])
+        };
         smoothed.extend((0..middles.len()).map(|place| [on(place, 0), on(place, 1)]));
     }
     smoothed
@@ -293,9 +296,9 @@ impl Curve {
         let solved = (scaled.transpose() * &scaled).cholesky()?.solve(&scaled.transpose());
         Some(DMatrix::from_fn(solved.nrows(), solved.ncols(), |number, reading| solved[(number, reading)] / sizes[number]))
     }
+}
 
-    /// What one reading does to a number with these effects.
-    fn weight(&self, effect: &[f64], weights: &DMatrix<f64>, reading: usize) -> f64 {
-        effect.iter().enumerate().map(|(number, by)| by * weights[(number, reading)]).sum()
-    }
+/// What one reading does to a number with these effects.
+fn weight(effect: &[f64], weights: &DMatrix<f64>, reading: usize) -> f64 {
+    effect.iter().enumerate().map(|(number, by)| by * weights[(number, reading)]).sum()
 }

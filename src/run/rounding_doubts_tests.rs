@@ -112,7 +112,8 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     assert!(told(&ideal, 0, "stiffness").1.standard < 1e-6);
     // And noise that is larger than the quantum is told as the scatter that it is.
     let noisy = |force_resolution| VirtualLink { noise: 30.0, seed: 3, force_resolution, ..VirtualLink::default() };
-    let [fine, none] = [1.0, 0.0].map(|quantum| told(&run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, noisy(quantum))), 0, "stiffness"));
+    let [fine, none] =
+        [1.0, 0.0].map(|quantum| told(&run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, noisy(quantum))), 0, "stiffness"));
     assert!((fine.1.standard / none.1.standard - 1.0).abs() < 0.02 && (fine.1.degrees - 8.0).abs() < 1e-6, "{fine:?} {none:?}");
 }
 

@@ -2,8 +2,8 @@
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::Interval;
 use crate::mechanics::student::coverage;
+use crate::plan::Interval;
 use crate::quantity::display::significant;
 use crate::quantity::{Dimension, display};
 use crate::schema::{Field, Range};

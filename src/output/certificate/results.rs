@@ -7,8 +7,8 @@ use super::{blows, budget, contact_log, curve, cycles, frames, method, storey, w
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{Contact, Impact, ProcedureKind, RelaxationModel};
 use crate::quantity::Dimension;
-use crate::uncertainty::{Known, known};
 use crate::record::{History, Hold, ImpactHistory, LineFit, NamedResult, ProcedureRecord, RelaxationFit};
+use crate::uncertainty::{Known, known};
 
 /// Every procedure that was run, in order.
 pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
