@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn a_file_in_pieces_has_the_digest_of_the_whole_wherever_it_goes() {
-        let pieces = |out: &mut dyn Write| (0..3).try_for_each(|piece| write!(out, "piece {piece}\n"));
+        let pieces = |out: &mut dyn Write| (0..3).try_for_each(|piece| writeln!(out, "piece {piece}"));
         let mut kept: Vec<OutputFile> = Vec::new();
         let listed = put_written(&mut kept, "tables/a.csv", pieces).unwrap();
         assert_eq!(listed, ("tables/a.csv".to_owned(), sha256(b"piece 0\npiece 1\npiece 2\n")));

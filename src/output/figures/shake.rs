@@ -146,7 +146,9 @@ fn each<S: Floors>(steps: &[S], read: impl Fn(&S) -> Vec<(f64, f64)>) -> Vec<(us
         shown(floors(steps)).into_iter().map(|floor| (floor, Gathering::default())).collect();
     for step in steps {
         let points = read(step);
-        curves.iter_mut().for_each(|(floor, curve)| curve.push(points[*floor]));
+        for (floor, curve) in &mut curves {
+            curve.push(points[*floor]);
+        }
     }
     curves.into_iter().map(|(floor, curve)| (floor, curve.points())).collect()
 }
