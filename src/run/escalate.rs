@@ -131,6 +131,10 @@ impl Results for OfBlow<'_> {
         }
         self.before.contributions(reference)
     }
+
+    fn degrees(&self, source: Source) -> f64 {
+        self.before.degrees(source)
+    }
 }
 
 /// The largest of a result of length over all blows, as uncertain as that of its blow.
