@@ -30,12 +30,14 @@ pub mod relaxation;
 #[cfg(test)]
 mod relaxation_tests;
 pub mod rerun;
+pub mod rounding;
 pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod stability;
 pub mod structure;
+pub mod student;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]
