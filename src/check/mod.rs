@@ -210,7 +210,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(limits) = &limits {
             specimen::warn_of_short_tables(checker, &specimens, limits);
         }
-        warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
+        warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), &grounds, head);
     }
     let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();
     settings.extend(options.settings.iter().cloned());

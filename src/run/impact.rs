@@ -13,6 +13,7 @@ use super::strike::Strike;
 use crate::formula::Estimate;
 use crate::mechanics::approach::Approach;
 use crate::mechanics::contact::ContactLaw;
+use crate::mechanics::energy::UNBALANCED;
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::stability::{Met, longest_stable_step};
 use crate::mechanics::structure::Structure;
@@ -166,8 +167,14 @@ const SECONDS_PER_METRE: Dimension = Dimension {
     time: crate::quantity::Exponent::whole(1),
 };
 
-/// Share of the input energy that the scheme may make or lose before a reader is told: an unstable run is off by far more.
-const UNBALANCED: f64 = 0.1;
+/// Says that the scheme made or lost more of the energy than a reader may take for the specimen's.
+pub(super) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
+    if energy_error.is_nan() || energy_error.abs() > UNBALANCED {
+        let off = significant(100.0 * energy_error, 3);
+        let text = format!("the energy balance is off by {off} % of the energy put in: a shorter time step is needed");
+        session.event(EventKind::Remark, text);
+    }
+}
 
 /// What a reader of the results must know of how the run ended.
 pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
@@ -178,11 +185,7 @@ pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Sessio
         let text = "the structure was still moving on at the end: its largest displacement is not a peak";
         session.event(EventKind::Remark, text.to_owned());
     }
-    if summary.energy_error.abs() > UNBALANCED {
-        let off = significant(100.0 * summary.energy_error, 3);
-        let text = format!("the energy balance is off by {off} % of the energy put in: a shorter time step is needed");
-        session.event(EventKind::Remark, text);
-    }
+    unbalanced(summary.energy_error, session);
     if summary.last_blow_cut {
         let text = "the striker stopped with a contact force in its last step: the last blow is cut";
         session.event(EventKind::Remark, text.to_owned());

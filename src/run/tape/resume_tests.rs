@@ -58,6 +58,7 @@ fn shaken(mode: Mode) -> Plan {
     plan.grounds = vec![Ground {
         name: "quake".to_owned(),
         file: "quake.csv".to_owned(),
+        unit: 1.0,
         scale: 1.0,
         scale_uncertainty: 0.0,
         times: vec![0.0, 0.02, 0.04, 0.06],

@@ -2,8 +2,9 @@
 
 use psd::mechanics::contact::ContactLaw;
 use psd::mechanics::impact::{ImpactInput, ImpactSolver};
+use psd::mechanics::specimen::{RestoringForce, SpecimenModel};
 use psd::mechanics::stability::{Met, longest_stable_step};
-use psd::plan::Integrator;
+use psd::plan::{Behaviour, Integrator};
 
 use super::support::{impact, run};
 
@@ -181,4 +182,40 @@ fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
         let (inside, beyond) = (growth(0.97 * limit), growth(1.03 * limit));
         assert!(inside < trifle && beyond > trifle, "α {alpha}, {share}, ζ {ratio}: {limit} s, {inside} {beyond} {trifle}");
     }
+}
+
+/// What the tangent form makes of a specimen that yields. It foretells the force by the slope of the step before; where the slope changes
+/// it errs by δ = (K − `K_t`)ΔX for that step, and the balance by −½ΔX(δ + δ₀), δ₀ that of the step before, which is all that it errs by. So
+/// no step is stable by itself: at a tenth of the default step a yielding vibration loses next to nothing, at a fifth of the period
+/// (`critical` twice over) the balance is worth nothing.
+#[test]
+fn the_tangent_form_errs_by_what_its_slope_is_late() {
+    let (mass, stiffness): (f64, f64) = (1.0, 400.0);
+    let behaviour = Behaviour::Bilinear { stiffness, yield_force: 20.0, hardening: 0.05 };
+    let off = |time_step: f64| {
+        let input = ImpactInput { max_tangent_ratio: 10.0, ..vibration(Integrator::Tangent, mass, 0.0, stiffness, time_step) };
+        let mut specimen = SpecimenModel::new(&behaviour);
+        let (mut place, mut force) = (0.15, specimen.restoring_force(0.15));
+        let mut solver = ImpactSolver::new(&input, place, force);
+        let began = force * force / (2.0 * stiffness);
+        let (mut slope, mut late, mut reckoned, mut largest) = (stiffness, 0.0, 0.0, 0.0_f64);
+        for _ in 0..(30.0 / time_step) as u32 {
+            let target = solver.predict();
+            let read = specimen.restoring_force(target);
+            solver.complete(target, read);
+            let moved = target - place;
+            let erred = read - force - slope * moved;
+            reckoned -= 0.5 * moved * (erred + late);
+            slope = ((read - force) / moved).clamp(0.0, 10.0 * stiffness);
+            (place, force, late) = (target, read, erred);
+            let error = solver.state().energies.error;
+            assert!((error - reckoned).abs() < 1e-9 * (1.0 + reckoned.abs()), "{error} {reckoned}");
+            largest = largest.max(error.abs() / began);
+        }
+        largest
+    };
+    let critical = 0.2 * std::f64::consts::PI * (mass / stiffness).sqrt();
+    let (tenth, default, coarse) = (off(critical / 200.0), off(critical / 20.0), off(2.0 * critical));
+    assert!(tenth < 0.01 && tenth < 0.2 * default && default < 0.05, "{tenth} {default}");
+    assert!(coarse > 1.0, "{coarse}");
 }
