@@ -79,9 +79,19 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Str
         checker.faults.push(values::too_many("steps", steps, MOST_STEPS, at, help));
         return;
     }
+    returns(checker, block, impact.until, striker);
     warnings::impact(checker, block, impact, striker);
     mode::damping_twice(checker, block, impact, specimen);
     integrator::stable(checker, block, impact, striker, specimen);
+}
+
+/// A run that waits for a striker to have left for good, which one that falls never has.
+pub fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker) {
+    if let (Until::Rebound, true, Some((_, entry))) = (until, striker.gravity > 0.0, checker.given(block, "until")) {
+        let message = "a striker that falls always comes back: `rebound` never ends this run".to_owned();
+        let help = "write `until = striker_stop` or `until = duration`, or leave `gravity` out";
+        checker.faults.push(values::no_effect(message, entry.value.span, "goes on to its `duration`", help));
+    }
 }
 
 /// Δtc of a blow of this striker, where all that it needs is known before the run.

@@ -88,6 +88,7 @@ fn storey(checker: &mut Checker, block: usize, specimen: usize, frame: Option<&R
 /// limit force needs.
 pub fn judge(checker: &mut Checker, block: usize, impact: &StoreyImpact, frame: &Frame, striker: &Striker) {
     let StoreyImpact { specimen, damping, stepping, .. } = impact;
+    impact::returns(checker, block, impact.until, striker);
     let steps = FrameSteps { specimen: *specimen, frame, damping, stepping, duration: impact.duration.constant() };
     let critical = |properties: &FrameProperties| {
         let approach = impact.contact.approach(striker, Formula::constant);

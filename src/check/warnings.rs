@@ -6,8 +6,8 @@ use super::impact::{critical_before_the_run, time_step_before_the_run};
 use crate::formula::Formula;
 use crate::mechanics::frame::Damping;
 use crate::plan::{
-    Between, BlowOn, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake, StoreyImpact, Striker,
-    Until,
+    Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake, StoreyImpact,
+    Striker, Until,
 };
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
@@ -174,20 +174,40 @@ const FITTED: [&str; 6] =
     ["stiffness", "intercept_force", "yield_force", "yield_displacement", "hardened_stiffness", "hardening"];
 
 fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
-    for (index, requirement) in requirements.iter().enumerate() {
+    let rigid = |procedure: &Procedure| match &procedure.kind {
+        ProcedureKind::Impact(Impact { contact, .. })
+        | ProcedureKind::StoreyImpact(StoreyImpact { contact, .. })
+        | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(Impact { contact, .. }), .. })
+        | ProcedureKind::Escalate(Escalate { blow: BlowOn::Storey(StoreyImpact { contact, .. }), .. }) => {
+            matches!(contact, Contact::Rigid)
+        }
+        _ => false,
+    };
+    let read = |checker: &mut Checker, conditions: &[Condition], span: Span| {
         let mut references = Vec::new();
-        for condition in &requirement.conditions {
+        for condition in conditions {
             condition.collect_references(&mut references);
         }
-        for reference in references.iter().filter(|reference| reference.name == "max_contact_force") {
+        for reference in
+            references.iter().filter(|reference| matches!(reference.name, "max_contact_force" | "max_contact_forces"))
+        {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
-                && let ProcedureKind::Impact(Impact { contact: Contact::Rigid, .. })
-                | ProcedureKind::StoreyImpact(StoreyImpact { contact: Contact::Rigid, .. }) = procedure.kind
+                && rigid(procedure)
             {
-                let (condition, head) =
-                    (checker.scope.requirements[index].condition.span, checker.scope.blocks[*block].block.head);
-                checker.faults.push(fault::peak_force_under_rigid_law(condition, head));
+                let head = checker.scope.blocks[*block].block.head;
+                checker.faults.push(fault::peak_force_under_rigid_law(span, head));
             }
+        }
+    };
+    for (index, requirement) in requirements.iter().enumerate() {
+        let span = checker.scope.requirements[index].condition.span;
+        read(checker, &requirement.conditions, span);
+    }
+    for (block, procedure) in procedures {
+        if let Some(ProcedureKind::Escalate(escalate)) = procedure.as_ref().map(|procedure| &procedure.kind) {
+            let head = checker.scope.blocks[*block].block.head;
+            let span = checker.given(*block, "while").map_or(head, |(_, entry)| entry.value.span);
+            read(checker, &escalate.condition, span);
         }
     }
 }

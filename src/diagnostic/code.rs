@@ -154,6 +154,7 @@ codes! {
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
     W722 FewDegreesOfFreedom Warning;
+    W728 NoEffect Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -71,7 +71,13 @@ mod tests {
             (2.0, 4e5, Approach { striker_mass: 0.5, speed: 3.0, hertz: Some(2e8) }),
             (1.0, 4e5, Approach { striker_mass: 1.0, speed: 1e-6, hertz: Some(1.0) }),
         ] {
-            let frame = Frame { storeys: Vec::new(), mass: vec![vec![mass]], stiffness: vec![vec![stiffness]], files: None };
+            let frame = Frame {
+                storeys: Vec::new(),
+                mass: vec![vec![mass]],
+                stiffness: vec![vec![stiffness]],
+                files: None,
+                matrix_uncertainty: [0.0; 2],
+            };
             let properties = FrameProperties::of(&frame, &Damping::None).unwrap();
             let of_frame = properties.critical_on_impact(0, &approach);
             let found = approach.critical_time_step(mass, stiffness);

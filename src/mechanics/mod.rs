@@ -36,6 +36,7 @@ pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod stability;
+pub mod strokes;
 pub mod structure;
 pub mod student;
 pub mod summary;

@@ -233,7 +233,8 @@ impl Reckoner<'_> {
     fn sweep(&self, sweep: &DampingSweep) -> Option<Counts> {
         let stroke = self.number(&sweep.stroke)?.abs();
         let lag = self.plan.rig.link.as_virtual().map_or(0.0, |link| link.lag);
-        let mut all = Counts { targets: self.way, ..Counts::default() };
+        // To the place and over the first stroke, back, and then stroke by stroke.
+        let mut all = Counts { targets: 2.0 * self.way, ..Counts::default() };
         for velocity in &sweep.velocities {
             let seconds = stroke / self.number(velocity)?.abs();
             let rate = sweep.rate.as_ref().map(|rate| self.number(rate));

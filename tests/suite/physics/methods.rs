@@ -195,13 +195,13 @@ fn the_tangent_form_errs_by_what_its_slope_is_late() {
     let off = |time_step: f64| {
         let input = ImpactInput { max_tangent_ratio: 10.0, ..vibration(Integrator::Tangent, mass, 0.0, stiffness, time_step) };
         let mut specimen = SpecimenModel::new(&behaviour);
-        let (mut place, mut force) = (0.15, specimen.restoring_force(0.15));
+        let (mut place, mut force) = (0.15, specimen.move_to(0.15));
         let mut solver = ImpactSolver::new(&input, place, force);
         let began = force * force / (2.0 * stiffness);
         let (mut slope, mut late, mut reckoned, mut largest) = (stiffness, 0.0, 0.0, 0.0_f64);
         for _ in 0..(30.0 / time_step) as u32 {
             let target = solver.predict();
-            let read = specimen.restoring_force(target);
+            let read = specimen.move_to(target);
             solver.complete(target, read);
             let moved = target - place;
             let erred = read - force - slope * moved;
