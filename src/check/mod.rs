@@ -120,9 +120,20 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     let plan = plan(&mut checker, name, files, options);
     let rig_links = rig::links_of_run(&checker, options.rig.as_deref());
     let mut diagnostics = checker.faults;
+    let misspelt: Vec<Span> = imports.asts.iter().flat_map(|ast| ast.misspelt.iter().copied()).collect();
+    diagnostics.retain(|fault| is_of_the_text(fault) || !fault.span().is_some_and(|at| misspelt.iter().any(|slip| touch(at, *slip))));
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
     let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
     Checked { plan, diagnostics, sources, rig_links }
+}
+
+fn is_of_the_text(fault: &Diagnostic) -> bool {
+    fault.code.id().starts_with("E1")
+}
+
+/// Whether two places have a character in common.
+fn touch(one: Span, other: Span) -> bool {
+    one.file == other.file && one.start < other.end && other.start < one.end
 }
 
 /// The lines at which the text could not be read.
@@ -134,8 +145,7 @@ fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
         let last = text[end..].find('\n').map_or(text.len(), |newline| end + newline);
         Span::new(span.file, first, last)
     };
-    let unreadable = |fault: &&Diagnostic| fault.code.id().starts_with("E1");
-    faults.iter().filter(unreadable).filter_map(Diagnostic::span).map(line).collect()
+    faults.iter().filter(|fault| is_of_the_text(fault)).filter_map(Diagnostic::span).map(line).collect()
 }
 
 fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Options) -> Option<Plan> {

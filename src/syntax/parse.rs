@@ -1,6 +1,8 @@
 //! One file, read whole: [`parse`] gives the tree of all that could be read and every fault of the text. A sound file
 //! goes through the grammar at once; a faulty one is cut into pieces (`layout`) and each piece is read alone.
 
+use std::collections::BTreeSet;
+
 use pest::{
     Parser as _,
     error::{ErrorVariant, InputLocation},
@@ -14,11 +16,12 @@ use super::{
     layout::{self, Piece, Statement},
     limits,
     lower::{Lowering, unescape},
+    misspelt,
     rule_names,
     tokens::{Kind, Tokens},
 };
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{Code, Diagnostic},
     source::{FileId, Sources, Span, Spanned},
 };
 
@@ -31,30 +34,49 @@ pub struct Grammar;
 #[must_use]
 pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let text = sources.file(file).text.as_str();
-    let mut ast = Ast { file, items: Vec::new(), comments: Vec::new() };
+    let mut ast = Ast { file, items: Vec::new(), comments: Vec::new(), misspelt: Vec::new() };
     if text.len() > limits::FILE_BYTES {
         let start = Span::new(file, 0, 0);
         return (ast, vec![faults::too_large(start, "this file", limits::FILE_BYTES, "bytes")]);
     }
+    if let Some(at) = text.find('\r').filter(|_| !text.contains('\n')) {
+        return (ast, vec![faults::carriage_returns(Span::new(file, at, at + 1))]);
+    }
+    let mended = misspelt::mend(text, file);
+    let text = mended.text.as_ref();
     let mut tokens = Tokens::read(text, file);
     ast.comments = tokens.comments();
     if tokens.faults.is_empty()
         && let Some(items) = whole(text, file)
     {
         ast.items = items;
-        return (ast, Vec::new());
+        ast.misspelt = mended.places;
+        return (ast, mended.faults);
     }
     if tokens.cut_short {
-        return (ast, tokens.faults);
+        return (ast, [mended.faults, tokens.faults].concat());
     }
     let (items, mut faults) = piecewise(&mut tokens);
     ast.items = items;
+    let lines: BTreeSet<usize> = mended.places.iter().map(|place| line_start(text, place.start)).collect();
+    faults.retain(|fault| !follows(fault) || fault.span().is_none_or(|at| !lines.contains(&line_start(text, at.start))));
+    faults.extend(mended.faults);
+    ast.misspelt = mended.places;
     if faults.is_empty() {
         // The grammar refused what its pieces allow: say where it stopped.
         faults.extend(Grammar::parse(Rule::file, text).err().map(|error| refused(&tokens, text, 0, Rule::file, &error)));
     }
     faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
     (ast, faults)
+}
+
+fn line_start(text: &str, at: u32) -> usize {
+    text.as_bytes()[..(at as usize).min(text.len())].iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1)
+}
+
+/// Whether a fault says no more than that a line cannot be read, which a slip on the same line may be the reason of.
+fn follows(fault: &Diagnostic) -> bool {
+    matches!(fault.code, Code::Syntax | Code::BadNumber | Code::UnitWithoutBlank)
 }
 
 /// A sound file; `None` where there is any fault.
