@@ -124,6 +124,8 @@ pub fn refused(path: &str) -> Option<&'static str> {
         Some("it leaves the plan's folder by `..`")
     } else if path.split('/').any(str::is_empty) {
         Some("a folder in it has no name")
+    } else if path.split('/').all(|step| step == ".") {
+        Some("it is the plan's folder, not a file")
     } else {
         None
     }

@@ -1,6 +1,7 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod arrival;
 mod axes;
 mod axis_devices;
 mod behaviour;
@@ -170,6 +171,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     procedures::hold_specimen(checker, &procedures);
     procedures::hold_axes(checker, &procedures, &specimens, rig.as_ref());
     if let Some(limits) = &limits {
+        limits::hold_start(checker, limits);
         limits::hold_targets(checker, limits);
         limits::hold_cycles(checker, &procedures, limits);
     }
@@ -179,12 +181,16 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             warnings::impact(checker, *block, impact, striker);
             mode::damping_twice(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
             integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
+            if let Some(striker) = striker {
+                arrival::hold(checker, *block, striker, impact.duration.constant());
+            }
         }
         if let Some(Procedure { kind: ProcedureKind::StoreyImpact(impact), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
             && let Some(Some(striker)) = strikers.get(impact.striker)
         {
             storey_impact::judge(checker, *block, impact, frame, striker);
+            arrival::hold(checker, *block, striker, impact.duration.constant());
         }
         if let Some(Procedure { kind: ProcedureKind::Escalate(escalate), .. }) = procedure
             && let BlowOn::Storey(impact) = &escalate.blow

@@ -53,10 +53,16 @@ impl<'a> Checker<'a> {
                     _ => (&[][..], false),
                 };
                 let results = results.iter().filter(|result| !result.of_storey || storey).map(|result| result.name);
-                let fault = fault::unknown_name(name, span, known.into_iter().chain(results));
+                let fault = fault::unknown_name(name, span, self.before(span), known.into_iter().chain(results));
                 self.fail(fault)
             }
         }
+    }
+
+    /// What stands before a place on its line.
+    fn before(&self, span: Span) -> &'a str {
+        let before = &self.sources.file(span.file).text[..span.range().start];
+        before.rsplit('\n').next().unwrap_or_default()
     }
 
     /// The entry `name` of a block, if it is one with a number and not the entry that asks.
@@ -83,7 +89,7 @@ impl<'a> Checker<'a> {
                 if self.may_be_lost(owner) {
                     return None;
                 }
-                let fault = fault::unknown_name(owner, base.span, self.scope.names());
+                let fault = fault::unknown_name(owner, base.span, self.before(base.span), self.scope.names());
                 return self.fail(fault);
             }
         }

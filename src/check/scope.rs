@@ -68,7 +68,7 @@ impl<'a> Scope<'a> {
                         scope.declare_value("param", name, value, bounds.as_ref(), settings.get(&name.node), faults);
                     }
                     ItemKind::Require { label, .. } if library => faults.push(fault::not_in_library("require", label.span)),
-                    ItemKind::Require { label, condition } => scope.requirements.push(DeclaredRequirement { label, condition }),
+                    ItemKind::Require { label, condition } => scope.require(label, condition, faults),
                     ItemKind::Block(block) => scope.declare_block(block, item.span, library, faults),
                 }
             }
@@ -99,9 +99,22 @@ impl<'a> Scope<'a> {
         self.blocks.iter().enumerate().filter(|(_, block)| block.procedure.is_some())
     }
 
+    fn require(&mut self, label: &'a Spanned<String>, condition: &'a Expr, faults: &mut Vec<Diagnostic>) {
+        if let Some(first) = self.requirements.iter().find(|first| first.label.node == label.node) {
+            faults.push(fault::requirement_twice(&label.node, label.span, first.label.span));
+        }
+        self.requirements.push(DeclaredRequirement { label, condition });
+    }
+
     fn declare(&mut self, name: &'a Ident, meaning: Meaning, faults: &mut Vec<Diagnostic>) {
         match self.names.get(name.node.as_str()) {
-            Some((_, first)) => faults.push(fault::declared_twice(&name.node, name.span, *first)),
+            Some((before, first)) => {
+                faults.push(fault::declared_twice(&name.node, name.span, *first));
+                // Which of two things of different sorts is meant, nobody knows.
+                if std::mem::discriminant(before) != std::mem::discriminant(&meaning) {
+                    self.names.insert(&name.node, (Meaning::Poisoned, *first));
+                }
+            }
             None => {
                 self.names.insert(&name.node, (meaning, name.span));
             }

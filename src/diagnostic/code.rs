@@ -117,6 +117,7 @@ codes! {
     E635 TooUncertain Error;
     E636 ChannelsDiffer Error;
     E637 NotAsked Error;
+    E638 NeverArrives Error;
     E639 DampingTooUncertain Error;
     E640 WhichStorey Error;
     E641 NoUseOnAFrame Error;

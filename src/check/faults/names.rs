@@ -145,8 +145,11 @@ pub fn missing_block(kind: &BlockKind, span: Span) -> Diagnostic {
         .help(format!("add one such as\n{}", kind.example))
 }
 
-pub fn unknown_name<'n>(name: &str, span: Span, known: impl Iterator<Item = &'n str>) -> Diagnostic {
-    let help = if name == "critical" {
+/// `before`: what stands before the name on its line. A name that is a unit was written apart from its number.
+pub fn unknown_name<'n>(name: &str, span: Span, before: &str, known: impl Iterator<Item = &'n str>) -> Diagnostic {
+    let help = if let Some(quantity) = quantity_apart(name, before) {
+        format!("`{name}` is a unit, and a unit is one word without blanks behind its number: write `{quantity}`")
+    } else if name == "critical" {
         "`critical` stands only in `time_step`; after the run it is the result `critical_time_step`".to_owned()
     } else if let Some(near) = crate::suggest::nearest(name, known) {
         format!("did you mean `{near}`?")
@@ -154,6 +157,31 @@ pub fn unknown_name<'n>(name: &str, span: Span, known: impl Iterator<Item = &'n 
         format!("declare it, as in `let {name} = …`, or correct the name")
     };
     Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`")).at(span, "unknown name").help(help)
+}
+
+/// `1 m/s` of `1 m / s`, and `10 mm` of `10 * mm`, where the last word is a unit.
+fn quantity_apart(name: &str, before: &str) -> Option<String> {
+    crate::quantity::unit::lookup(name)?;
+    let before = before.trim_end().trim_end_matches('(').trim_end();
+    let sign = before.chars().next_back().filter(|sign| matches!(sign, '*' | '/'))?;
+    let before = before[..before.len() - 1].trim_end();
+    let is_number = |word: &str| word.parse::<f64>().is_ok();
+    let first = before.rfind(|c: char| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':')).map_or(0, |at| at + 1);
+    let (head, last) = (before[..first].trim_end(), &before[first..]);
+    if is_number(last) {
+        return (sign == '*').then(|| format!("{last} {name}"));
+    }
+    let number = head.rsplit(|c: char| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':')).next()?;
+    let unit = crate::quantity::unit::parse(last).is_ok() && is_number(number);
+    unit.then(|| format!("{number} {last}{sign}{name}"))
+}
+
+/// A requirement's name is what its verdict is found by.
+pub fn requirement_twice(label: &str, span: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("two requirements are called \"{label}\""))
+        .at(span, "again here")
+        .at(first, "first here")
+        .help("give each a name of its own, or join their conditions with `and`")
 }
 
 pub fn unknown_block_name(kind: Kind, name: &str, span: Span, known: &[&str]) -> Diagnostic {
@@ -309,7 +337,10 @@ pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Di
     let (message, help) = match name {
         Some(name) => (format!("`{}` has no argument `{name}`", variant.name), suggestion(name, known)),
         None if known.is_empty() => (format!("`{}` takes no arguments", variant.name), format!("write `{}` alone", variant.name)),
-        None => (format!("`{}` takes at most {} arguments", variant.name, known.len()), format!("they are {}", known.join(", "))),
+        None => {
+            let (arguments, they) = if known.len() == 1 { ("one argument".to_owned(), "it is") } else { (format!("{} arguments", known.len()), "they are") };
+            (format!("`{}` takes at most {arguments}", variant.name), format!("{they} {}", super::all_of(known)))
+        }
     };
     Diagnostic::new(Code::BadArgument, message).at(span, "not an argument of it").help(help)
 }
