@@ -61,7 +61,7 @@ pub use imports::{DEEPEST, MOST_FILES};
 pub use literal::MOST_ENTRIES;
 pub use stiffness_ramp::MOST_READINGS;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{BlowOn, Plan, PlanFile, Procedure, ProcedureKind, Specimen};
 use crate::schema::Kind;
 use crate::source::{FileId, Sources, Span};
@@ -122,7 +122,10 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     let rig_links = rig::links_of_run(&checker, options.rig.as_deref());
     let mut diagnostics = checker.faults;
     let misspelt: Vec<Span> = imports.asts.iter().flat_map(|ast| ast.misspelt.iter().copied()).collect();
-    diagnostics.retain(|fault| is_of_the_text(fault) || !fault.span().is_some_and(|at| misspelt.iter().any(|slip| touch(at, *slip))));
+    // What follows from a fault that was told at the same place is not told again.
+    let at = |fault: &Diagnostic, places: &[Span]| fault.span().is_some_and(|at| places.iter().any(|place| touch(at, *place)));
+    diagnostics.retain(|fault| is_of_the_text(fault) || !at(fault, &misspelt));
+    diagnostics.retain(|fault| fault.code != Code::UnknownName || !at(fault, &checker.explained));
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
     let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
     Checked { plan, diagnostics, sources, rig_links }

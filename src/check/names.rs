@@ -150,7 +150,17 @@ impl<'a> Checker<'a> {
             }
             return self.reads_allowed(Typed { span, ..typed }, span, place);
         }
-        let fault = fault::unknown_result(declared.kind, declared.name, &name.node, name.span);
+        let (kind, owner) = (declared.kind, declared.name);
+        // `hit.max-displacement` is read as a difference.
+        let text = &self.sources.file(name.span.file).text[name.span.range().start..];
+        let end = text.find(|c: char| !c.is_ascii_alphanumeric() && !matches!(c, '_' | '-')).unwrap_or(text.len());
+        let joined = text[..end].replace('-', "_");
+        if kind.result(&joined).is_some() {
+            let whole = Span { end: name.span.start + u32::try_from(end).unwrap_or(0), ..name.span };
+            self.explained.push(whole);
+            return self.fail(fault::minus_in_name(&text[..end], &joined, whole));
+        }
+        let fault = fault::unknown_result(kind, owner, &name.node, name.span);
         self.fail(fault)
     }
 

@@ -21,6 +21,13 @@ pub struct DeclaredBlock<'a> {
     pub procedure: Option<ProcedureId>,
 }
 
+impl DeclaredBlock<'_> {
+    /// Whether it should have a name and has none, which is told: what is called by a name may be this one.
+    pub fn lacks_its_name(&self) -> bool {
+        self.name.is_none() && self.kind.naming == Naming::Named
+    }
+}
+
 /// A `let` or a `param`.
 pub struct DeclaredValue<'a> {
     pub keyword: &'static str,
@@ -152,7 +159,11 @@ impl<'a> Scope<'a> {
             self.poison(rest, faults);
             return;
         }
-        if let Some(wrong) = fault::block_name(kind, block, rest) {
+        // A head that could not be read to its end has more words than are known.
+        let cut_short = faults.iter().filter_map(Diagnostic::span).any(|at| {
+            at.file == block.head.file && (block.head.start..=block.head.end + 1).contains(&at.start)
+        });
+        if let Some(wrong) = fault::block_name(kind, block, rest).filter(|_| !cut_short) {
             faults.push(wrong);
         } else if let (Naming::Unnamed | Naming::Titled | Naming::MaybeNamed, []) = (kind.naming, rest)
             && let Some(first) = self.unnamed(kind, span)

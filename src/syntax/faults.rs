@@ -11,6 +11,8 @@ use crate::{
 const EITHER: &str = "all that is required must hold, so there is no `or`: of two values of which one is enough, require the \
     smaller or the larger, as in `min(a, b) < 5 mm`";
 
+const COMPARED: &str = "values are compared by `<=`, `>=`, `==` or `within 5 % of`";
+
 /// `found` and `expected` are in human words, marks included.
 pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("found {found}, expected {expected}"))
@@ -20,15 +22,19 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         "`use`" | "`param`" | "`let`" | "`require`" | "`and`" | "`within`" | "`of`" | "`step`" | "`between`" => {
             format!("{found} is a word of the language: names are other words")
         }
-        "`or`" | "`||`" => EITHER.to_owned(),
+        "`or`" => EITHER.to_owned(),
+        "`is`" | "`equals`" => COMPARED.to_owned(),
+        "`to`" if expected.contains("an operator") => "a range is written with `..`, as in `-5 mm .. 5 mm`".to_owned(),
+        "`in`" if expected.contains("`between`") => {
+            "the range of a parameter follows `between`, as in `param v = 1 m/s between 0.5 m/s .. 2 m/s`".to_owned()
+        }
+        "`-`" if expected == "`=`" => "a name has `_` where others have `-`, as in `drop_height`".to_owned(),
+        "`=`" | "`:`" if expected == "`{`" => "a block is its kind, its name and `{`, as in `striker hammer {`".to_owned(),
         "`=`" if expected.contains("an operator") => {
-            "`=` gives a field its value; values are compared by `<=`, `>=`, `==` or `within 5 % of`".to_owned()
+            format!("`=` gives a field its value; {COMPARED}")
         }
         "`,`" if expected.contains("the end of the line") => "a field ends with its line: take the `,` away".to_owned(),
         "`+`" if expected == "a value" => "a number without a sign is positive: take the `+` away".to_owned(),
-        "`{`" if expected == "the name of a block" => {
-            "the `{` stands on the line of the block's name, as in `striker hammer { … }`".to_owned()
-        }
         _ if expected == "a field" => "write `key = value`".to_owned(),
         _ if expected == "a value" => "a value is a number with its unit, a text, a name, a list or a range".to_owned(),
         "`<`" | "`<=`" | "`>`" | "`>=`" | "`==`" | "`!=`" if expected.contains("the end of the line") => {
@@ -60,6 +66,33 @@ pub fn stray_words(span: Span, words: &str) -> Diagnostic {
         .help("a block opens with `{` on this same line, as in `striker hammer { … }`; a remark stands behind `#`")
 }
 
+/// A line that begins with a word that other languages begin a line with.
+pub fn word_of_another_language(span: Span, word: &str, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, format!("`{word}` is no word of the language")).at(span, "begins no item").help(help)
+}
+
+/// `rest`: what follows `require`.
+pub fn requirement_without_name(span: Span, rest: &str) -> Diagnostic {
+    let short = rest.len() <= 60 && !rest.contains('\n');
+    let rest = if short { rest } else { "…" };
+    Diagnostic::new(Code::Syntax, "a requirement has a name, a text in quotes")
+        .at(span, "expected a text in quotes")
+        .help(format!("name it, as in `require \"stays in travel\" {rest}`"))
+}
+
+/// A line that goes on with an expression of the line before.
+pub fn operator_begins_line(span: Span, operator: &str) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, format!("this line begins with `{operator}`"))
+        .at(span, "belongs to the line before")
+        .help("an expression goes on behind an operator: put it at the end of the line before, or join the lines")
+}
+
+pub fn brace_on_next_line(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, "this `{` stands apart from its block")
+        .at(span, "a line too low")
+        .help("put it on the line of the block's name, as in `striker hammer {`")
+}
+
 pub fn misplaced_block(span: Span) -> Diagnostic {
     Diagnostic::new(Code::Syntax, "found a block or item inside a block, expected `key = value` or `}`")
         .at(span, "expected a field")
@@ -79,6 +112,7 @@ pub fn unclosed(span: Span, open: &str, close: &str) -> Diagnostic {
 }
 
 pub fn bad_number(span: Span, written: &str, fault: numbers::Fault) -> Diagnostic {
+    let written = written.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut short: String = written.chars().take(20).collect();
     if short.len() < written.len() {
         short.push('…');
@@ -132,8 +166,9 @@ pub fn stray(span: Span, found: &str) -> Diagnostic {
     diagnostic.help(match found {
         ";" => "a field ends with its line, and values of a list are parted by `,`",
         "'" | "“" | "”" | "‘" | "’" | "„" | "«" | "»" => "texts stand in straight double quotes: \"text\"",
-        "&" => "two conditions are joined by `and`",
-        "|" => EITHER,
+        "&" | "&&" => "two conditions are joined by `and`",
+        "|" | "||" => EITHER,
+        "±" => "write both ends, as in `-5 mm .. 5 mm`, or the size alone where it holds for both signs",
         "!" => "a condition is turned round by its sign: `!=`, `>` for `<=`",
         "°" | "º" => "a degree of arc is written `deg`",
         "½" => "write `0.5`",
@@ -250,7 +285,7 @@ fn foreign_word(word: &str, span: Span, often: &str) -> Diagnostic {
     let point = format!("`{letter}` (U+{:04X})", u32::from(letter));
     let (message, label) = match letters::lookalike(letter) {
         Some(latin) => (format!("`{short}` holds {point}, which only looks like `{latin}`"), format!("not the `{latin}` of the keyboard")),
-        None => (format!("`{short}` holds {point}, which stands in no name or unit"), "not a letter from a to z".to_owned()),
+        None => (format!("`{short}` holds {point}, which no name or unit may hold"), "not a letter from a to z".to_owned()),
     };
     let help = match letters::written_plainly(word) {
         Some(plain) => format!("write `{plain}`: names are made of a–z, 0–9 and _"),

@@ -195,10 +195,19 @@ impl Pieces<'_> {
             self.no_item(statement);
             return None;
         }
+        let (start, end) = self.bounds(statement);
+        let nameless = self.tokens.is(statement.start, "require")
+            && statement.end > statement.start + 1
+            && self.tokens.kind(statement.start + 1) != Some(Kind::Text);
+        if nameless {
+            let second = self.tokens.list[statement.start + 1];
+            let span = self.tokens.span(second.start, second.end);
+            self.faults.push(faults::requirement_without_name(span, &self.tokens.text[second.start..end]));
+            return None;
+        }
         if let Some(item) = self.alone(statement, Rule::item_alone, Lowering::item) {
             return Some(item);
         }
-        let (start, end) = self.bounds(statement);
         let span = self.tokens.span(start, end);
         let value = Lowering::faulty(span);
         let second = (statement.start + 1 < statement.end).then_some(statement.start + 1)?;
@@ -221,10 +230,29 @@ impl Pieces<'_> {
         let key = self.word(statement.start).filter(|_| self.tokens.is(statement.start + 1, "="));
         if let Some(key) = key {
             self.faults.push(faults::field_outside(key.span, &key.node));
+        } else if let Some((word, help)) = self.other_language(statement) {
+            self.faults.push(faults::word_of_another_language(word.span, &word.node, &help));
         } else if self.alone(statement, Rule::head_alone, Lowering::head).is_some() {
             let (start, end) = self.bounds(statement);
             self.faults.push(faults::stray_words(self.tokens.span(start, end), &self.tokens.text[start..end]));
         }
+    }
+
+    /// A line that begins as it would in another language, and how it is said in this one.
+    fn other_language(&self, statement: Statement) -> Option<(Ident, String)> {
+        let word = self.word(statement.start)?;
+        let help = match word.node.as_str() {
+            "import" | "include" | "from" | "source" => "another file is named by `use`, as in `use \"lib/frame.psd\"`".to_owned(),
+            "if" | "assert" | "expect" | "ensure" | "check" | "verify" => {
+                "what must hold is said by `require`, as in `require \"stays in travel\" hit.max_displacement < 9 mm`".to_owned()
+            }
+            "run" | "start" | "do" | "call" => "every procedure of a plan runs, in the order written: take this line away".to_owned(),
+            _ => {
+                let name = self.word(statement.start + 1).filter(|_| self.tokens.is(statement.start + 2, "="))?;
+                format!("a value is named by `let`, as in `let {} = …`", name.node)
+            }
+        };
+        Some((word, help))
     }
 
     fn block(&mut self, head: Statement, open: usize, fields: &[Statement], close: Option<usize>) -> Option<Item> {
@@ -255,7 +283,8 @@ impl Pieces<'_> {
         if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
             return Some(entry);
         }
-        let key = self.word(statement.start)?;
+        // A word alone is no field.
+        let key = self.word(statement.start).filter(|_| statement.end > statement.start + 1)?;
         let (start, end) = self.bounds(statement);
         let value = self.tokens.span(end.min(key.span.end as usize), end);
         Some(Entry { span: self.tokens.span(start, end), key, value: Lowering::faulty(value) })

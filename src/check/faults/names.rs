@@ -197,13 +197,48 @@ pub fn unknown_procedure(name: &str, span: Span, known: &[&str]) -> Diagnostic {
         .help(suggestion(name, known.iter().copied()))
 }
 
+/// Units as a sentence names them.
+const SPELT_OUT: &[(&str, &str)] = &[
+    ("percent pct", "%"),
+    ("meter metre meters metres", "m"),
+    ("millimeter millimetre millimeters millimetres", "mm"),
+    ("micron microns", "um"),
+    ("gram grams", "g"),
+    ("kilogram kilograms kgs", "kg"),
+    ("tonne tonnes ton tons", "t"),
+    ("sec secs second seconds", "s"),
+    ("msec millisecond milliseconds", "ms"),
+    ("minute minutes mins", "min"),
+    ("hour hours hr hrs", "h"),
+    ("newton newtons", "N"),
+    ("kilonewton kilonewtons", "kN"),
+    ("pascal pascals", "Pa"),
+    ("joule joules", "J"),
+    ("hertz cps", "Hz"),
+    ("inch inches", "in"),
+    ("foot feet", "ft"),
+    ("lbs pound pounds", "lb"),
+    ("degree degrees", "deg"),
+    ("mps", "m/s"),
+];
+
+/// `kN*m` of `kNm`.
+fn unit_product(name: &str) -> Option<String> {
+    let is_unit = |part: &str| crate::quantity::unit::lookup(part).is_some();
+    let (first, second) = (1..name.len()).filter_map(|at| name.split_at_checked(at)).find(|(one, other)| is_unit(one) && is_unit(other))?;
+    Some(format!("{first}*{second}"))
+}
+
 pub fn unknown_unit(name: &str, span: Span) -> Diagnostic {
     let mut known: Vec<String> = UNITS.iter().map(|unit| unit.symbol.to_owned()).collect();
     for unit in UNITS.iter().filter(|unit| unit.prefixes) {
         known.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{}", unit.symbol)));
     }
-    let same_letters = known.iter().find(|unit| unit.eq_ignore_ascii_case(name));
-    let near = same_letters.map(String::as_str).or_else(|| crate::suggest::nearest(name, known.iter().map(String::as_str)));
+    let same_letters = known.iter().find(|unit| unit.eq_ignore_ascii_case(name)).map(String::as_str);
+    let spelt_out = SPELT_OUT.iter().find(|(words, _)| words.split(' ').any(|word| word.eq_ignore_ascii_case(name))).map(|(_, unit)| *unit);
+    let product = unit_product(name);
+    let near = same_letters.or(spelt_out).or(product.as_deref());
+    let near = near.or_else(|| crate::suggest::nearest(name, known.iter().map(String::as_str)));
     let help = near.map_or_else(
         || format!("known units: {}; SI prefixes may stand before the SI ones", one_of(UNITS.iter().map(|unit| unit.symbol))),
         |near| format!("did you mean `{near}`?"),
@@ -286,6 +321,12 @@ pub fn unknown_result(kind: &BlockKind, name: Option<&Ident>, member: &str, span
     Diagnostic::new(Code::UnknownResult, format!("{} has no {what} `{member}`", owner(kind, name)))
         .at(span, format!("unknown {what}"))
         .help(suggestion(member, known))
+}
+
+pub fn minus_in_name(written: &str, meant: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownResult, format!("`{written}` is read as a difference: a `-` is a minus sign"))
+        .at(span, "no name has a `-`")
+        .help(format!("did you mean `{meant}`?"))
 }
 
 pub fn field_not_given(kind: &BlockKind, name: Option<&Ident>, field: &str, span: Span) -> Diagnostic {
