@@ -36,6 +36,7 @@ mod move_block;
 mod names;
 mod parameters;
 mod plan_block;
+mod print;
 mod procedures;
 mod real_rig;
 mod report;
@@ -222,6 +223,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         }
         if let Some(limits) = &limits {
             specimen::warn_of_short_tables(checker, &specimens, limits);
+        }
+        if let Some(report) = &report {
+            print::warn(checker, report);
         }
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
     }

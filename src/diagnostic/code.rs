@@ -149,6 +149,7 @@ codes! {
     W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
+    W717 NotPrinted Warning;
     W718 StifferThanOperator Warning;
     W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;

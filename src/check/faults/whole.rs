@@ -98,6 +98,18 @@ pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64
         .help(format!("write `time_step = {resolved_text}` or less"))
 }
 
+/// `letters` are the first that no font of the paper has, `printed` what stands for them.
+pub fn not_printed(letters: &str, printed: &str, others: usize, span: Span) -> Diagnostic {
+    let also = match others {
+        0 => String::new(),
+        1 => ", here and in one more text".to_owned(),
+        more => format!(", here and in {more} more texts"),
+    };
+    Diagnostic::new(Code::NotPrinted, format!("on paper `{letters}` stands as `{printed}`{also}"))
+        .at(span, "holds letters that the fonts of the PDF certificate lack")
+        .help("they have Latin, Greek and Cyrillic letters: write the name in one of those as well; the HTML certificate shows all")
+}
+
 pub fn nothing_required(span: Span) -> Diagnostic {
     Diagnostic::new(Code::NothingRequired, "the plan requires nothing: its verdict says only that it ran")
         .at(span, "the last procedure")
