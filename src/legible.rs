@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn the_alphabets_of_europe_are_shown_and_others_as_code_points() {
-        for name in ["Łódź", "Ωμέγα", "Иванов", "Žižka", "Ångström ñ ß þ ő ğ ı", "ΔẊ∫ζ₀≤µ−×⁻⁶"] {
+        for name in ["Łódź", "Ωμέγα", "Иванов", "Žižka", "Ångström ñ ß þ ő ğ ı", "ΔẊ∫ζ₀≤µ−×⁻⁶"]
+        {
             assert_eq!(shown(name), name);
         }
         assert_eq!(shown("山田 x"), "[U+5C71][U+7530] x");

@@ -160,9 +160,10 @@ impl<'a> Scope<'a> {
             return;
         }
         // A head that could not be read to its end has more words than are known.
-        let cut_short = faults.iter().filter_map(Diagnostic::span).any(|at| {
-            at.file == block.head.file && (block.head.start..=block.head.end + 1).contains(&at.start)
-        });
+        let cut_short = faults
+            .iter()
+            .filter_map(Diagnostic::span)
+            .any(|at| at.file == block.head.file && (block.head.start..=block.head.end + 1).contains(&at.start));
         if let Some(wrong) = fault::block_name(kind, block, rest).filter(|_| !cut_short) {
             faults.push(wrong);
         } else if let (Naming::Unnamed | Naming::Titled | Naming::MaybeNamed, []) = (kind.naming, rest)

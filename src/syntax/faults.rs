@@ -250,13 +250,23 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
         }
         Slip::Superscript(written) => {
             let meant = "as in `mm^2` or `1/s`";
-            fault(Code::Syntax, format!("`{written}` is no exponent of the language"), "a raised digit", format!("write the power with `^`, {meant}"))
+            fault(
+                Code::Syntax,
+                format!("`{written}` is no exponent of the language"),
+                "a raised digit",
+                format!("write the power with `^`, {meant}"),
+            )
         }
         Slip::Quotes(open) => {
             let inside = |c: char| c == open || matches!(c, '"' | '”' | '“' | '»' | '«' | '’' | '‘' | '`' | '\'' | '＂');
             let written = text[span.range()].trim_matches(inside);
             let which = if open.is_ascii() { format!("`{open}`") } else { format!("`{open}` ({})", point(open)) };
-            fault(Code::Syntax, format!("{which} is no quote of the language"), "meant as a text", format!("write \"{written}\" with the straight quote U+0022"))
+            fault(
+                Code::Syntax,
+                format!("{which} is no quote of the language"),
+                "meant as a text",
+                format!("write \"{written}\" with the straight quote U+0022"),
+            )
         }
         Slip::Comment(opens) => fault(
             Code::Syntax,
@@ -284,7 +294,9 @@ fn foreign_word(word: &str, span: Span, often: &str) -> Diagnostic {
     let short: String = word.chars().take(30).collect();
     let point = format!("`{letter}` (U+{:04X})", u32::from(letter));
     let (message, label) = match letters::lookalike(letter) {
-        Some(latin) => (format!("`{short}` holds {point}, which only looks like `{latin}`"), format!("not the `{latin}` of the keyboard")),
+        Some(latin) => {
+            (format!("`{short}` holds {point}, which only looks like `{latin}`"), format!("not the `{latin}` of the keyboard"))
+        }
         None => (format!("`{short}` holds {point}, which no name or unit may hold"), "not a letter from a to z".to_owned()),
     };
     let help = match letters::written_plainly(word) {

@@ -72,7 +72,8 @@ fn commas(written: &str) -> Fault {
     let none = written.replace(',', "");
     let point = written.replace('.', "").replace(',', ".");
     let (whole, rest) = written.split_once(',').unwrap_or((written, ""));
-    let thousands = (1..=3).contains(&whole.len()) && whole != "0" && rest.split([',', '.']).next().is_some_and(|group| group.len() == 3);
+    let thousands =
+        (1..=3).contains(&whole.len()) && whole != "0" && rest.split([',', '.']).next().is_some_and(|group| group.len() == 3);
     let many = rest.contains(',') || rest.contains('.');
     let (why, write) = match (thousands, many, whole.contains('.')) {
         (true, true, false) => ("digits are not grouped", vec![none]),

@@ -16,8 +16,7 @@ use super::{
     layout::{self, Piece, Statement},
     limits,
     lower::{Lowering, unescape},
-    misspelt,
-    rule_names,
+    misspelt, rule_names,
     tokens::{Kind, Tokens},
 };
 use crate::{
@@ -242,11 +241,15 @@ impl Pieces<'_> {
     fn other_language(&self, statement: Statement) -> Option<(Ident, String)> {
         let word = self.word(statement.start)?;
         let help = match word.node.as_str() {
-            "import" | "include" | "from" | "source" => "another file is named by `use`, as in `use \"lib/frame.psd\"`".to_owned(),
+            "import" | "include" | "from" | "source" => {
+                "another file is named by `use`, as in `use \"lib/frame.psd\"`".to_owned()
+            }
             "if" | "assert" | "expect" | "ensure" | "check" | "verify" => {
                 "what must hold is said by `require`, as in `require \"stays in travel\" hit.max_displacement < 9 mm`".to_owned()
             }
-            "run" | "start" | "do" | "call" => "every procedure of a plan runs, in the order written: take this line away".to_owned(),
+            "run" | "start" | "do" | "call" => {
+                "every procedure of a plan runs, in the order written: take this line away".to_owned()
+            }
             _ => {
                 let name = self.word(statement.start + 1).filter(|_| self.tokens.is(statement.start + 2, "="))?;
                 format!("a value is named by `let`, as in `let {} = …`", name.node)

@@ -43,8 +43,11 @@ pub struct Tokens<'a> {
 impl<'a> Tokens<'a> {
     #[must_use]
     pub fn read(text: &'a str, file: FileId) -> Self {
-        let mut reader =
-            Reader { tokens: Tokens { text, file, list: Vec::new(), faults: Vec::new(), cut_short: false }, at: 0, open: Vec::new() };
+        let mut reader = Reader {
+            tokens: Tokens { text, file, list: Vec::new(), faults: Vec::new(), cut_short: false },
+            at: 0,
+            open: Vec::new(),
+        };
         reader.read();
         reader.tokens
     }

@@ -225,7 +225,8 @@ const SPELT_OUT: &[(&str, &str)] = &[
 /// `kN*m` of `kNm`.
 fn unit_product(name: &str) -> Option<String> {
     let is_unit = |part: &str| crate::quantity::unit::lookup(part).is_some();
-    let (first, second) = (1..name.len()).filter_map(|at| name.split_at_checked(at)).find(|(one, other)| is_unit(one) && is_unit(other))?;
+    let (first, second) =
+        (1..name.len()).filter_map(|at| name.split_at_checked(at)).find(|(one, other)| is_unit(one) && is_unit(other))?;
     Some(format!("{first}*{second}"))
 }
 
@@ -235,7 +236,8 @@ pub fn unknown_unit(name: &str, span: Span) -> Diagnostic {
         known.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{}", unit.symbol)));
     }
     let same_letters = known.iter().find(|unit| unit.eq_ignore_ascii_case(name)).map(String::as_str);
-    let spelt_out = SPELT_OUT.iter().find(|(words, _)| words.split(' ').any(|word| word.eq_ignore_ascii_case(name))).map(|(_, unit)| *unit);
+    let spelt_out =
+        SPELT_OUT.iter().find(|(words, _)| words.split(' ').any(|word| word.eq_ignore_ascii_case(name))).map(|(_, unit)| *unit);
     let product = unit_product(name);
     let near = same_letters.or(spelt_out).or(product.as_deref());
     let near = near.or_else(|| crate::suggest::nearest(name, known.iter().map(String::as_str)));
@@ -379,7 +381,11 @@ pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Di
         Some(name) => (format!("`{}` has no argument `{name}`", variant.name), suggestion(name, known)),
         None if known.is_empty() => (format!("`{}` takes no arguments", variant.name), format!("write `{}` alone", variant.name)),
         None => {
-            let (arguments, they) = if known.len() == 1 { ("one argument".to_owned(), "it is") } else { (format!("{} arguments", known.len()), "they are") };
+            let (arguments, they) = if known.len() == 1 {
+                ("one argument".to_owned(), "it is")
+            } else {
+                (format!("{} arguments", known.len()), "they are")
+            };
             (format!("`{}` takes at most {arguments}", variant.name), format!("{they} {}", super::all_of(known)))
         }
     };

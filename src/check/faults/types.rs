@@ -67,9 +67,12 @@ pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {
     let (one, other) = (article(left.dimension), article(right.dimension));
     let forgotten = left.bare != right.bare;
     let wanted = if left.bare && forgotten { right.dimension } else { left.dimension };
-    let is = |side: &Typed, name: &str| if side.bare && forgotten { "this number has no unit".to_owned() } else { format!("this is {name}") };
+    let is = |side: &Typed, name: &str| {
+        if side.bare && forgotten { "this number has no unit".to_owned() } else { format!("this is {name}") }
+    };
     let how = format!("{} is written as in `{}`", article(wanted), example(None, wanted));
-    let help = if forgotten { format!("give the number its unit: {how}") } else { format!("both sides must be of one kind; {how}") };
+    let help =
+        if forgotten { format!("give the number its unit: {how}") } else { format!("both sides must be of one kind; {how}") };
     Diagnostic::new(Code::MismatchedDimensions, format!("`{operator}` joins {one} and {other}"))
         .at(left.span, is(left, &one))
         .at(right.span, is(right, &other))

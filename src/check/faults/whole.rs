@@ -107,7 +107,9 @@ pub fn not_printed(letters: &str, printed: &str, others: usize, span: Span) -> D
     };
     Diagnostic::new(Code::NotPrinted, format!("on paper `{letters}` stands as `{printed}`{also}"))
         .at(span, "holds letters that the fonts of the PDF certificate lack")
-        .help("they have Latin, Greek and Cyrillic letters: write the name in one of those as well; the HTML certificate shows all")
+        .help(
+            "they have Latin, Greek and Cyrillic letters: write the name in one of those as well; the HTML certificate shows all",
+        )
 }
 
 pub fn nothing_required(span: Span) -> Diagnostic {

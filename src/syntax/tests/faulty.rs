@@ -93,7 +93,11 @@ fn numbers_are_decimal_with_digits_on_both_sides() {
     ] {
         field(&format!("{written} kg"), BadNumber, written);
         let (_, found, _) = read(&format!("let x = f({written} kg)\n"));
-        assert_eq!(found.first().and_then(|fault| fault.help.as_deref()), Some(help).filter(|_| !written.contains(',')), "{written}");
+        assert_eq!(
+            found.first().and_then(|fault| fault.help.as_deref()),
+            Some(help).filter(|_| !written.contains(',')),
+            "{written}"
+        );
     }
     // In a list it is a comma that is missing.
     field("[100 200]", Syntax, "200");
