@@ -111,7 +111,7 @@ pub fn unclosed(span: Span, open: &str, close: &str) -> Diagnostic {
         .help(format!("write the `{close}` that belongs to it"))
 }
 
-pub fn bad_number(span: Span, written: &str, fault: numbers::Fault) -> Diagnostic {
+pub fn bad_number(span: Span, written: &str, fault: &numbers::Fault) -> Diagnostic {
     let written = written.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut short: String = written.chars().take(20).collect();
     if short.len() < written.len() {

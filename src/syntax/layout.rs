@@ -139,7 +139,7 @@ impl Cutter<'_> {
     fn goes_on_below(&mut self) -> bool {
         let next = self.at + 1;
         let joins = |word: &&str| self.tokens.is(next, word) && !self.tokens.is(next + 1, "=");
-        if !OPERATORS.iter().chain(&JOINING_WORDS).any(|operator| joins(operator)) {
+        if !OPERATORS.iter().chain(&JOINING_WORDS).any(joins) {
             return false;
         }
         let token = self.tokens.list[next];

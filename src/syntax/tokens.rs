@@ -212,7 +212,7 @@ impl<'a> Reader<'a> {
         let length = numbers::extent(self.rest(), self.open.is_empty(), self.open.last() != Some(&'['));
         let written = &self.rest()[..length];
         if let Some(fault) = numbers::fault(written) {
-            self.fault(faults::bad_number(self.span(length), written, fault));
+            self.fault(faults::bad_number(self.span(length), written, &fault));
         }
         self.push(Kind::Number, length);
         self.unit();
