@@ -51,7 +51,10 @@ const RANGES: &[u32] = &[
 /// Whether the fonts have a character.
 #[must_use]
 pub fn has(c: char) -> bool {
-    c.is_ascii() || RANGES.chunks_exact(2).any(|range| (range[0]..=range[1]).contains(&u32::from(c)))
+    let code = u32::from(c);
+    let at = RANGES.partition_point(|bound| *bound < code);
+    // Behind an odd number of bounds a range is open; at an even one it begins.
+    c.is_ascii() || at % 2 == 1 || RANGES.get(at) == Some(&code)
 }
 
 /// A character that no font has stands as its code point: an empty box would say nothing.
