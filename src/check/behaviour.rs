@@ -115,6 +115,7 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
             let of = Box::new(part(checker, written, beside?, Stands::BesideBranch)?);
             Some(Behaviour::Maxwell { of, stiffness: stiffness?, time_constant: time_constant? })
         }
+        "logarithmic" => logarithmic(checker, written, &chosen, expr.span, stands),
         "multilinear" => multilinear(checker, &chosen, place),
         "table" => table(checker, &chosen),
         "fracture" => fracture(checker, written, &chosen, expr.span),
@@ -124,6 +125,35 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
         "portal" => portal(checker, &chosen, place, expr.span),
         _ => beam(checker, &chosen, place, written.own_mass),
     }
+}
+
+/// What is reached relaxes with the logarithm of time: not more of it than there is.
+fn logarithmic<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    chosen: &Chosen<'a>,
+    span: Span,
+    stands: Stands,
+) -> Option<Behaviour> {
+    let (share, time) = (
+        checker.constant_argument(chosen, "share", written.place),
+        checker.constant_argument(chosen, "reference_time", written.place),
+    );
+    let longest = checker.optional_argument(chosen, "longest", written.place)?;
+    if stands == Stands::Inside {
+        return checker.fail(fault::felt_inside("logarithmic", span));
+    }
+    let of = Box::new(inner(checker, written, chosen)?);
+    let (share, reference_time) = (share?, time?);
+    let longest = longest.unwrap_or(LONGEST_OF_REFERENCE * reference_time);
+    if longest < 10.0 * reference_time {
+        return checker.fail(fault::relaxes_too_short(longest, reference_time, span));
+    }
+    let lost = lost_after_long(share, reference_time, longest);
+    if lost >= 1.0 {
+        return checker.fail(fault::relaxes_away(share, lost, longest, span));
+    }
+    Some(Behaviour::Logarithmic { of, share, reference_time, longest })
 }
 
 fn inner<'a>(checker: &mut Checker<'a>, written: &Written<'a>, chosen: &Chosen<'a>) -> Option<Behaviour> {

@@ -2,6 +2,7 @@
 //! check. Out: data that `mechanics` turns into a model and `output` into words. It bends nothing itself.
 
 use super::portal::Portal;
+use crate::mechanics::logarithmic::lost_after_long;
 
 /// Restoring force of a virtual specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +37,8 @@ pub enum Behaviour {
     Rate { of: Box<Behaviour>, reference_velocity: f64, exponent: f64 },
     /// A spring and a dashpot one behind the other, beside the rest: its force relaxes. `stiffness` N/m, `time_constant` s.
     Maxwell { of: Box<Behaviour>, stiffness: f64, time_constant: f64 },
+    /// What is reached relaxes with the logarithm of time: of every newton `share`·ln(1 + t/`reference_time`) is lost, until `longest` (s).
+    Logarithmic { of: Box<Behaviour>, share: f64, reference_time: f64, longest: f64 },
     /// A portal frame by plastic hinges.
     Portal(Portal),
 }
@@ -156,7 +159,7 @@ impl Behaviour {
             Self::Bolted(bolted) if bolted.clearance == 0.0 && bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Bolted(bolted) => bolted.stiffness,
             Self::Table(table) => table.initial_stiffness(),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.initial_stiffness(),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.initial_stiffness(),
             Self::Maxwell { of, stiffness, .. } => of.initial_stiffness() + stiffness,
             Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.initial_stiffness()).sum::<f64>(),
             Self::Parallel(parts) => parts.iter().map(Self::initial_stiffness).sum(),
@@ -175,7 +178,7 @@ impl Behaviour {
             }
             Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Table(table) => table.steepest(|_| true),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.largest_stiffness(),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.largest_stiffness(),
             Self::Maxwell { of, stiffness, .. } => of.largest_stiffness() + stiffness,
             Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.largest_stiffness()).sum::<f64>(),
             Self::Parallel(parts) => parts.iter().map(Self::largest_stiffness).sum(),
@@ -195,6 +198,9 @@ impl Behaviour {
     pub fn relaxed_stiffness(&self) -> f64 {
         match self {
             Self::Maxwell { of, .. } => of.relaxed_stiffness(),
+            Self::Logarithmic { of, share, reference_time, longest } => {
+                of.relaxed_stiffness() * (1.0 - lost_after_long(*share, *reference_time, *longest))
+            }
             other => other.initial_stiffness(),
         }
     }
@@ -204,7 +210,9 @@ impl Behaviour {
     pub fn parts(&self) -> &[Behaviour] {
         match self {
             Self::Series(parts) | Self::Parallel(parts) => parts,
-            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } => std::slice::from_ref(of),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                std::slice::from_ref(of)
+            }
             _ => &[],
         }
     }
@@ -229,6 +237,10 @@ impl Behaviour {
             Self::Table(table) => table.points.iter().fold(0.0, |most: f64, [_, force]| most.max(force.abs())) * table.scale,
             Self::Fracture { of, at: Breaks::Force(force) } => of.capacity().min(*force),
             Self::Fracture { of, .. } | Self::Rate { of, .. } => of.capacity(),
+            // What was lost one way is felt more the other way.
+            Self::Logarithmic { of, share, reference_time, longest } => {
+                of.capacity() * (1.0 + lost_after_long(*share, *reference_time, *longest))
+            }
             Self::Series(parts) => parts.iter().map(Self::capacity).fold(f64::INFINITY, f64::min),
             Self::Parallel(parts) => parts.iter().map(Self::capacity).sum(),
             Self::Portal(portal) => portal.capacity(),
@@ -269,7 +281,7 @@ impl Behaviour {
                     *force *= factor;
                 }
             }
-            Self::Rate { of, .. } => **of = of.scaled(factor),
+            Self::Rate { of, .. } | Self::Logarithmic { of, .. } => **of = of.scaled(factor),
             Self::Maxwell { of, stiffness, .. } => {
                 **of = of.scaled(factor);
                 *stiffness *= factor;

@@ -90,7 +90,7 @@ impl SpecimenModel {
             Behaviour::Fracture { of, at } => Self::Fracture(Box::new(Fracture::new(Self::new(of), *at))),
             Behaviour::Series(parts) => Series::of(parts.iter().map(Self::new)),
             Behaviour::Parallel(parts) => Self::Parallel(parts.iter().map(Self::new).collect()),
-            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } => Self::new(of),
+            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } | Behaviour::Logarithmic { of, .. } => Self::new(of),
         }
     }
 }
