@@ -5,6 +5,7 @@ use super::choice::Chosen;
 use super::faults::specimens as fault;
 use super::table_file;
 use crate::mechanics::beam;
+use crate::mechanics::logarithmic::lost_after_long;
 use crate::plan::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading};
 use crate::schema::Variant;
 use crate::source::Span;
@@ -14,6 +15,11 @@ use crate::syntax::ast::{Expr, ExprKind};
 pub const MOST_PARTS: usize = 16;
 /// Springs one behind the other, at most: each one more makes every move some ten times dearer.
 pub const MOST_IN_SERIES: usize = 4;
+
+/// How long a force relaxes where the plan does not say, in reference times.
+const LONGEST_OF_REFERENCE: f64 = 1e6;
+/// And how long at least: shorter, the logarithm has no room.
+const LEAST_OF_REFERENCE: f64 = 10.0;
 
 /// A behaviour as it was written, with the variants it may be one of.
 pub struct Written<'a> {
@@ -146,7 +152,7 @@ fn logarithmic<'a>(
     let of = Box::new(inner(checker, written, chosen)?);
     let (share, reference_time) = (share?, time?);
     let longest = longest.unwrap_or(LONGEST_OF_REFERENCE * reference_time);
-    if longest < 10.0 * reference_time {
+    if longest < LEAST_OF_REFERENCE * reference_time {
         return checker.fail(fault::relaxes_too_short(longest, reference_time, span));
     }
     let lost = lost_after_long(share, reference_time, longest);

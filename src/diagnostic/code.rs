@@ -44,6 +44,7 @@ codes! {
     E105 NestedTooDeep Error;
     E106 BadText Error;
     E107 TooLarge Error;
+    E108 RelaxesAway Error;
     // 2: names
     E201 UnknownBlock Error;
     E202 UnknownField Error;
@@ -152,6 +153,7 @@ codes! {
     W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
+    W726 FewDecades Warning;
 }
 
 impl std::fmt::Display for Code {

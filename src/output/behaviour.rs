@@ -124,6 +124,11 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
             let (stiffness, tau) = (shown(*stiffness, Of::STIFFNESS), shown(*time_constant, Of::TIME));
             format!("[{}], beside it {stiffness} that relax with a time constant of {tau}", words(of, shown))
         }
+        Behaviour::Logarithmic { of, share, reference_time, longest } => {
+            let share = shown(*share, Of::NUMBER);
+            let [time, longest] = [*reference_time, *longest].map(|time| shown(time, Of::TIME));
+            format!("[{}], of which {share}·ln(1 + t/{time}) relaxes, until {longest}", words(of, shown))
+        }
         Behaviour::Beam(beam) => beam_words(beam, shown),
         Behaviour::Portal(portal) => portal_words(portal, shown),
     }

@@ -182,13 +182,27 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
     Variant::with(
         "maxwell",
         &[
-            Field::inner("of", "what stands beside it; may be another `maxwell`").required("of: elastic(stiffness: 300 kN/m)"),
+            Field::inner("of", "what stands beside it; may be another `maxwell`, or a `logarithmic`").required("of: elastic(stiffness: 300 kN/m)"),
             STIFFNESS,
             Field::quantity("time_constant", Dimension::TIME, "τ in which its force falls to 1/e at rest")
                 .required("time_constant: 2 s")
                 .above_zero(),
         ],
         "a spring and a dashpot one behind the other, beside the rest: force that relaxes; stands outermost",
+    ),
+    Variant::with(
+        "logarithmic",
+        &[
+            Field::inner("of", "what relaxes").required("of: bilinear(stiffness: 300 kN/m, yield_force: 6 kN)"),
+            Field::quantity("share", Dimension::NUMBER, "a: of the reached force, lost each time that 1 + t/t₀ has grown e-fold")
+                .required("share: 1 %")
+                .above_zero_up_to(1.0),
+            Field::quantity("reference_time", Dimension::TIME, "t₀ of ln(1 + t/t₀)").required("reference_time: 1 s").above_zero(),
+            Field::quantity("longest", Dimension::TIME, "time after which nothing more is lost")
+                .above_zero()
+                .or_said("a million times the `reference_time`"),
+        ],
+        "the reached force falls by a ln(1 + t/t₀) of itself, each step's by its own time; stands outermost, or in a `maxwell`",
     ),
     Variant::with(
         "beam",
