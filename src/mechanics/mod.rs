@@ -25,10 +25,10 @@ pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
-pub mod recorded_path;
 pub mod reached_fit;
 #[cfg(test)]
 mod reached_fit_tests;
+pub mod recorded_path;
 pub mod relaxation;
 pub mod relaxation_law;
 #[cfg(test)]

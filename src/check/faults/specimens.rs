@@ -37,7 +37,7 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
 /// `lost`: the share of a force that is gone after long.
 pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnostic {
     let longest = shown(longest, Dimension::TIME);
-    let percent = |number: f64| crate::quantity::display::number(100.0 * number);
+    let percent = |number: f64| crate::quantity::display::significant(100.0 * number, 3);
     Diagnostic::new(Code::RelaxesAway, "a force that relaxes cannot lose more than itself")
         .at(span, format!("loses {} % of it until {longest}", percent(lost)))
         .help(format!("a `share` below {} %, or a shorter `longest`", percent(0.99 * share / lost)))
