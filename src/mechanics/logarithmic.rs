@@ -130,7 +130,11 @@ mod tests {
             held = until;
             let by_hand = -1000.0 * SHARE * f64::ln_1p(until / TIME);
             // A thousand million times shorter than the longest: t/T of `a` is missing besides.
-            assert!((once.force() - by_hand).abs() < 1e-6 * SHARE * 1000.0 + 1000.0 * SHARE * until / LONGEST, "{} N at {until} s", once.force());
+            assert!(
+                (once.force() - by_hand).abs() < 1e-6 * SHARE * 1000.0 + 1000.0 * SHARE * until / LONGEST,
+                "{} N at {until} s",
+                once.force()
+            );
             assert!((once.force() - often.force()).abs() < 1e-9);
             let rate: f64 = once.branches().iter().map(|branch| branch.rate_after(0.0)).sum();
             assert!((rate / (1000.0 * SHARE / (TIME + until)) - 1.0).abs() < 2e-5, "{rate} N/s");

@@ -113,7 +113,7 @@ pub fn fit_reached(holds: &[Hold], before: f64, asked: Option<RelaxationLaw>, ra
     let laws = RelaxationLaw::BOTH.into_iter().filter(|law| asked.is_none_or(|asked| asked == *law));
     let mut fits: Vec<LawFit> = laws.filter_map(|law| problem.fit(law)).collect();
     fits.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
-    let best = fits.first().ok_or(Unrelaxed::TooFew)?;
+    let best = fits.first().ok_or(Unrelaxed::Steady)?;
     if best.criterion >= corrected_bic(problem.floored(problem.steady()), problem.count, numbers) {
         return Err(Unrelaxed::Steady);
     }
@@ -274,7 +274,8 @@ impl<'a> Problem<'a> {
             // Half a decade at once, at most: far off, the slopes say little.
             let mut part = (1.2 / step[1].abs()).min(1.0);
             let better = (0..12).find_map(|_| {
-                let next = ((share + part * step[0]).clamp(-MOST_SHARE, MOST_SHARE), (time * (part * step[1]).exp()).clamp(low, high));
+                let next =
+                    ((share + part * step[0]).clamp(-MOST_SHARE, MOST_SHARE), (time * (part * step[1]).exp()).clamp(low, high));
                 part *= 0.5;
                 Some((next, self.squares(law, next.0, next.1))).filter(|(_, found)| *found < squares)
             });
@@ -368,7 +369,8 @@ fn slow_enough(rate: f64, pause: f64, losing: impl Fn(f64) -> f64) -> f64 {
 
 /// Of Σ of the squares and products of two columns; None where they are one.
 fn inverse(columns: &[Vec<f64>; 2]) -> Option<Matrix2<f64>> {
-    let product = |one: usize, other: usize| columns[one].iter().zip(&columns[other]).map(|(one, other)| one * other).sum::<f64>();
+    let product =
+        |one: usize, other: usize| columns[one].iter().zip(&columns[other]).map(|(one, other)| one * other).sum::<f64>();
     let sizes = [product(0, 0).sqrt(), product(1, 1).sqrt()];
     if sizes.iter().any(|size| *size <= 0.0) {
         return None;

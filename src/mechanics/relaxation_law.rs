@@ -77,7 +77,9 @@ mod tests {
     #[test]
     fn the_mean_over_a_move_is_the_mean_of_its_instants() {
         for law in RelaxationLaw::BOTH {
-            for (since, moved_for, time) in [(0.0, 0.5, 0.02), (3.0, 0.5, 1.5), (0.2, 40.0, 7.0), (5.0, 0.06, 1.0), (5.0, 1e-3, 1.0)] {
+            for (since, moved_for, time) in
+                [(0.0, 0.5, 0.02), (3.0, 0.5, 1.5), (0.2, 40.0, 7.0), (5.0, 0.06, 1.0), (5.0, 1e-3, 1.0)]
+            {
                 let parts = 40_000;
                 let at = |part: u32| since + moved_for * (f64::from(part) + 0.5) / f64::from(parts);
                 let instant = |t: f64| match law {

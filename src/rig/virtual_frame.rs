@@ -13,8 +13,8 @@ use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
 use crate::mechanics::logarithmic::Went;
 use crate::mechanics::maxwell::{MaxwellBranch, Travel};
-use crate::mechanics::relaxing::Relaxing;
 use crate::mechanics::path::Path;
+use crate::mechanics::relaxing::Relaxing;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Frame, Settle, Storey, VirtualLink};
 
@@ -51,13 +51,7 @@ struct Axis {
 enum Structure {
     /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift.
     /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
-    Storeys {
-        models: Vec<SpecimenModel>,
-        dampers: Vec<CellDamping>,
-        relaxing: Vec<Relaxing>,
-        drift: Vec<f64>,
-        shear: Vec<f64>,
-    },
+    Storeys { models: Vec<SpecimenModel>, dampers: Vec<CellDamping>, relaxing: Vec<Relaxing>, drift: Vec<f64>, shear: Vec<f64> },
     /// R = K X.
     Matrix(SymmetricBand),
 }

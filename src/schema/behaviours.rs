@@ -182,7 +182,8 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
     Variant::with(
         "maxwell",
         &[
-            Field::inner("of", "what stands beside it; may be another `maxwell`, or a `logarithmic`").required("of: elastic(stiffness: 300 kN/m)"),
+            Field::inner("of", "what stands beside it; may be another `maxwell`, or a `logarithmic`")
+                .required("of: elastic(stiffness: 300 kN/m)"),
             STIFFNESS,
             Field::quantity("time_constant", Dimension::TIME, "τ in which its force falls to 1/e at rest")
                 .required("time_constant: 2 s")

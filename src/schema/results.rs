@@ -45,7 +45,11 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
         Dimension::TIME,
         "pause that leaves no more to relax than the accuracy asked for, or ends at the rate asked for",
     ),
-    ResultKind::measured("relaxation_share", Dimension::NUMBER, "a or g: what the law takes of a reached force, with a law of it"),
+    ResultKind::measured(
+        "relaxation_share",
+        Dimension::NUMBER,
+        "a or g: what the law takes of a reached force, with a law of it",
+    ),
     ResultKind::measured("reference_time", Dimension::TIME, "t₀ of the logarithm of time"),
     ResultKind::measured("relaxation_rate", Dimension::FORCE_RATE, "how fast the worst pause was losing force at its end"),
     ResultKind::new(

@@ -116,9 +116,10 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares fit."),
         ),
-        (History::Ramp(RampHistory { reached: Some(fit), holds, .. }), FigureKind::Relaxation) => {
-            (relaxation::lost(holds, fit), format!("{name}: force lost in the pauses, by the laws of relaxation, against the time held."))
-        }
+        (History::Ramp(RampHistory { reached: Some(fit), holds, .. }), FigureKind::Relaxation) => (
+            relaxation::lost(holds, fit),
+            format!("{name}: force lost in the pauses, by the laws of relaxation, against the time held."),
+        ),
         (History::Ramp(history), FigureKind::Relaxation) => (
             relaxation::left(history, history.relaxation.as_ref()?),
             format!("{name}: force still to relax, the measured less the fitted one after long, against the time held."),

@@ -30,8 +30,11 @@ pub(super) fn lost(holds: &[Hold], fit: &ReachedFit) -> Chart {
         chosen[0] = best.worst;
     }
     let first = |hold: usize| best.force(hold, 0.0).unwrap_or(0.0);
-    for (law, colour, width, dash) in
-        fit.fits.iter().zip([(palette::VERMILION, 1.6, SOLID), (palette::BLACK, 1.2, DASHED)]).map(|(law, (c, w, d))| (law, c, w, d))
+    for (law, colour, width, dash) in fit
+        .fits
+        .iter()
+        .zip([(palette::VERMILION, 1.6, SOLID), (palette::BLACK, 1.2, DASHED)])
+        .map(|(law, (c, w, d))| (law, c, w, d))
     {
         for (order, index) in chosen.iter().enumerate() {
             let seconds = holds[*index].readings.last().map_or(0.0, |(time, _)| *time);

@@ -7,8 +7,8 @@ use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
     Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, FrameUnload, Ground, Impact,
-    InspectTrigger, Integrator, Level, Mode, Move, Procedure, ProcedureKind, Shake, ShakeDamping, Sides,
-    Stepping, StiffnessRamp, Storey, Test, Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
+    InspectTrigger, Integrator, Level, Mode, Move, Procedure, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp,
+    Storey, Test, Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
 };
 use crate::quantity::Dimension;
 use crate::run::testing::{elastic_plan, every, impact, ramp, result_of, struck_frame};
