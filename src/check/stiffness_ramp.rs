@@ -61,7 +61,7 @@ fn fit(checker: &mut Checker, block: usize) -> Option<RampFit> {
 /// How the pauses are watched; None where a fault was reported.
 #[expect(clippy::option_option, reason = "left out and faulty are different things here")]
 fn relaxation(checker: &mut Checker, block: usize) -> Option<Option<WatchedHold>> {
-    let Some((entry, _)) = checker.given(block, "relaxation") else { return Some(None) };
+    let Some((entry, written)) = checker.given(block, "relaxation") else { return Some(None) };
     let place = checker.place(block, entry);
     let chosen = checker.choice(block, "relaxation")?;
     let readings = checker.constant_argument(&chosen, "readings", place).and_then(whole);
@@ -77,8 +77,8 @@ fn relaxation(checker: &mut Checker, block: usize) -> Option<Option<WatchedHold>
     let (rate, readings) = (checker.constant_argument(&chosen, "rate", place)?, readings?);
     let law = (chosen.variant.name == "logarithmic").then_some(RelaxationLaw::Logarithmic);
     if law.is_none() && readings < ENOUGH_READINGS {
-        let written = chosen.find("readings").and_then(|(_, written)| written).map_or(entry.value.span, |written| written.span);
-        checker.faults.push(specimens::few_decades(readings, written));
+        let at = chosen.find("readings").and_then(|(_, given)| given).map_or(written.value.span, |given| given.span);
+        checker.faults.push(specimens::few_decades(readings, at));
     }
     Some(Some(WatchedHold { model: WatchedModel::Reached { law, rate }, readings }))
 }
