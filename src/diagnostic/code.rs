@@ -44,7 +44,6 @@ codes! {
     E105 NestedTooDeep Error;
     E106 BadText Error;
     E107 TooLarge Error;
-    E108 RelaxesAway Error;
     // 2: names
     E201 UnknownBlock Error;
     E202 UnknownField Error;

@@ -1,4 +1,4 @@
-//! Faults of specimens: E108, E630 to E634, E649, E650, and W715, W726.
+//! Faults of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W726.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -38,7 +38,7 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
 pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnostic {
     let longest = shown(longest, Dimension::TIME);
     let percent = |number: f64| crate::quantity::display::significant(100.0 * number, 3);
-    Diagnostic::new(Code::RelaxesAway, "a force that relaxes cannot lose more than itself")
+    Diagnostic::new(Code::OutOfRange, "a force that relaxes cannot lose more than itself")
         .at(span, format!("loses {} % of it until {longest}", percent(lost)))
         .help(format!("a `share` below {} %, or a shorter `longest`", percent(0.99 * share / lost)))
 }
@@ -46,7 +46,7 @@ pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnost
 /// The law ends before it has begun.
 pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagnostic {
     let times = [longest, reference_time].map(|time| shown(time, Dimension::TIME));
-    Diagnostic::new(Code::RelaxesAway, format!("relaxation that ends after {} is none with the logarithm of time", times[0]))
+    Diagnostic::new(Code::OutOfRange, format!("relaxation that ends after {} is none with the logarithm of time", times[0]))
         .at(span, format!("its `reference_time` is {}", times[1]))
         .help(format!("a `longest` of {} or more", shown(10.0 * reference_time, Dimension::TIME)))
 }
