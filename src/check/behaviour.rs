@@ -6,7 +6,9 @@ use super::faults::specimens as fault;
 use super::table_file;
 use crate::mechanics::beam;
 use crate::mechanics::logarithmic::lost_after_long;
-use crate::plan::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading};
+use crate::plan::{
+    Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading,
+};
 use crate::schema::Variant;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind};
@@ -82,17 +84,20 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
             let (force, displacement) = (number("force_factor"), number("displacement_factor"));
             let exponent = number("unloading_exponent");
             let (rate, residual) = (number("deterioration_exponent"), number("residual_strength"));
-            let capacity = checker.optional_argument(&chosen, "energy_capacity", place)?;
             let (rate, residual) = (rate?, residual?);
-            Some(Behaviour::Pinching(Pinching {
+            let pinching = Pinching {
                 stiffness: stiffness?,
                 yield_force: yield_force?,
                 hardening: hardening?,
                 force_factor: force?,
                 displacement_factor: displacement?,
                 unloading_exponent: exponent?,
-                deterioration: capacity.map(|capacity| Deterioration { capacity, exponent: rate, residual }),
-            }))
+                capping: None,
+                deterioration: None,
+            };
+            let deterioration = deterioration(checker, &chosen, place, (rate, residual))?;
+            let capping = capping(checker, &chosen, place, &pinching, residual)?;
+            Some(Behaviour::Pinching(Pinching { capping, deterioration, ..pinching }))
         }
         "degrading" => {
             let (stiffness, half, residual) = (number("stiffness"), number("half_displacement"), number("residual"));
@@ -130,6 +135,48 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
             .map(|parts| Behaviour::Parallel(parts.into_iter().map(|(part, _)| part).collect())),
         "portal" => portal(checker, &chosen, place, expr.span),
         _ => beam(checker, &chosen, place, written.own_mass),
+    }
+}
+
+/// The capacities of the modes of deterioration; Some(None) where none is stated.
+#[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+fn deterioration<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Place,
+    (exponent, residual): (f64, f64),
+) -> Option<Option<Deterioration>> {
+    let mut of = |name| checker.optional_argument(chosen, name, place);
+    let stated = [of("energy_capacity"), of("capping_capacity"), of("unloading_capacity"), of("reloading_capacity")];
+    let [strength, capping, unloading, reloading] = stated;
+    let all = [strength?, capping?, unloading?, reloading?];
+    let [strength, capping, unloading, reloading] = all.map(|capacity| capacity.unwrap_or(f64::INFINITY));
+    let rule = Deterioration { strength, capping, unloading, reloading, exponent, residual };
+    Some(all.iter().any(Option::is_some).then_some(rule))
+}
+
+/// Where a backbone begins to fall: past yield, and its partners only with it.
+#[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+fn capping<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Place,
+    pinching: &Pinching,
+    residual: f64,
+) -> Option<Option<Capping>> {
+    let displacement = checker.optional_argument(chosen, "capping_displacement", place)?;
+    let slope = checker.constant_argument(chosen, "capping_slope", place)?;
+    let given = |name: &str| chosen.find(name).and_then(|(_, written)| written).map(|written| written.span);
+    let Some(displacement) = displacement else {
+        return match ["capping_slope", "capping_capacity"].into_iter().find_map(|name| Some((name, given(name)?))) {
+            Some((name, span)) => checker.fail(fault::missing_partner(name, "capping_displacement", span)),
+            None => Some(None),
+        };
+    };
+    let yielded = pinching.yield_force / pinching.stiffness;
+    match given("capping_displacement") {
+        Some(span) if displacement <= yielded => checker.fail(fault::capped_before_yield(displacement, yielded, span)),
+        _ => Some(Some(Capping { displacement, slope, residual })),
     }
 }
 

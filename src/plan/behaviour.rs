@@ -87,15 +87,31 @@ pub struct Pinching {
     pub displacement_factor: f64,
     /// a of the unloading stiffness K (x_y/x_max)^a.
     pub unloading_exponent: f64,
-    /// How its strength falls with the energy it has taken. None: not at all.
+    /// Where its strength begins to fall with the displacement. None: nowhere.
+    pub capping: Option<Capping>,
+    /// How it wears with the energy it has taken. None: not at all.
     pub deterioration: Option<Deterioration>,
 }
 
-/// Cyclic deterioration of strength by energy; the rule stands in `mechanics/specimen/pinching.rs`.
+/// A backbone that falls beyond a displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capping {
+    /// m
+    pub displacement: f64,
+    /// How steeply it falls, over the initial stiffness.
+    pub slope: f64,
+    /// Strength that is never lost, over the first one.
+    pub residual: f64,
+}
+
+/// Cyclic deterioration by energy: of each mode γ, the energy that it can take in all, over `F_y` `x_y`; infinite where the mode is off.
+/// The rule stands in `mechanics/specimen/deterioration.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deterioration {
-    /// γ: energy it can take in all, over `F_y` `x_y`.
-    pub capacity: f64,
+    pub strength: f64,
+    pub capping: f64,
+    pub unloading: f64,
+    pub reloading: f64,
     /// c
     pub exponent: f64,
     /// Strength that is never lost, over the first one.
@@ -227,6 +243,9 @@ impl Behaviour {
             Self::Bilinear { yield_force, hardening, .. } | Self::BoucWen { yield_force, hardening, .. } => {
                 hardens(*hardening, *yield_force)
             }
+            Self::Pinching(Pinching { stiffness, yield_force, hardening, capping: Some(capping), .. }) => {
+                yield_force + hardening * stiffness * (capping.displacement - yield_force / stiffness)
+            }
             Self::Pinching(pinching) => hardens(pinching.hardening, pinching.yield_force),
             Self::Multilinear { corners } => match corners.as_slice() {
                 [.., [_, before], [_, last]] if before == last => *last,
@@ -295,7 +314,7 @@ impl Behaviour {
     #[must_use]
     pub fn never_falls(&self) -> bool {
         match self {
-            Self::Fracture { .. } => false,
+            Self::Fracture { .. } | Self::Pinching(Pinching { capping: Some(_), .. }) => false,
             Self::Table(table) => table.points.windows(2).all(|pair| pair[1][1] >= pair[0][1]),
             _ => self.parts().iter().all(Self::never_falls),
         }

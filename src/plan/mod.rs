@@ -22,7 +22,7 @@ use crate::quantity::Dimension;
 use crate::uncertainty::Source;
 
 pub use axis::{AxisCalibration, AxisPlan};
-pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
+pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use devices::Behind;
 pub use escalate::{Between, BlowOn, Escalate, MOST_BLOWS};

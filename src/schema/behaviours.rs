@@ -103,8 +103,23 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
                 .within(0.0, 1.0),
             Field::quantity("energy_capacity", Dimension::NUMBER, "γ: energy that takes all its strength, over F_y x_y")
                 .above_zero()
-                .or_said("no deterioration"),
-            Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of the strength lost at each reversal")
+                .or_said("its strength is kept"),
+            Field::quantity("unloading_capacity", Dimension::NUMBER, "γ of the unloading stiffness")
+                .above_zero()
+                .or_said("it is kept"),
+            Field::quantity("reloading_capacity", Dimension::NUMBER, "γ of the peak that it reloads to, which moves out")
+                .above_zero()
+                .or_said("it is kept"),
+            Field::quantity("capping_displacement", Dimension::LENGTH, "x_c from which on its strength falls")
+                .above_zero()
+                .or_said("it never falls"),
+            Field::quantity("capping_slope", Dimension::NUMBER, "how steeply it falls there, over the initial stiffness")
+                .or(0.1, "")
+                .above_zero_up_to(10.0),
+            Field::quantity("capping_capacity", Dimension::NUMBER, "γ of the falling line, which moves in")
+                .above_zero()
+                .or_said("it is kept"),
+            Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of what is lost in each mode")
                 .or(1.0, "")
                 .within(0.5, 4.0),
             Field::quantity("residual_strength", Dimension::NUMBER, "strength that is never lost, over the first one")

@@ -34,6 +34,14 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
         .help("remove `most`, or remove `breaks` and let the criterion choose")
 }
 
+/// A backbone that falls before it yields.
+pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagnostic {
+    let [displacement, yielded] = [displacement, yielded].map(|place| shown(place, Dimension::LENGTH));
+    Diagnostic::new(Code::CornersDoNotFit, format!("a strength capped at {displacement} falls before it is reached"))
+        .at(span, format!("it yields at {yielded}"))
+        .help(format!("a `capping_displacement` beyond {yielded}"))
+}
+
 /// `lost`: the share of a force that is gone after long.
 pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnostic {
     let longest = shown(longest, Dimension::TIME);

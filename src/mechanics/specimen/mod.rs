@@ -5,9 +5,12 @@ mod bilinear;
 mod bolted;
 mod bouc_wen;
 mod degrading;
+mod deterioration;
 mod fracture;
 mod multilinear;
 mod pinching;
+#[cfg(test)]
+mod pinching_tests;
 mod series;
 mod table;
 #[cfg(test)]
