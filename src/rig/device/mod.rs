@@ -82,6 +82,11 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// How many axes it speaks of.
+    pub fn axis_count(&self) -> usize {
+        1 + self.others.len()
+    }
+
     /// Every axis, in order.
     pub fn axes(&self) -> impl Iterator<Item = Channel> + '_ {
         let first = Channel { displacement: self.displacement, force: self.force, flags: self.flags };

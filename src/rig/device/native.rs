@@ -115,7 +115,7 @@ impl NativeDevice {
             return Err(strange());
         }
         self.hello = Some(hello);
-        self.boot = Some(reply.boot);
+        self.boot = Some(reply.boot.into_string());
         self.introduction = line;
         Ok(())
     }
@@ -176,7 +176,7 @@ fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<A
     if let Some(was) = boot.filter(|was| **was != *reply.boot)
         && on(Guarding::Reboot)
     {
-        return Answer::Fault(DeviceFault::Rebooted { was: was.to_owned(), is: reply.boot });
+        return Answer::Fault(DeviceFault::Rebooted { was: was.to_owned(), is: reply.boot.into_string() });
     }
     if reply.sequence != sequence && on(Guarding::Sequence) || reply.kind != kind && reply.kind != Kind::Err {
         return Answer::Ignore;

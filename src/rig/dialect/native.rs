@@ -40,6 +40,10 @@
 //! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: what it does not do exactly, it refuses. Holding
 //! keeps the load; taking it away is an operator's act. None of this is in place of a wired emergency stop and end switches.
 
+use std::fmt::Write as _;
+
+use compact_str::CompactString;
+
 use super::number;
 use crate::plan::Interval;
 use crate::rig::LastMove;
@@ -49,6 +53,9 @@ use crate::rig::failpoint::{Guarding, on};
 /// Longest request with its ending, bytes: of one axis, of several.
 pub const LONGEST_FRAME: usize = 96;
 pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
+
+/// Words of the reply to `MEAS` of a rig of one axis: what most replies are.
+const WORDS_OF_A_READING: usize = 6;
 
 /// Axes of a rig, at most: the reply to HELLO is no longer than a reply may be.
 pub const MOST_AXES: usize = 6;
@@ -125,8 +132,10 @@ pub enum Kind {
 pub struct Reply {
     pub kind: Kind,
     pub sequence: u32,
-    pub boot: String,
-    pub words: Vec<String>,
+    pub boot: CompactString,
+    /// Kept without a heap of their own where they are short, as all but names are: a rig says six of them ten thousand
+    /// times a test.
+    pub words: Vec<CompactString>,
 }
 
 /// Why a line is no reply.
@@ -180,31 +189,34 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
             longest = LONGEST_FRAME_OF_SEVERAL;
         }
     };
-    let body = match request {
-        Request::Hello => format!("HELLO {sequence}"),
+    let mut frame = String::with_capacity(LONGEST_FRAME);
+    match request {
+        Request::Hello => write!(frame, ">HELLO {sequence}"),
         Request::Limits(bounds) => {
             several(bounds.axes.len());
             let axes: Vec<String> = bounds.axes.iter().map(bounds_of).collect::<Option<_>>()?;
-            format!("LIM {sequence} {} {}", axes.join(" "), length(bounds.top_speed)?)
+            write!(frame, ">LIM {sequence} {} {}", axes.join(" "), length(bounds.top_speed)?)
         }
         Request::Move { id, targets, speed } => {
             several(targets.len());
-            format!("MOVE {sequence} {id} {} {}", lengths(targets)?, length(*speed)?)
+            write!(frame, ">MOVE {sequence} {id} {} {}", lengths(targets)?, length(*speed)?)
         }
         Request::Glide { id, ends, seconds } => {
             several(ends.len());
-            format!("GLIDE {sequence} {id} {} {}", lengths(&in_turn(ends))?, time(*seconds)?)
+            write!(frame, ">GLIDE {sequence} {id} {} {}", lengths(&in_turn(ends))?, time(*seconds)?)
         }
-        Request::Measure { readings } => format!("MEAS {sequence} {readings}"),
-        Request::Status => format!("STAT {sequence}"),
-        Request::Stop => format!("STOP {sequence}"),
-        Request::Clear => format!("CLR {sequence}"),
+        Request::Measure { readings } => write!(frame, ">MEAS {sequence} {readings}"),
+        Request::Status => write!(frame, ">STAT {sequence}"),
+        Request::Stop => write!(frame, ">STOP {sequence}"),
+        Request::Clear => write!(frame, ">CLR {sequence}"),
         Request::Reference { token } => {
             let word = !token.is_empty() && token.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
-            word.then(|| format!("REF {sequence} {token}"))?
+            word.then(|| write!(frame, ">REF {sequence} {token}"))?
         }
-    };
-    let frame = format!(">{body}*{:04X}\n", checksum(body.as_bytes()));
+    }
+    .ok()?;
+    let sum = checksum(&frame.as_bytes()[1..]);
+    writeln!(frame, "*{sum:04X}").ok()?;
     (frame.len() <= longest).then(|| frame.into_bytes())
 }
 
@@ -233,9 +245,9 @@ pub(crate) fn time(seconds: f64) -> Option<String> {
 
 /// How long it is to the end of a way (s), as the reply to `GLIDE` says.
 #[must_use]
-pub fn left(words: &[String]) -> Option<f64> {
+pub fn left<W: AsRef<str>>(words: &[W]) -> Option<f64> {
     let [_, left] = words else { return None };
-    number::fixed(left.as_bytes()).filter(|left| *left >= 0.0).map(|left| left / 1e3)
+    number::fixed(left.as_ref().as_bytes()).filter(|left| *left >= 0.0).map(|left| left / 1e3)
 }
 
 /// The sequence number of a frame to be sent.
@@ -273,20 +285,21 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
     number::hexadecimal(boot.as_bytes(), 4).ok_or(Broken::Shape)?;
     // Whole and in order, but with an empty or strange field: the rig says the same however often it is asked for this
     // reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
-    let words = words.map(|bytes| word(bytes).unwrap_or_default()).collect();
-    Ok(Reply { kind, sequence, boot, words })
+    let mut kept = Vec::with_capacity(WORDS_OF_A_READING);
+    kept.extend(words.map(|bytes| word(bytes).unwrap_or_default()));
+    Ok(Reply { kind, sequence, boot, words: kept })
 }
 
-fn word(bytes: &[u8]) -> Option<String> {
+fn word(bytes: &[u8]) -> Option<CompactString> {
     let printable = !bytes.is_empty() && bytes.iter().all(u8::is_ascii_graphic);
-    printable.then(|| String::from_utf8(bytes.to_vec()).ok()).flatten()
+    printable.then(|| CompactString::from_utf8(bytes).ok()).flatten()
 }
 
 /// What a rig says of itself.
 #[must_use]
-pub fn hello(words: &[String]) -> Option<Hello> {
+pub fn hello<W: AsRef<str>>(words: &[W]) -> Option<Hello> {
     let [model, serial, firmware, numbers @ ..] = words else { return None };
-    if words.iter().any(String::is_empty) {
+    if words.iter().any(|word| word.as_ref().is_empty()) {
         return None;
     }
     // For each axis four limits and a target, and two words for all.
@@ -296,49 +309,50 @@ pub fn hello(words: &[String]) -> Option<Hello> {
     }
     let (limits, rest) = numbers.split_at(4 * axes);
     let [top_speed, id, targets @ ..] = rest else { return None };
-    let axis = |words: &[String]| {
+    let axis = |words: &[W]| {
         let [low, high, least, most] = words else { return None };
         Some(AxisBounds {
-            displacement: Interval { low: millimetres(low)?, high: millimetres(high)? },
-            force: Interval { low: number::fixed(least.as_bytes())?, high: number::fixed(most.as_bytes())? },
+            displacement: Interval { low: millimetres(low.as_ref())?, high: millimetres(high.as_ref())? },
+            force: Interval { low: number::fixed(least.as_ref().as_bytes())?, high: number::fixed(most.as_ref().as_bytes())? },
         })
     };
     let axes = limits.chunks_exact(4).map(axis).collect::<Option<_>>()?;
-    let bounds = Bounds { axes, top_speed: millimetres(top_speed)? };
-    let id = number::count(id.as_bytes())?;
-    let targets = targets.iter().map(|target| millimetres(target)).collect::<Option<_>>()?;
+    let bounds = Bounds { axes, top_speed: millimetres(top_speed.as_ref())? };
+    let id = number::count(id.as_ref().as_bytes())?;
+    let targets = targets.iter().map(|target| millimetres(target.as_ref())).collect::<Option<_>>()?;
+    let said = |word: &W| word.as_ref().to_owned();
     let last = (id > 0).then_some(LastMove { id, targets });
-    Some(Hello { model: model.clone(), serial: serial.clone(), firmware: firmware.clone(), bounds, last })
+    Some(Hello { model: said(model), serial: said(serial), firmware: said(firmware), bounds, last })
 }
 
 /// The reading of a `DATA` reply.
 #[must_use]
-pub fn data(words: &[String]) -> Option<Data> {
+pub fn data<W: AsRef<str>>(words: &[W]) -> Option<Data> {
     let [time, axes @ .., state] = words else { return None };
     if axes.is_empty() || !axes.len().is_multiple_of(4) {
         return None;
     }
     #[expect(clippy::cast_precision_loss, reason = "ms since power-up")]
-    let time = number::count(time.as_bytes())? as f64 / 1e3;
+    let time = number::count(time.as_ref().as_bytes())? as f64 / 1e3;
     let axes = axes.chunks_exact(4).map(axis_data).collect::<Option<_>>()?;
-    Some(Data { time, axes, state: self::state(state)? })
+    Some(Data { time, axes, state: self::state(state.as_ref())? })
 }
 
 /// The first axis (from 1) of a `DATA` reply of several that has no number where one belongs.
 #[must_use]
-pub fn axis_without_number(words: &[String]) -> Option<usize> {
+pub fn axis_without_number<W: AsRef<str>>(words: &[W]) -> Option<usize> {
     let [_, axes @ .., _] = words else { return None };
     let several = axes.len() > 4 && axes.len().is_multiple_of(4);
     several.then(|| axes.chunks_exact(4).position(|words| axis_data(words).is_none())).flatten().map(|axis| axis + 1)
 }
 
-fn axis_data(words: &[String]) -> Option<AxisData> {
+fn axis_data<W: AsRef<str>>(words: &[W]) -> Option<AxisData> {
     let [displacement, force, raw, flags] = words else { return None };
     Some(AxisData {
-        displacement: millimetres(displacement)?,
-        force: number::fixed(force.as_bytes())?,
-        raw: number::whole(raw.as_bytes())?,
-        flags: self::flags(flags)?,
+        displacement: millimetres(displacement.as_ref())?,
+        force: number::fixed(force.as_ref().as_bytes())?,
+        raw: number::whole(raw.as_ref().as_bytes())?,
+        flags: self::flags(flags.as_ref())?,
     })
 }
 
@@ -376,8 +390,8 @@ pub fn state(word: &str) -> Option<State> {
 
 /// What the code of an `ERR` means.
 #[must_use]
-pub fn refusal(words: &[String]) -> String {
-    let code = words.first().map_or("", String::as_str);
+pub fn refusal<W: AsRef<str>>(words: &[W]) -> String {
+    let code = words.first().map_or("", W::as_ref);
     let meaning = match code {
         "SEQ" => "the rig is at another sequence number",
         "VERB" => "the rig does not know this request",
@@ -393,15 +407,32 @@ pub fn refusal(words: &[String]) -> String {
         "FAULT" => "the rig has a fault of its own",
         _ => "for a reason psd does not know",
     };
-    format!("{meaning} (`ERR {}`)", words.join(" "))
+    let said: Vec<&str> = words.iter().map(W::as_ref).collect();
+    format!("{meaning} (`ERR {}`)", said.join(" "))
 }
 
 /// CRC-16/CCITT-FALSE.
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u16 {
-    bytes.iter().fold(0xffff, |sum, byte| {
-        (0..8).fold(sum ^ u16::from(*byte) << 8, |sum, _| if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 })
-    })
+    bytes.iter().fold(0xffff, |sum, byte| sum << 8 ^ REMAINDERS[usize::from(sum >> 8 ^ u16::from(*byte))])
+}
+
+/// What is left of each byte, shifted out of the register, by the polynomial.
+static REMAINDERS: [u16; 256] = remainders();
+
+const fn remainders() -> [u16; 256] {
+    let mut of_bytes = [0; 256];
+    let mut byte: u16 = 0;
+    while byte < 256 {
+        let (mut sum, mut bit) = (byte << 8, 0);
+        while bit < 8 {
+            sum = if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 };
+            bit += 1;
+        }
+        of_bytes[byte as usize] = sum;
+        byte += 1;
+    }
+    of_bytes
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ impl<'a> Bytes<'a> {
         let other = || "the bytes in which the rig said who it is do not say this".to_owned();
         let reply = unescaped(said).and_then(|line| native::reply(&line).ok()).ok_or_else(other)?;
         let hello = native::hello(&reply.words).ok_or_else(other)?;
-        let device = native_identity(&hello, Some(reply.boot));
+        let device = native_identity(&hello, Some(reply.boot.into_string()));
         let alone = self.link.is_some_and(|link| link.load_cells().is_empty());
         let names = |whole: &str, part: &str| if alone { whole == part } else { whole.starts_with(part) };
         let told = &rig.identity;
