@@ -21,12 +21,15 @@ fn simple() -> impl Strategy<Value = Behaviour> {
             residual,
         },
     );
+    // Boxed, as all that is nested deep: its tree lies on the stack of a test else.
+    let tires = tires.boxed();
     // Past any yield, which comes at 2 m at the latest.
     let capped = (2.0..6.0_f64, 0.01..0.5_f64, 0.01..0.5_f64).prop_map(|(displacement, slope, residual)| Capping {
         displacement,
         slope,
         residual,
     });
+    let capped = capped.boxed();
     let falls = (prop::option::of(tires), prop::option::of(capped));
     let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
     let pinching = (stiffness(), force(), hardening(), shape, falls).prop_map(
@@ -46,6 +49,7 @@ fn simple() -> impl Strategy<Value = Behaviour> {
             })
         },
     );
+    let pinching = pinching.boxed();
     prop_oneof![
         stiffness().prop_map(|stiffness| Behaviour::Elastic { stiffness }),
         (stiffness(), force(), hardening()).prop_map(|(stiffness, yield_force, hardening)| Behaviour::Bilinear {
