@@ -123,7 +123,7 @@ fn of_many_noisy_runs_the_right_law_is_chosen_and_its_errors_are_their_spread() 
         let mut state = 77;
         let found: Vec<_> =
             (0..RUNS).map(|_| fit_reached(&noisy(&exact, 4.0, &mut state), BEFORE, None, SLOW).expect("it relaxes")).collect();
-        let right: Vec<&LawFit> = found.iter().map(|found| found.best()).filter(|fit| fit.law == law).collect();
+        let right: Vec<&LawFit> = found.iter().map(ReachedFit::best).filter(|fit| fit.law == law).collect();
         assert!(right.len() >= 118, "{law:?} is chosen {} times of {RUNS}", right.len());
         #[allow(clippy::cast_precision_loss)] // some hundred
         let count = right.len() as f64;
