@@ -35,11 +35,13 @@ pub mod relaxation_law;
 mod relaxation_tests;
 pub mod relaxing;
 pub mod rerun;
+pub mod rounding;
 pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod structure;
+pub mod student;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]

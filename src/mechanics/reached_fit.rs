@@ -37,6 +37,8 @@ pub struct LawFit {
     pub needed_pause: (f64, f64),
     /// Standard deviation of a reading about the fit, N.
     pub scatter: f64,
+    /// Degrees of freedom of that scatter: the readings less all that was found.
+    pub degrees: f64,
     /// BIC, as McQuarrie corrects it for few readings.
     pub criterion: f64,
     /// Whether the readings tell the time at all: it is neither shorter than they are nor longer than the holds.
@@ -53,6 +55,10 @@ pub struct ReachedFit {
 }
 
 impl ReachedFit {
+    /// Results that are known by its scatter.
+    pub const RESULTS: [&str; 6] =
+        ["time_constant", "remaining_relaxation", "needed_pause", "relaxation_share", "reference_time", "relaxation_rate"];
+
     /// What the readings are told by.
     #[must_use]
     pub fn best(&self) -> &LawFit {
@@ -341,6 +347,7 @@ impl<'a> Problem<'a> {
             remaining: ends.then(|| (remaining(share, time), error(&remaining))),
             needed_pause: (needed(share, time), error(&needed)),
             scatter: variance.sqrt(),
+            degrees: self.count - numbers,
             criterion: corrected_bic(self.floored(squares), self.count, numbers),
             told,
             moves: self.moves.clone(),

@@ -9,6 +9,7 @@ pub mod comparison;
 pub mod console;
 mod deviations;
 mod document;
+mod expansion;
 mod figures;
 mod manifest;
 mod number;
