@@ -79,7 +79,7 @@ pub(super) const IMPACT: &[ResultKind] = &[
         "largest mean contact force of a step; grows as 1/Δt under `rigid`",
     ),
     ResultKind::measured("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
-    ResultKind::count("contacts", "number of blows"),
+    ResultKind::count("contacts", "number of blows: contacts that began, also those inside a step"),
     ResultKind::measured("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
     ResultKind::measured("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
     ResultKind::measured("indentation_energy", Dimension::ENERGY, "limit force times indentation"),
