@@ -145,7 +145,8 @@ impl Talk {
     pub fn line(&mut self, ending: &[u8], deadline: f64) -> Result<Vec<u8>, Missed> {
         loop {
             if let Some(at) = find(&self.waiting, ending) {
-                let line: Vec<u8> = self.waiting.drain(..at + ending.len()).take(at).collect();
+                let line = self.waiting[..at].to_vec();
+                self.waiting.drain(..at + ending.len());
                 if std::mem::take(&mut self.overlong) {
                     self.tally.ignored += 1;
                     return Err(Missed::TooLong);
@@ -304,7 +305,10 @@ impl Talk {
 
 /// Where `ending` begins.
 fn find(bytes: &[u8], ending: &[u8]) -> Option<usize> {
-    bytes.windows(ending.len().max(1)).position(|window| window == ending)
+    match ending {
+        [only] => bytes.iter().position(|byte| byte == only),
+        _ => bytes.windows(ending.len().max(1)).position(|window| window == ending),
+    }
 }
 
 fn lost(error: &std::io::Error) -> DeviceFault {

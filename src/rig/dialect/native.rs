@@ -40,6 +40,8 @@
 //! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: what it does not do exactly, it refuses. Holding
 //! keeps the load; taking it away is an operator's act. None of this is in place of a wired emergency stop and end switches.
 
+use std::fmt::Write as _;
+
 use super::number;
 use crate::plan::Interval;
 use crate::rig::LastMove;
@@ -58,11 +60,11 @@ pub const MOST_AXES: usize = 6;
 pub enum Request<'a> {
     Hello,
     Limits(&'a Bounds),
-    /// Targets of every axis.
+    /// Targets of every axis and the speed as [`lengths`] and [`length`] write them: what is said is written once.
     Move {
         id: u64,
-        targets: &'a [f64],
-        speed: f64,
+        targets: &'a str,
+        speed: &'a str,
     },
     /// Where each axis passes and as fast as what, so long after the way before.
     Glide {
@@ -125,9 +127,36 @@ pub enum Kind {
 pub struct Reply {
     pub kind: Kind,
     pub sequence: u32,
-    pub boot: String,
-    pub words: Vec<String>,
+    /// As it came, without its ending.
+    pub line: Vec<u8>,
+    /// Where the word of the power-up begins in it.
+    boot: usize,
 }
+
+impl Reply {
+    /// Word of the power-up, 4 hexadecimal digits.
+    #[must_use]
+    pub fn boot(&self) -> &str {
+        text(&self.line[self.boot..self.boot + BOOT_DIGITS])
+    }
+
+    /// What it says, word by word. Whole and in order it may have an empty or a strange field: the rig says the same however
+    /// often it is asked for this reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
+    #[must_use]
+    pub fn words(&self) -> Vec<&str> {
+        let said = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
+        let mut words = Vec::with_capacity(USUAL_WORDS);
+        words.extend(said.split(|byte| *byte == b' ').skip(1).map(text));
+        words
+    }
+}
+
+/// Of the word of a power-up, and of `*` with the checksum behind it.
+const BOOT_DIGITS: usize = 4;
+const CHECK_LENGTH: usize = 5;
+
+/// Words of a reading of one axis, and some to spare.
+const USUAL_WORDS: usize = 8;
 
 /// Why a line is no reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,32 +209,35 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
             longest = LONGEST_FRAME_OF_SEVERAL;
         }
     };
-    let body = match request {
-        Request::Hello => format!("HELLO {sequence}"),
+    let mut out = String::with_capacity(LONGEST_FRAME);
+    match request {
+        Request::Hello => write!(out, ">HELLO {sequence}"),
         Request::Limits(bounds) => {
             several(bounds.axes.len());
             let axes: Vec<String> = bounds.axes.iter().map(bounds_of).collect::<Option<_>>()?;
-            format!("LIM {sequence} {} {}", axes.join(" "), length(bounds.top_speed)?)
+            write!(out, ">LIM {sequence} {} {}", axes.join(" "), length(bounds.top_speed)?)
         }
         Request::Move { id, targets, speed } => {
-            several(targets.len());
-            format!("MOVE {sequence} {id} {} {}", lengths(targets)?, length(*speed)?)
+            several(targets.split(' ').count());
+            write!(out, ">MOVE {sequence} {id} {targets} {speed}")
         }
         Request::Glide { id, ends, seconds } => {
             several(ends.len());
-            format!("GLIDE {sequence} {id} {} {}", lengths(&in_turn(ends))?, time(*seconds)?)
+            write!(out, ">GLIDE {sequence} {id} {} {}", lengths(&in_turn(ends))?, time(*seconds)?)
         }
-        Request::Measure { readings } => format!("MEAS {sequence} {readings}"),
-        Request::Status => format!("STAT {sequence}"),
-        Request::Stop => format!("STOP {sequence}"),
-        Request::Clear => format!("CLR {sequence}"),
+        Request::Measure { readings } => write!(out, ">MEAS {sequence} {readings}"),
+        Request::Status => write!(out, ">STAT {sequence}"),
+        Request::Stop => write!(out, ">STOP {sequence}"),
+        Request::Clear => write!(out, ">CLR {sequence}"),
         Request::Reference { token } => {
             let word = !token.is_empty() && token.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
-            word.then(|| format!("REF {sequence} {token}"))?
+            word.then(|| write!(out, ">REF {sequence} {token}"))?
         }
-    };
-    let frame = format!(">{body}*{:04X}\n", checksum(body.as_bytes()));
-    (frame.len() <= longest).then(|| frame.into_bytes())
+    }
+    .ok()?;
+    let sum = checksum(&out.as_bytes()[1..]);
+    writeln!(out, "*{sum:04X}").ok()?;
+    (out.len() <= longest).then(|| out.into_bytes())
 }
 
 /// `d_low d_high f_low f_high`
@@ -233,7 +265,7 @@ pub(crate) fn time(seconds: f64) -> Option<String> {
 
 /// How long it is to the end of a way (s), as the reply to `GLIDE` says.
 #[must_use]
-pub fn left(words: &[String]) -> Option<f64> {
+pub fn left(words: &[&str]) -> Option<f64> {
     let [_, left] = words else { return None };
     number::fixed(left.as_bytes()).filter(|left| *left >= 0.0).map(|left| left / 1e3)
 }
@@ -261,32 +293,33 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
         return Err(Broken::Checksum);
     }
     let mut words = body.split(|byte| *byte == b' ');
-    let kind = match words.next() {
-        Some(b"ACK") => Kind::Ack,
-        Some(b"DATA") => Kind::Data,
-        Some(b"ERR") => Kind::Err,
+    let mut next = || words.next().ok_or(Broken::Shape);
+    let kind = next()?;
+    let (kind_length, kind) = match kind {
+        b"ACK" => (kind.len(), Kind::Ack),
+        b"DATA" => (kind.len(), Kind::Data),
+        b"ERR" => (kind.len(), Kind::Err),
         _ => return Err(Broken::Shape),
     };
-    let mut next = || words.next().ok_or(Broken::Shape);
-    let sequence = number::count(next()?).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
-    let boot = word(next()?).ok_or(Broken::Shape)?;
-    number::hexadecimal(boot.as_bytes(), 4).ok_or(Broken::Shape)?;
-    // Whole and in order, but with an empty or strange field: the rig says the same however often it is asked for this
-    // reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
-    let words = words.map(|bytes| word(bytes).unwrap_or_default()).collect();
-    Ok(Reply { kind, sequence, boot, words })
+    let counted = next()?;
+    let sequence = number::count(counted).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
+    number::hexadecimal(next()?, BOOT_DIGITS).ok_or(Broken::Shape)?;
+    // Behind `<`, the kind, the number, and a blank after either.
+    let boot = 1 + kind_length + 1 + counted.len() + 1;
+    Ok(Reply { kind, sequence, line: line.to_vec(), boot })
 }
 
-fn word(bytes: &[u8]) -> Option<String> {
-    let printable = !bytes.is_empty() && bytes.iter().all(u8::is_ascii_graphic);
-    printable.then(|| String::from_utf8(bytes.to_vec()).ok()).flatten()
+/// A word of a line; of what is none nothing.
+fn text(bytes: &[u8]) -> &str {
+    let printable = bytes.iter().all(u8::is_ascii_graphic);
+    str::from_utf8(bytes).ok().filter(|_| printable).unwrap_or_default()
 }
 
 /// What a rig says of itself.
 #[must_use]
-pub fn hello(words: &[String]) -> Option<Hello> {
+pub fn hello(words: &[&str]) -> Option<Hello> {
     let [model, serial, firmware, numbers @ ..] = words else { return None };
-    if words.iter().any(String::is_empty) {
+    if words.iter().any(|word| word.is_empty()) {
         return None;
     }
     // For each axis four limits and a target, and two words for all.
@@ -296,7 +329,7 @@ pub fn hello(words: &[String]) -> Option<Hello> {
     }
     let (limits, rest) = numbers.split_at(4 * axes);
     let [top_speed, id, targets @ ..] = rest else { return None };
-    let axis = |words: &[String]| {
+    let axis = |words: &[&str]| {
         let [low, high, least, most] = words else { return None };
         Some(AxisBounds {
             displacement: Interval { low: millimetres(low)?, high: millimetres(high)? },
@@ -308,12 +341,13 @@ pub fn hello(words: &[String]) -> Option<Hello> {
     let id = number::count(id.as_bytes())?;
     let targets = targets.iter().map(|target| millimetres(target)).collect::<Option<_>>()?;
     let last = (id > 0).then_some(LastMove { id, targets });
-    Some(Hello { model: model.clone(), serial: serial.clone(), firmware: firmware.clone(), bounds, last })
+    let [model, serial, firmware] = [model, serial, firmware].map(|word| (*word).to_owned());
+    Some(Hello { model, serial, firmware, bounds, last })
 }
 
 /// The reading of a `DATA` reply.
 #[must_use]
-pub fn data(words: &[String]) -> Option<Data> {
+pub fn data(words: &[&str]) -> Option<Data> {
     let [time, axes @ .., state] = words else { return None };
     if axes.is_empty() || !axes.len().is_multiple_of(4) {
         return None;
@@ -326,13 +360,13 @@ pub fn data(words: &[String]) -> Option<Data> {
 
 /// The first axis (from 1) of a `DATA` reply of several that has no number where one belongs.
 #[must_use]
-pub fn axis_without_number(words: &[String]) -> Option<usize> {
+pub fn axis_without_number(words: &[&str]) -> Option<usize> {
     let [_, axes @ .., _] = words else { return None };
     let several = axes.len() > 4 && axes.len().is_multiple_of(4);
     several.then(|| axes.chunks_exact(4).position(|words| axis_data(words).is_none())).flatten().map(|axis| axis + 1)
 }
 
-fn axis_data(words: &[String]) -> Option<AxisData> {
+fn axis_data(words: &[&str]) -> Option<AxisData> {
     let [displacement, force, raw, flags] = words else { return None };
     Some(AxisData {
         displacement: millimetres(displacement)?,
@@ -376,8 +410,8 @@ pub fn state(word: &str) -> Option<State> {
 
 /// What the code of an `ERR` means.
 #[must_use]
-pub fn refusal(words: &[String]) -> String {
-    let code = words.first().map_or("", String::as_str);
+pub fn refusal(words: &[&str]) -> String {
+    let code = words.first().copied().unwrap_or_default();
     let meaning = match code {
         "SEQ" => "the rig is at another sequence number",
         "VERB" => "the rig does not know this request",
@@ -399,10 +433,27 @@ pub fn refusal(words: &[String]) -> String {
 /// CRC-16/CCITT-FALSE.
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u16 {
-    bytes.iter().fold(0xffff, |sum, byte| {
-        (0..8).fold(sum ^ u16::from(*byte) << 8, |sum, _| if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 })
+    bytes.iter().fold(0xffff, |sum: u16, byte| {
+        let [high, low] = sum.to_be_bytes();
+        u16::from_be_bytes([low, 0]) ^ REMAINDERS[usize::from(high ^ byte)]
     })
 }
+
+/// What the polynomial 1021 leaves of each byte, shifted through bit by bit.
+const REMAINDERS: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut byte: u16 = 0;
+    while byte < 256 {
+        let (mut sum, mut bit) = (byte << 8, 0);
+        while bit < 8 {
+            sum = if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 };
+            bit += 1;
+        }
+        table[byte as usize] = sum;
+        byte += 1;
+    }
+    table
+};
 
 #[cfg(test)]
 #[path = "native_tests.rs"]
