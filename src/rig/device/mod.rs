@@ -84,8 +84,23 @@ pub struct Sample {
 impl Sample {
     /// Every axis, in order.
     pub fn axes(&self) -> impl Iterator<Item = Channel> + '_ {
-        let first = Channel { displacement: self.displacement, force: self.force, flags: self.flags };
-        std::iter::once(first).chain(self.others.iter().copied())
+        std::iter::once(self.first()).chain(self.others.iter().copied())
+    }
+
+    /// How many they are.
+    #[must_use]
+    pub const fn count(&self) -> usize {
+        1 + self.others.len()
+    }
+
+    /// The axis at this place, which is one of them.
+    #[must_use]
+    pub fn axis(&self, place: usize) -> Channel {
+        place.checked_sub(1).map_or_else(|| self.first(), |other| self.others[other])
+    }
+
+    const fn first(&self) -> Channel {
+        Channel { displacement: self.displacement, force: self.force, flags: self.flags }
     }
 }
 

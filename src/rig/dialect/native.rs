@@ -248,7 +248,8 @@ fn bounds_of(axis: &AxisBounds) -> Option<String> {
 }
 
 /// Lengths after each other.
-pub(crate) fn lengths(values: &[f64]) -> Option<String> {
+#[must_use]
+pub fn lengths(values: &[f64]) -> Option<String> {
     let words: Vec<String> = values.iter().map(|value| length(*value)).collect::<Option<_>>()?;
     Some(words.join(" "))
 }
@@ -278,7 +279,8 @@ pub fn sequence(frame: &[u8]) -> Option<u32> {
 }
 
 /// m or m/s as it is written: mm or mm/s.
-pub(crate) fn length(value: f64) -> Option<String> {
+#[must_use]
+pub fn length(value: f64) -> Option<String> {
     number::write(value * 1e3, 6)
 }
 

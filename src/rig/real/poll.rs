@@ -3,7 +3,7 @@
 
 use super::validity::{Invalid, Said};
 use super::{Axis, Part, RealRig};
-use crate::rig::device::{Channel, DeviceFault, Flags, Force, Sample};
+use crate::rig::device::{DeviceFault, Flags, Force, Sample};
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
 
@@ -105,19 +105,21 @@ impl RealRig {
         let weighed = match &mut self.load_cell {
             Some(cell) => {
                 let weighed = cell.sample();
-                self.sampled(Part::LoadCell, weighed, raw)?
+                Some(self.sampled(Part::LoadCell, weighed, raw)?)
             }
-            None => moved.clone(),
+            None => None,
         };
-        let (places, forces): (Vec<Channel>, Vec<Channel>) = (moved.axes().collect(), weighed.axes().collect());
-        if places.len() != self.axes.len() || forces.len() != self.axes.len() {
-            let (found, wanted) = (places.len().min(forces.len()), self.axes.len());
+        let weighed = weighed.as_ref().unwrap_or(&moved);
+        let count = self.axes.len();
+        if moved.count() != count || weighed.count() != count {
+            let (found, wanted) = (moved.count().min(weighed.count()), count);
             return Err(Unusable::Fault(RigFault::Device(format!("an answer of {found} axes, the rig has {wanted}"))));
         }
         let time = self.clock.now() - self.began;
-        let (displacement, force) = (Vec::with_capacity(places.len()), Vec::with_capacity(places.len()));
+        let (displacement, force) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut point = Point { time, displacement, force, moving: moved.moving, unsettled: false, raw: Vec::new() };
-        for (place, (moved_axis, weighed_axis)) in places.iter().zip(&forces).enumerate() {
+        for place in 0..count {
+            let (moved_axis, weighed_axis) = (moved.axis(place), weighed.axis(place));
             let lacks = |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
             let displacement = moved_axis.displacement.ok_or_else(|| lacks("displacement"))?;
             let weighed_axis = if self.axes[place].weighed_apart { weighed_axis } else { moved_axis };

@@ -51,8 +51,8 @@ impl<'a> Bytes<'a> {
         let Some(said) = rig.said.first().filter(|_| self.moved_natively()) else { return Ok(()) };
         let other = || "the bytes in which the rig said who it is do not say this".to_owned();
         let reply = unescaped(said).and_then(|line| native::reply(&line).ok()).ok_or_else(other)?;
-        let hello = native::hello(&reply.words).ok_or_else(other)?;
-        let device = native_identity(&hello, Some(reply.boot));
+        let hello = native::hello(&reply.words()).ok_or_else(other)?;
+        let device = native_identity(&hello, Some(reply.boot().to_owned()));
         let alone = self.link.is_some_and(|link| link.load_cells().is_empty());
         let names = |whole: &str, part: &str| if alone { whole == part } else { whole.starts_with(part) };
         let told = &rig.identity;
@@ -94,8 +94,8 @@ impl<'a> Bytes<'a> {
         let mut readings = Vec::new();
         for raw in &sample.raw {
             let Some(reply) = unescaped(raw).and_then(|line| native::reply(&line).ok()) else { continue };
-            let Some(data) = native::data(&reply.words).filter(|_| reply.kind == Kind::Data) else { continue };
-            if self.boot.as_ref().is_some_and(|boot| *boot != reply.boot) {
+            let Some(data) = native::data(&reply.words()).filter(|_| reply.kind == Kind::Data) else { continue };
+            if self.boot.as_ref().is_some_and(|boot| *boot != reply.boot()) {
                 return Err("a reply is of another power-up of the rig".to_owned());
             }
             if data.time < self.clock {
