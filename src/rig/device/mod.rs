@@ -3,6 +3,7 @@
 
 mod asking;
 mod grbl;
+mod heard;
 mod hx711;
 mod indicator;
 mod instron;
@@ -23,6 +24,7 @@ use crate::plan::Limits;
 use super::{LastMove, Tally};
 
 pub use grbl::GrblDevice;
+pub use heard::{Heard, Teller};
 pub use hx711::Hx711Device;
 pub use indicator::IndicatorDevice;
 pub use instron::Instron;

@@ -2,6 +2,7 @@
 //! sign, each axis judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
+mod heard;
 mod motion;
 mod open;
 mod poll;
@@ -17,7 +18,7 @@ use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
 use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
-pub use poll::representative;
+pub use heard::ReadBack;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.

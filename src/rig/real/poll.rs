@@ -2,13 +2,14 @@
 //! with the bytes they were made of; what is no reading is asked for again a few times. It moves nothing.
 
 use super::validity::{Invalid, Said};
-use super::{Axis, Part, RealRig};
+use super::{Part, RealRig};
+use crate::plan::Calibration;
 use crate::rig::device::{DeviceFault, Flags, Force, Sample};
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
 
 /// How often a reading that is none is asked for again.
-const REREADS: u32 = 3;
+pub(super) const REREADS: u32 = 3;
 
 /// One usable reading, in the plan's sign.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,7 +125,7 @@ impl RealRig {
             let displacement = moved_axis.displacement.ok_or_else(|| lacks("displacement"))?;
             let weighed_axis = if self.axes[place].weighed_apart { weighed_axis } else { moved_axis };
             let original = weighed_axis.force.ok_or_else(|| lacks("force"))?;
-            let force = self.axes[place].newtons(original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
+            let force = newtons(&self.axes[place].calibration, original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
             let flags = either(moved_axis.flags, weighed_axis.flags);
             // One clock for all axes: the first judges it.
             let device_time = moved.time.filter(|_| place == 0);
@@ -171,15 +172,13 @@ impl RealRig {
     }
 }
 
-impl Axis {
-    /// N, in the cell's sign.
-    fn newtons(&self, force: Force) -> Option<f64> {
-        match force {
-            Force::Newtons(force) => Some(force),
-            #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
-            Force::Counts { count, .. } => {
-                self.calibration.newtons_per_count.map(|factor| (count as f64 - self.calibration.zero_count) * factor)
-            }
+/// N, in the cell's sign.
+pub(super) fn newtons(calibration: &Calibration, force: Force) -> Option<f64> {
+    match force {
+        Force::Newtons(force) => Some(force),
+        #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
+        Force::Counts { count, .. } => {
+            calibration.newtons_per_count.map(|factor| (count as f64 - calibration.zero_count) * factor)
         }
     }
 }
