@@ -21,14 +21,14 @@ const LOWER: &str = "    axis(gate:";
 const UPPER: &str = "    axis(sign: negative,";
 
 /// A meter of two channels beside the controller.
-fn metered(duration: &str) -> String {
+pub(super) fn metered(duration: &str) -> String {
     let link = LINK.replace("link ", "actuator ");
     let devices = format!("{link}\n  load_cell   = tcp(\"10.0.0.7:5025\", scpi([2.5 kN, -1 kN]), reply_timeout: 0.1 s)");
     with_devices(duration, &[(LINK, devices.as_str())])
 }
 
 /// A cell for each axis, on its own port: a meter and a converter of counts.
-fn apart(duration: &str) -> String {
+pub(super) fn apart(duration: &str) -> String {
     with_devices(
         duration,
         &[
@@ -42,13 +42,13 @@ fn apart(duration: &str) -> String {
 }
 
 /// Each storey behind a site of its own.
-fn sites(duration: &str) -> String {
+pub(super) fn sites(duration: &str) -> String {
     let first = "link        = tcp(\"10.0.0.1:44000\", nees(\"MDL-00-01\"), reply_timeout: 0.1 s)";
     let second = "    axis(actuator: tcp(\"10.0.0.2:44000\", nees(\"MDL-00-07\"), reply_timeout: 0.1 s), sign: negative,";
     with_devices(duration, &[(LINK, first), (UPPER, second)])
 }
 
-fn plan(text: &str) -> Plan {
+pub(super) fn plan(text: &str) -> Plan {
     checked(text, "frame_rig")
 }
 
