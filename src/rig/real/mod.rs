@@ -41,6 +41,8 @@ pub struct RealRig {
     /// The clock when the devices were last heard, s.
     heard: f64,
     proposed: Option<Proposed>,
+    /// Where it has settled, m; None while it is on its way, and where nobody waited for it to settle.
+    settled: Option<Vec<f64>>,
     reread: u64,
     /// Why its position is not to be trusted.
     untrusted: Option<String>,
@@ -232,7 +234,7 @@ impl Rig for RealRig {
     /// Says so, and where that finds no ear sends what needs no answer.
     fn hold(&mut self) {
         self.wish.heed();
-        self.proposed = None;
+        (self.proposed, self.settled) = (None, None);
         if self.deaf || self.actuator.hold().is_err() {
             self.deaf = true;
             safety::hold_everything();
@@ -264,5 +266,7 @@ impl Rig for RealRig {
     }
 }
 
+#[cfg(test)]
+mod disturbed_tests;
 #[cfg(test)]
 mod tests;

@@ -35,6 +35,7 @@ impl RealRig {
             began,
             heard: began,
             proposed: None,
+            settled: None,
             reread: 0,
             untrusted: None,
             deaf: false,

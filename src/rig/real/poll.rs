@@ -50,27 +50,53 @@ impl RealRig {
         }
     }
 
-    /// The median of as many readings as the plan wants.
+    /// The median of as many readings as the plan wants. Where it has settled at a target each of them shows all axes settled, or
+    /// it settles anew and all are made again.
     pub(super) fn settled_reading(&mut self) -> Result<Reading, RigFault> {
-        let (mut displacements, mut forces, mut raw) = (Vec::new(), Vec::new(), Vec::new());
-        let mut time = self.clock.now() - self.began;
+        let began = self.clock.now();
+        let targets = self.settled.clone().filter(|_| on(Guarding::Settling));
+        loop {
+            let (points, disturbed) = self.readings_at(targets.as_deref())?;
+            let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some()) else { return Ok(self.reading_of(points, began)) };
+            let now = self.clock.now();
+            if now - began > self.settle.timeout {
+                return Err(self.unsettled(disturbed.flatten()));
+            }
+            self.settle_at(targets, now)?;
+        }
+    }
+
+    /// As many readings as the plan wants, up to the first that shows that the rig has not settled.
+    fn readings_at(&mut self, targets: Option<&[f64]>) -> Result<(Vec<Point>, Option<Option<usize>>), RigFault> {
+        let mut points = Vec::new();
         for sample in 0..self.link.readings.samples.max(1) {
             if sample > 0 {
                 self.wait_until(self.heard + self.period())?;
             }
             let point = self.poll()?;
-            time = point.time;
-            displacements.push(point.displacement);
-            forces.push(point.force);
-            raw.extend(point.raw);
+            let disturbed = targets.and_then(|targets| self.disturbed(&point, targets));
+            points.push(point);
+            if disturbed.is_some() {
+                return Ok((points, disturbed));
+            }
         }
-        Ok(Reading { time, displacement: self.medians(&displacements), force: self.medians(&forces), raw })
+        Ok((points, None))
     }
 
-    /// The median of each axis.
-    fn medians(&self, readings: &[Vec<f64>]) -> Vec<f64> {
-        let of_axis = |axis: usize| readings.iter().map(|reading| reading[axis]).collect();
-        (0..self.axes.len()).map(|axis| representative(of_axis(axis))).collect()
+    /// The median of each axis, at the time of the last of them, with all their bytes.
+    fn reading_of(&self, mut points: Vec<Point>, began: f64) -> Reading {
+        if points.len() == 1
+            && let Some(Point { time, displacement, force, raw, .. }) = points.pop()
+        {
+            return Reading { time, displacement, force, raw };
+        }
+        let time = points.last().map_or(began - self.began, |point| point.time);
+        let median = |of: fn(&Point) -> &[f64]| {
+            let of_axis = |axis: usize| points.iter().map(|point| of(point)[axis]).collect();
+            (0..self.axes.len()).map(|axis| representative(of_axis(axis))).collect()
+        };
+        let (displacement, force) = (median(|point| &point.displacement), median(|point| &point.force));
+        Reading { time, displacement, force, raw: points.into_iter().flat_map(|point| point.raw).collect() }
     }
 
     /// A reading on the way: one, not a median.
