@@ -56,7 +56,7 @@ pub fn made_of(
     driven: Option<&[DrivenStep]>,
 ) -> Result<Vec<OutputFile>, OutputError> {
     if let Some(steps) = driven {
-        return Ok(vec![output::driven(steps)?]);
+        return output::driven(steps, record.drift.as_ref());
     }
     let prediction = rehearse::prediction(plan, record);
     let provenance = &Provenance { prediction, ..provenance.clone() };

@@ -26,8 +26,8 @@ use std::collections::BTreeSet;
 
 use crate::inert;
 use crate::plan::{Format, Link, Plan, PlanFile};
-use crate::record::Record;
 use crate::record::equipment::{Device, Equipment};
+use crate::record::{Drift, Record};
 use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
@@ -221,12 +221,12 @@ pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     Ok(drawn.map(|figure| OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() }).collect())
 }
 
-/// The table of a client that drove the rig.
+/// The tables of a client that drove the rig.
 ///
 /// # Errors
 /// It cannot be encoded.
-pub fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
-    tables::driven(steps)
+pub fn driven(steps: &[DrivenStep], found: Option<&Drift>) -> Result<Vec<OutputFile>, OutputError> {
+    tables::driven(steps, found)
 }
 
 /// The manifest of files that are made and of others whose digests are known: path and SHA-256 in hex.

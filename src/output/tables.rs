@@ -10,7 +10,7 @@ use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetW
 use super::{OutputError, OutputFile, Run, shake_table, storey_table, wants};
 use crate::inert;
 use crate::plan::Format;
-use crate::record::{BlowHistory, History, Hold, ImpactStep, ProcedureRecord, RampStep, SweepStep};
+use crate::record::{BlowHistory, Drift, History, Hold, ImpactStep, ProcedureRecord, RampStep, SweepStep};
 use crate::run::driven::DrivenStep;
 
 /// The tables of every procedure that recorded steps, in the formats the plan asks for.
@@ -66,8 +66,8 @@ fn written(run: &Run<'_>, name: &str, mut frame: DataFrame, files: &mut Vec<Outp
     Ok(())
 }
 
-/// The targets of a client that drove the rig, and what was read there.
-pub(super) fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
+/// The targets of a client that drove the rig and what was read there; what its zeros did, where they were read.
+pub(super) fn driven(steps: &[DrivenStep], found: Option<&Drift>) -> Result<Vec<OutputFile>, OutputError> {
     let failed = |error: PolarsError| OutputError::Table { procedure: "served".to_owned(), reason: error.to_string() };
     // A row a step and axis; which axis it is, is said where there are several.
     let several = steps.iter().any(|step| step.command.len() > 1);
@@ -85,7 +85,13 @@ pub(super) fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
         of("restoring_force_n", |(step, axis)| step.force[*axis]),
     ]);
     let mut frame = DataFrame::new(rows.len(), columns).map_err(failed)?;
-    Ok(OutputFile { path: "tables/served.csv".to_owned(), bytes: csv(&mut frame).map_err(failed)? })
+    let mut files = vec![OutputFile { path: "tables/served.csv".to_owned(), bytes: csv(&mut frame).map_err(failed)? }];
+    if let Some(found) = found {
+        let (height, columns) = drift::rows(found);
+        let mut frame = DataFrame::new(height, columns).map_err(failed)?;
+        files.push(OutputFile { path: "tables/drift.csv".to_owned(), bytes: csv(&mut frame).map_err(failed)? });
+    }
+    Ok(files)
 }
 
 fn csv(frame: &mut DataFrame) -> Result<Vec<u8>, PolarsError> {

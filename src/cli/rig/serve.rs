@@ -132,8 +132,12 @@ fn on_record(
         served = serve::serve(&door.listener, protocol, specimen, arguments.once, &wanted, &mut tell_event);
     });
     watcher.finish();
-    let table = output::driven(&steps)?;
-    write_results(folder.path(), &[table], &Folder::read(folder.path())?.kept())?;
+    let drift = recorded.record.drift.as_ref();
+    write_results(folder.path(), &output::driven(&steps, drift)?, &Folder::read(folder.path())?.kept())?;
+    for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
+        let note = settings.paint_note("  note:");
+        tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));
+    }
     tell(&format!("  {}\n", folder.path().display()));
     served.map_err(|error| listening(arguments, &error))?;
     told?;

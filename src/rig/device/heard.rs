@@ -7,9 +7,9 @@ use super::{grbl, hx711, indicator, instron, mark10, modbus, native, nees, scpi}
 use crate::plan::Dialect;
 use crate::rig::dialect::grbl::jog;
 use crate::rig::dialect::instron::{Movement, movement, number, status};
+use crate::rig::dialect::mark10 as stand;
 use crate::rig::dialect::native::{Kind, hello, reply};
 use crate::rig::dialect::native_sent::SentMove;
-use crate::rig::dialect::mark10 as stand;
 use crate::rig::failpoint::{Guarding, on};
 
 /// What some of the next replies can be.
@@ -151,9 +151,10 @@ fn of_stand(replies: &[Vec<u8>]) -> Vec<Heard> {
         heard.push(Heard::Reading { replies: 3, sample: Sample { displacement, force, moving, ..Sample::default() } });
     }
     // Any of the three may have been none.
-    if replies.first().is_some_and(|first| {
-        stand::status(first).is_none() || stand::travel(first).is_none() || mark10::newtons(first).is_err()
-    }) {
+    if replies
+        .first()
+        .is_some_and(|first| stand::status(first).is_none() || stand::travel(first).is_none() || mark10::newtons(first).is_err())
+    {
         heard.push(Heard::NoReading);
     }
     heard
@@ -231,8 +232,7 @@ fn of_control_points(replies: &[Vec<u8>], control_points: &[String]) -> Vec<Hear
         replies.iter().zip(control_points).map(|(reply, point)| nees::decoded(reply, point)).collect();
     let points: Option<Vec<(f64, f64)>> = said.into_iter().collect();
     let points = points.filter(|points| points.len() == control_points.len());
-    let reading =
-        points.map(|points| Heard::Reading { replies: points.len(), sample: nees::sample_of(&points, Vec::new()) });
+    let reading = points.map(|points| Heard::Reading { replies: points.len(), sample: nees::sample_of(&points, Vec::new()) });
     // Of whichever of them the first reply was to have been.
     let first = replies.first().map(Vec::as_slice).unwrap_or_default();
     let none = control_points.iter().any(|point| nees::decoded(first, point).is_none());

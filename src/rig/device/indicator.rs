@@ -42,11 +42,8 @@ pub(super) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     };
     // Out of range it may show no number: infinite on its side is past every limit.
     let beyond = if weight.status == Status::Underload { f64::NEG_INFINITY } else { f64::INFINITY };
-    let flags = Flags {
-        saturated: weight.status.is_out_of_range(),
-        unsettled: weight.status == Status::Unstable,
-        ..Flags::default()
-    };
+    let flags =
+        Flags { saturated: weight.status.is_out_of_range(), unsettled: weight.status == Status::Unstable, ..Flags::default() };
     let force = Some(Force::Newtons(weight.force.unwrap_or(beyond)));
     Ok(Sample { force, flags, raw: vec![line], ..Sample::default() })
 }

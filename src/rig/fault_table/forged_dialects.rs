@@ -115,8 +115,9 @@ fn a_reading_that_was_asked_for_again_says_what_came_at_last() {
     ];
     for (plan, period) in meters {
         let sound = again(&run(&plan, ""));
-        let script: String = (600..9000).step_by(period).map(|ms| format!("at {} s: number OVL\n", f64::from(ms) / 1e3)).collect();
-        let ended = run(&plan, &script);
+        let faults: Vec<String> =
+            (600..9000).step_by(period).map(|ms| format!("at {} s: number OVL", f64::from(ms) / 1e3)).collect();
+        let ended = run(&plan, &faults.join("\n"));
         assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
         assert!(ended.tally.reread > 0 && again(&ended) > sound, "{:?} {sound}", ended.tally);
         assert_eq!(judged(&plan, &ended.recovered), Ok(()));

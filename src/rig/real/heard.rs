@@ -5,9 +5,9 @@
 use super::open::identity_of;
 use super::poll::{REREADS, newtons, representative};
 use crate::plan::{Calibration, RealLink, RigPlan};
+use crate::rig::Identity;
 use crate::rig::device::{Channel, DeviceIdentity, Heard, Teller};
 use crate::rig::failpoint::{Guarding, on};
-use crate::rig::Identity;
 
 /// Lines that tell one of several sites of a move: what is proposed to it, and that it is to be executed.
 const LINES_OF_A_SITE: usize = 2;
@@ -92,7 +92,8 @@ impl<'a> ReadBack<'a> {
         let turned = |source: &Source<'_>| -> Option<Vec<f64>> {
             source.axes.iter().map(|axis| Some(self.plan.sign_of(*axis) * places.get(*axis)?)).collect()
         };
-        let says = |source: &Source<'_>, wire: &[u8]| turned(source).is_some_and(|places| source.teller.sent(wire, &places, speed, id));
+        let says =
+            |source: &Source<'_>, wire: &[u8]| turned(source).is_some_and(|places| source.teller.sent(wire, &places, speed, id));
         if places.len() != self.calibrations.len() {
             return false;
         }
@@ -101,7 +102,8 @@ impl<'a> ReadBack<'a> {
             several => {
                 let lines: Vec<&[u8]> = wire.split_inclusive(|byte| *byte == b'\n').collect();
                 let told = lines.chunks(LINES_OF_A_SITE).map(<[&[u8]]>::concat);
-                lines.len() == LINES_OF_A_SITE * several.len() && several.iter().zip(told).all(|(source, told)| says(source, &told))
+                lines.len() == LINES_OF_A_SITE * several.len()
+                    && several.iter().zip(told).all(|(source, told)| says(source, &told))
             }
         }
     }
@@ -213,8 +215,7 @@ impl<'a> ReadBack<'a> {
             let (sign, moved) = (self.plan.sign_of(axis), channel_of(&self.actuators, moved, axis)?);
             let weighed = channel_of(&self.cells, weighed, axis).unwrap_or(moved);
             let (x, r) = (moved.displacement?, newtons(calibration, weighed.force?)?);
-            usable &= !on(Guarding::Invalid)
-                || x.is_finite() && r.is_finite() && !moved.flags.stale && !weighed.flags.stale;
+            usable &= !on(Guarding::Invalid) || x.is_finite() && r.is_finite() && !moved.flags.stale && !weighed.flags.stale;
             displacement.push(sign * x);
             force.push(sign * r);
         }

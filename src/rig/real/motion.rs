@@ -109,10 +109,10 @@ impl RealRig {
         Ok((targets, farthest / going.speed))
     }
 
-    /// Whether a reading where it settled shows that it has not: the axis that left its band, where it is one.
-    pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Option<usize>> {
+    /// Whether a reading where it settled shows that it has not.
+    pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Disturbed> {
         let astray = first_astray(&Settling::of(self.settle, targets), point);
-        (astray.is_some() || point.moving == Some(true) || point.unsettled).then_some(astray)
+        (astray.is_some() || point.moving == Some(true) || point.unsettled).then_some(Disturbed { astray })
     }
 
     /// It says that it has arrived, and the axis at this place stands elsewhere.
@@ -126,6 +126,13 @@ impl RealRig {
         let axis = place.and_then(|place| named_axis(place, self.axes.len()));
         RigFault::NotSettled { timeout: self.settle.timeout, axis }
     }
+}
+
+/// What had settled has not.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disturbed {
+    /// The first axis that left its band, by place; None: a device says that it moves, or that its reading has not settled.
+    pub(super) astray: Option<usize>,
 }
 
 /// The first axis that is not in position.

@@ -1,6 +1,7 @@
 //! One reading of a real rig. In: what actuator and load cell say. Out: displacement and force in the plan's sign, judged,
 //! with the bytes they were made of; what is no reading is asked for again a few times. It moves nothing.
 
+use super::motion::Disturbed;
 use super::validity::{Invalid, Said};
 use super::{Part, RealRig};
 use crate::plan::Calibration;
@@ -57,17 +58,19 @@ impl RealRig {
         let targets = self.settled.clone().filter(|_| on(Guarding::Settling));
         loop {
             let (points, disturbed) = self.readings_at(targets.as_deref())?;
-            let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some()) else { return Ok(self.reading_of(points, began)) };
+            let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some()) else {
+                return Ok(self.reading_of(points, began));
+            };
             let now = self.clock.now();
             if now - began > self.settle.timeout {
-                return Err(self.unsettled(disturbed.flatten()));
+                return Err(self.unsettled(disturbed.and_then(|disturbed| disturbed.astray)));
             }
             self.settle_at(targets, now)?;
         }
     }
 
     /// As many readings as the plan wants, up to the first that shows that the rig has not settled.
-    fn readings_at(&mut self, targets: Option<&[f64]>) -> Result<(Vec<Point>, Option<Option<usize>>), RigFault> {
+    fn readings_at(&mut self, targets: Option<&[f64]>) -> Result<(Vec<Point>, Option<Disturbed>), RigFault> {
         let mut points = Vec::new();
         for sample in 0..self.link.readings.samples.max(1) {
             if sample > 0 {
@@ -151,7 +154,8 @@ impl RealRig {
             let displacement = moved_axis.displacement.ok_or_else(|| lacks("displacement"))?;
             let weighed_axis = if self.axes[place].weighed_apart { weighed_axis } else { moved_axis };
             let original = weighed_axis.force.ok_or_else(|| lacks("force"))?;
-            let force = newtons(&self.axes[place].calibration, original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
+            let force = newtons(&self.axes[place].calibration, original)
+                .ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
             let flags = either(moved_axis.flags, weighed_axis.flags);
             // One clock for all axes: the first judges it.
             let device_time = moved.time.filter(|_| place == 0);
