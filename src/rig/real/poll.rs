@@ -55,7 +55,7 @@ impl RealRig {
     /// it settles anew and all are made again.
     pub(super) fn settled_reading(&mut self) -> Result<Reading, RigFault> {
         let began = self.clock.now();
-        let targets = self.settled.clone().filter(|_| on(Guarding::Settling));
+        let targets = self.settled.clone().filter(|_| on(Guarding::Settling) && on(Guarding::Following));
         loop {
             let (points, disturbed) = self.readings_at(targets.as_deref())?;
             let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some()) else {
