@@ -1,6 +1,6 @@
-//! psd's own time per step of an impact on a real rig, with no reply to wait for and no disk; and round trips of a
-//! reading over a pseudo-terminal and over TCP. Items are steps, or round trips. The stand-in's own share of the first is
-//! a bench of its own, to be taken off.
+//! psd's own time per step of an impact on a real rig, with no reply to wait for and no disk; what the study of its
+//! uncertainty adds after the last step; and round trips of a reading over a pseudo-terminal and over TCP. Items are steps,
+//! or round trips. The stand-in's own share of the first is a bench of its own, to be taken off.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::TcpListener;
@@ -42,7 +42,6 @@ rig real {
   gate        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
   rate        = 200 Hz
   samples     = 1
-  resolution  = 1 um
   calibration = "none"
 }
 
@@ -72,9 +71,19 @@ impl Loader for NoFiles {
     }
 }
 
+/// Nothing of it is uncertain, so that no study follows its steps.
 fn plan() -> Plan {
+    checked_plan(PLAN)
+}
+
+/// Its readings are resolved to a micrometre: the run is studied.
+fn resolved_plan() -> Plan {
+    checked_plan(&PLAN.replace("rate        =", "resolution  = 1 um\n  rate        ="))
+}
+
+fn checked_plan(text: &str) -> Plan {
     let options = Options { rig: Some("real".to_owned()), ..Options::default() };
-    let checked = check("plan.psd", PLAN, &NoFiles, &options);
+    let checked = check("plan.psd", text, &NoFiles, &options);
     checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
 }
 
@@ -214,12 +223,22 @@ fn steps(record: &Record) -> usize {
 /// Everything of a step: prediction, guard, intent, move, settling, reading, sample, integration, record.
 #[divan::bench]
 fn step(bencher: Bencher) {
-    let plan = plan();
-    let count = steps(&run(&plan, &AtOnce::new(stand(&plan))));
+    whole_run(bencher, &plan());
+}
+
+/// The same with the study of its uncertainty: 64 runs of the recorded way with drawn errors of the readings, shared out
+/// among threads. The rig is at rest by then.
+#[divan::bench]
+fn step_and_study(bencher: Bencher) {
+    whole_run(bencher, &resolved_plan());
+}
+
+fn whole_run(bencher: Bencher, plan: &Plan) {
+    let count = steps(&run(plan, &AtOnce::new(stand(plan))));
     bencher
         .counter(ItemsCount::new(count))
-        .with_inputs(|| AtOnce::new(stand(&plan)))
-        .bench_local_values(|line| steps(&run(&plan, &line)));
+        .with_inputs(|| AtOnce::new(stand(plan)))
+        .bench_local_values(|line| steps(&run(plan, &line)));
 }
 
 /// The part of `step` that is the stand-in's: the same bytes at the same times.

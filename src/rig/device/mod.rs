@@ -84,15 +84,14 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// How many axes it speaks of.
+    pub fn axis_count(&self) -> usize {
+        1 + self.others.len()
+    }
+
     /// Every axis, in order.
     pub fn axes(&self) -> impl Iterator<Item = Channel> + '_ {
         std::iter::once(self.first()).chain(self.others.iter().copied())
-    }
-
-    /// How many they are.
-    #[must_use]
-    pub const fn count(&self) -> usize {
-        1 + self.others.len()
     }
 
     /// The axis at this place, which is one of them.

@@ -141,8 +141,8 @@ impl RealRig {
         };
         let weighed = weighed.as_ref().unwrap_or(&moved);
         let count = self.axes.len();
-        if moved.count() != count || weighed.count() != count {
-            let (found, wanted) = (moved.count().min(weighed.count()), count);
+        if moved.axis_count() != count || weighed.axis_count() != count {
+            let (found, wanted) = (moved.axis_count().min(weighed.axis_count()), count);
             return Err(Unusable::Fault(RigFault::Device(format!("an answer of {found} axes, the rig has {wanted}"))));
         }
         let time = self.clock.now() - self.began;
