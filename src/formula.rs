@@ -112,6 +112,11 @@ pub trait Results {
         }
     }
 
+    /// Degrees of freedom by which the size of a source is known; infinite of what was not estimated from readings.
+    fn degrees(&self, _: Source) -> f64 {
+        f64::INFINITY
+    }
+
     /// By how many of its standard uncertainties a source is moved here.
     fn moved(&self, _: Source) -> f64 {
         0.0

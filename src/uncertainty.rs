@@ -3,7 +3,10 @@
 //! 5.2 and F.1.2.3). In: contributions. Out: standard uncertainties, and results with one source moved. It knows no
 //! procedure and no plan.
 
+mod degrees;
+
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+pub use degrees::{FEW, Known, MOST_DRAWS, known, known_entries};
 
 /// Something that is not known exactly, independent of every other source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -57,6 +60,13 @@ pub enum Source {
     Drawn {
         procedure: ProcedureId,
         draw: u16,
+    },
+    /// What the rounding of a procedure's readings leaves open of a fitted result, or of an entry of a list, beyond what its scatter
+    /// shows.
+    Rounding {
+        procedure: ProcedureId,
+        result: &'static str,
+        entry: usize,
     },
     /// Times are told to a whole step.
     TimeStep {
@@ -153,6 +163,10 @@ impl Results for Moved<'_> {
 
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         self.results.contributions(reference)
+    }
+
+    fn degrees(&self, source: Source) -> f64 {
+        self.results.degrees(source)
     }
 }
 

@@ -77,7 +77,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let wall = real_rig::wall_clock();
     let recorded = tape::resume(&plan, played, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
     opened.watcher.finish();
-    let (exit, _) = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
+    let exit = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
     give(&format!("{}\n", arguments.run.display()))?;
     Ok(exit)
 }

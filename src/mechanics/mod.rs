@@ -29,11 +29,13 @@ pub mod relaxation;
 #[cfg(test)]
 mod relaxation_tests;
 pub mod rerun;
+pub mod rounding;
 pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod structure;
+pub mod student;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::plan::{Plan, ProcedureKind, ShakeDamping, Storey};
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, ProcedureRecord};
 use crate::rig::named_axis;
-use crate::uncertainty::{Contribution, Source};
+use crate::uncertainty::{Contribution, Known, Source, known};
 
 /// The budget of one result.
 #[derive(Clone, Debug)]
@@ -18,6 +18,8 @@ pub(super) struct Budget<'a> {
     pub value: f64,
     /// u, of all lines together.
     pub uncertainty: f64,
+    /// The same with its degrees of freedom.
+    pub known: Known,
     pub lines: Vec<Line>,
 }
 
@@ -38,6 +40,8 @@ pub(super) struct Line {
     pub sensitivity: Option<f64>,
     /// Number of draws of what is sampled; all else is linearised.
     pub draws: Option<usize>,
+    /// Of the contribution's size; infinite where it was not estimated from readings.
+    pub degrees: f64,
     /// Whether the result follows the input smoothly.
     pub smooth: bool,
 }
@@ -69,7 +73,8 @@ pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureR
     made.flat_map(|result| match &result.value {
         ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } => {
             let lines = lines(run, result.contributions.iter());
-            vec![Budget { result, entry: None, value: *value, uncertainty: *uncertainty, lines }]
+            let known = how_well(run, &result.contributions, *uncertainty);
+            vec![Budget { result, entry: None, value: *value, uncertainty: *uncertainty, known, lines }]
         }
         ResultValue::Number { .. } => Vec::new(),
         ResultValue::List(values) => of_entries(run, result, values),
@@ -81,10 +86,17 @@ pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureR
 fn of_entries<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> Vec<Budget<'a>> {
     let known = values.iter().zip(result.entry_uncertainties()).enumerate();
     let budget = |(entry, (value, uncertainty)): (usize, (&f64, Option<f64>))| {
-        let lines = lines(run, result.contributions.iter().filter(|part| part.entry == entry));
-        Some(Budget { result, entry: Some(entry), value: *value, uncertainty: uncertainty?, lines })
+        let mine: Vec<Contribution> = result.contributions.iter().filter(|part| part.entry == entry).copied().collect();
+        let lines = lines(run, mine.iter());
+        let uncertainty = uncertainty?;
+        Some(Budget { result, entry: Some(entry), value: *value, uncertainty, known: how_well(run, &mine, uncertainty), lines })
     };
     known.filter_map(budget).collect()
+}
+
+/// u with its degrees of freedom.
+fn how_well(run: &Run<'_>, parts: &[Contribution], uncertainty: f64) -> Known {
+    known(parts, run.record).unwrap_or(Known::surely(uncertainty))
 }
 
 /// A line for each source; the draws of the readings are one.
@@ -94,8 +106,10 @@ fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution
     let mut lines: Vec<Line> = moved.into_iter().map(|part| line(run, part)).collect();
     if let Some(first) = draws.first() {
         let together = draws.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
-        let draws = Some(draws.len());
-        lines.push(Line { contribution: together, draws, sensitivity: None, ..line(run, first) });
+        #[expect(clippy::cast_precision_loss, reason = "a few")]
+        let degrees = draws.len() as f64;
+        let count = Some(draws.len());
+        lines.push(Line { contribution: together, draws: count, degrees, sensitivity: None, ..line(run, first) });
     }
     lines.sort_by(|a, b| b.contribution.abs().total_cmp(&a.contribution.abs()));
     lines
@@ -159,10 +173,16 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             let name = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
             (name.to_owned(), From::Rig, None, None, Dimension::FORCE)
         }
+        Source::Rounding { procedure, .. } => {
+            let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
+            (format!("resolution of the readings of {name}"), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
-    Line { input, from, value, uncertainty, dimension, contribution: part.amount, sensitivity, draws: None, smooth: part.smooth }
+    let degrees = run.record.degrees(part.source);
+    let contribution = part.amount;
+    Line { input, from, value, uncertainty, dimension, contribution, sensitivity, draws: None, degrees, smooth: part.smooth }
 }
 
 /// What a channel of the axis at this place is called; of a rig of one axis nothing is said of it.

@@ -27,6 +27,22 @@ pub struct StiffnessRamp {
     pub speed: Option<Formula>,
 }
 
+impl StiffnessRamp {
+    /// Outward steps that the fit is of, and degrees of freedom of their scatter about it; None where there is no fit of so few, or
+    /// its numbers are not known before the run.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> Option<(usize, usize)> {
+        let of_first = self.displacements.len();
+        let (points, numbers) = match self.fit {
+            RampFit::Linear => (of_first * self.repeats as usize, 2),
+            RampFit::Bilinear => (of_first, 4),
+            RampFit::Multilinear(BreakCount::Exactly(breaks)) => (of_first, 2 * breaks + 2),
+            RampFit::Multilinear(BreakCount::ByCriterion { .. }) => return None,
+        };
+        points.checked_sub(numbers).filter(|degrees| *degrees > 0).map(|degrees| (points, degrees))
+    }
+}
+
 /// How the force is watched while it relaxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WatchedHold {

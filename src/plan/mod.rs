@@ -435,7 +435,7 @@ pub enum DecisionRule {
     /// The value decides, whatever its uncertainty (simple acceptance).
     #[default]
     Simple,
-    /// Between the value and the limit a guard band w = U = 2u must be left: within it nothing is decided.
+    /// Between the value and the limit a guard band w = U = k·u must be left: within it nothing is decided.
     Guarded,
 }
 

@@ -13,7 +13,7 @@ use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
-use crate::uncertainty::{Contribution, combined, share};
+use crate::uncertainty::{Contribution, Source, combined, share};
 use crate::verdict::{Verdict, assess_condition};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -118,6 +118,10 @@ impl Results for OfBlow<'_> {
             return found.map_or_else(Vec::new, |result| result.contributions_of(reference));
         }
         self.before.contributions(reference)
+    }
+
+    fn degrees(&self, source: Source) -> f64 {
+        self.before.degrees(source)
     }
 }
 

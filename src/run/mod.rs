@@ -12,6 +12,8 @@ mod cycle_doubts;
 #[cfg(test)]
 mod cycle_tests;
 mod damping_sweep;
+#[cfg(test)]
+mod degrees_tests;
 pub mod driven;
 mod escalate;
 #[cfg(test)]
@@ -49,6 +51,9 @@ mod request;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
+mod rounding_doubts;
+#[cfg(test)]
+mod rounding_doubts_tests;
 mod samples;
 #[cfg(test)]
 mod sequence_tests;
@@ -262,7 +267,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
-        attribution::attribute(&procedure.kind, &history, plan, &inputs, &mut results);
+        attribution::attribute(&procedure.kind, &history, plan, (&inputs, session.guard.declared_noise()), &mut results);
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),

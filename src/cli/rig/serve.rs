@@ -5,7 +5,7 @@
 use std::net::{SocketAddr, TcpListener};
 
 use crate::cli::args::{ServeArguments, ServedProtocol};
-use crate::cli::conclude::write_results;
+use crate::cli::conclude::write_made;
 use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
@@ -133,7 +133,7 @@ fn on_record(
     });
     watcher.finish();
     let drift = recorded.record.drift.as_ref();
-    write_results(folder.path(), &output::driven(&steps, drift)?, &Folder::read(folder.path())?.kept())?;
+    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, drift, shelf))?;
     for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
         let note = settings.paint_note("  note:");
         tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));

@@ -11,6 +11,7 @@ mod draw;
 mod identification;
 mod impact;
 mod plain;
+mod points;
 mod raster;
 mod relaxation;
 mod shake;
