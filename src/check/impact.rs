@@ -5,6 +5,7 @@ use super::choice::Chosen;
 use super::faults::values;
 use super::fields::whole;
 use super::{integrator, mode, specimen, stepping, storey_impact, warnings};
+use crate::diagnostic::Code;
 use crate::formula::Formula;
 use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Specimen, Striker, Until, steps_in};
 use crate::schema::Kind;
@@ -80,9 +81,11 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Str
         return;
     }
     returns(checker, block, impact.until, striker);
-    warnings::impact(checker, block, impact, striker);
+    let before = checker.faults.len();
     mode::damping_twice(checker, block, impact, specimen);
     integrator::stable(checker, block, impact, striker, specimen);
+    let allowed = checker.faults[before..].iter().any(|fault| fault.code == Code::BeyondStability);
+    warnings::impact(checker, block, impact, striker, allowed);
 }
 
 /// A run that waits for a striker to have left for good, which one that falls never has.

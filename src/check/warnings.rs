@@ -13,13 +13,14 @@ use crate::schema::Kind;
 use crate::source::{FileId, Span};
 use crate::uncertainty::{FEW, Source};
 
-/// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
-pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker) {
+/// Warnings of one impact: its step against eq. 7, unless more was said of it, and against what the limit force needs.
+pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker, allowed_beyond_stability: bool) {
     let head = checker.scope.blocks[block].block.head;
     let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
     let Some(step) = time_step_before_the_run(impact, striker) else { return };
     if let Some(critical) = critical_before_the_run(impact, striker)
         && step > critical
+        && !allowed_beyond_stability
     {
         checker.faults.push(fault::step_above_critical(at, step, critical));
     }
