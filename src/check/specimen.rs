@@ -176,7 +176,7 @@ pub fn warn_of_short_tables(checker: &mut Checker, specimens: &[Option<Specimen>
         }
         // Behind a spring or beside one the specimen's displacement is not the table's.
         let table = match behaviour {
-            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } => of,
+            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } | Behaviour::Logarithmic { of, .. } => of,
             other => other,
         };
         let (Behaviour::Table(table), [named_at]) = (table, named.as_slice()) else { continue };

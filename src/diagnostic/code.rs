@@ -154,6 +154,7 @@ codes! {
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
     W722 FewDegreesOfFreedom Warning;
+    W726 FewDecades Warning;
 }
 
 impl std::fmt::Display for Code {

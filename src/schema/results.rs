@@ -40,7 +40,23 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     ResultKind::measured("relaxed_stiffness", Dimension::STIFFNESS, "slope of the forces when all has relaxed"),
     ResultKind::measured("branch_stiffness", Dimension::STIFFNESS, "what relaxes of a standard linear solid"),
     ResultKind::measured("remaining_relaxation", Dimension::FORCE, "largest force that a pause left to relax"),
-    ResultKind::measured("needed_pause", Dimension::TIME, "pause that leaves no more to relax than the accuracy asked for"),
+    ResultKind::measured(
+        "needed_pause",
+        Dimension::TIME,
+        "pause that leaves no more to relax than the accuracy asked for, or ends at the rate asked for",
+    ),
+    ResultKind::measured(
+        "relaxation_share",
+        Dimension::NUMBER,
+        "a or g: what the law takes of a reached force, with a law of it",
+    ),
+    ResultKind::measured("reference_time", Dimension::TIME, "t₀ of the logarithm of time"),
+    ResultKind::measured("relaxation_rate", Dimension::FORCE_RATE, "how fast the worst pause was losing force at its end"),
+    ResultKind::new(
+        "bic_margin",
+        Dimension::NUMBER,
+        "BIC of the exponential less that of the logarithm, with `either`: above zero it is the logarithm",
+    ),
 ];
 
 pub(super) const DAMPING_SWEEP: &[ResultKind] = &[
