@@ -103,8 +103,13 @@ mod tests {
 
     #[test]
     fn shapes_stand_on_the_ground_with_their_largest_entry_at_an_end() {
-        let (shapes, periods, effective_mass) = (vec![vec![0.5, 1.0], vec![1.0, -0.7]], vec![0.5, 0.2], vec![0.9, 0.1]);
-        let rows = super::shapes(Some(&Modes { shapes, periods, effective_mass }));
+        let shapes = vec![vec![0.5, 1.0], vec![1.0, -0.7]];
+        let rows = super::shapes(Some(&Modes {
+            periods: vec![0.5, 0.2],
+            shapes,
+            participation: vec![1.2, 0.3],
+            effective_mass: vec![0.9, 0.1],
+        }));
         let drawn: Vec<String> = rows.iter().map(|row| row.join("|")).collect();
         assert_eq!(
             drawn,

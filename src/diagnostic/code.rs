@@ -74,6 +74,7 @@ codes! {
     E406 SettingOutOfRange Error;
     E407 NotFinite Error;
     E408 Edition Error;
+    E409 StoreyBendsOtherwise Error;
     // 5: files
     E501 FileNotFound Error;
     E502 BadPath Error;
@@ -117,6 +118,7 @@ codes! {
     E635 TooUncertain Error;
     E636 ChannelsDiffer Error;
     E637 NotAsked Error;
+    E638 NeverArrives Error;
     E639 DampingTooUncertain Error;
     E640 WhichStorey Error;
     E641 NoUseOnAFrame Error;
@@ -148,10 +150,13 @@ codes! {
     W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
+    W717 NotPrinted Warning;
     W718 StifferThanOperator Warning;
     W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
+    W722 FewDegreesOfFreedom Warning;
+    W726 FewDecades Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use super::{OutputError, Run};
 use crate::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
-use crate::record::{FloorStep, History, ProcedureRecord, ShakeHistory};
+use crate::record::{FloorStep, History, ProcedureRecord, RampHistory, ShakeHistory};
 use chart::Chart;
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
@@ -104,7 +104,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
             format!("{name}: restoring force against computed displacement; the area below is the absorbed energy."),
         ),
         (History::Impact(history), FigureKind::Energy) => (
-            impact::energy(history),
+            impact::energy(history, impact::taken_by_contact(run, figure.procedure)),
             format!("{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."),
         ),
         (History::Impact(history), FigureKind::Tracking) => (
@@ -120,6 +120,10 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares fit."),
+        ),
+        (History::Ramp(RampHistory { reached: Some(fit), holds, .. }), FigureKind::Relaxation) => (
+            relaxation::lost(holds, fit),
+            format!("{name}: force lost in the pauses, by the laws of relaxation, against the time held."),
         ),
         (History::Ramp(history), FigureKind::Relaxation) => (
             relaxation::left(history, history.relaxation.as_ref()?),
