@@ -29,13 +29,14 @@ pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
     const SHOWN: usize = 4;
     /// Letters on either side of the middle.
     const HALF: usize = 8;
+    const REACH: f64 = 8.0;
     let Some(modes) = modes else { return Vec::new() };
     let shown = modes.shapes.iter().take(SHOWN);
     let line = |entry: f64| {
         let mut letters = [' '; 2 * HALF + 1];
         letters[HALF] = '│';
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an entry is between −1 and 1")]
-        let place = (HALF as f64 * (1.0 + entry.clamp(-1.0, 1.0))).round() as usize;
+        let place = (REACH * (1.0 + entry.clamp(-1.0, 1.0))).round() as usize;
         letters[place] = '●';
         letters.iter().collect::<String>()
     };
