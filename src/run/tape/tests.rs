@@ -209,8 +209,8 @@ fn what_the_run_would_not_have_done_is_found_out() {
     let (recovered, _) = played(&bytes);
     for (at, line) in recovered.lines.iter().enumerate().filter(|(_, line)| line.kind == EntryKind::Sample) {
         let mut forged = recovered.clone();
-        let force = line.body["r"][0].as_f64().unwrap();
-        forged.lines[at].body["r"][0] = serde_json::json!(force + 1e-9 * force.abs().max(1.0));
+        let force = line.body()["r"][0].as_f64().unwrap();
+        forged.lines[at].alter(|body| body["r"][0] = serde_json::json!(force + 1e-9 * force.abs().max(1.0)));
         found += usize::from(replay(&plan, Played::of(&forged).unwrap()).mismatch.is_some());
     }
     // A reading before a move that no step reports can be anything: those few prove nothing.
@@ -218,8 +218,8 @@ fn what_the_run_would_not_have_done_is_found_out() {
     assert!(found > samples * 8 / 10, "{found} of {samples}");
     for (at, line) in recovered.lines.iter().enumerate().filter(|(_, line)| line.kind == EntryKind::Intent) {
         let mut forged = recovered.clone();
-        let target = line.body["to"][0].as_f64().unwrap();
-        forged.lines[at].body["to"][0] = serde_json::json!(f64::from_bits(target.to_bits() ^ 1));
+        let target = line.body()["to"][0].as_f64().unwrap();
+        forged.lines[at].alter(|body| body["to"][0] = serde_json::json!(f64::from_bits(target.to_bits() ^ 1)));
         let mismatch = replay(&plan, Played::of(&forged).unwrap()).mismatch.expect("one bit of a target");
         assert_eq!(mismatch.seq, line.seq);
     }
@@ -317,7 +317,7 @@ impl Suspicious {
     fn durable(&self) -> (EntryKind, Option<f64>) {
         let recovered = recover(&self.disk.synced()).unwrap();
         let last = recovered.lines.last().unwrap();
-        (last.kind, last.body["to"][0].as_f64())
+        (last.kind, last.body()["to"][0].as_f64())
     }
 
     fn last_reading_is_durable(&mut self) {
