@@ -423,7 +423,7 @@ fn what_a_person_said_has_its_time_of_day_and_plays_back_without_a_clock() {
     let whole = record(&plan, &mut Standing::new(&plan), &mut Witness, journal, wall);
     let (recovered, played) = played(&disk.written());
     let said: Vec<_> = recovered.lines.iter().filter(|line| line.kind == EntryKind::Operator).collect();
-    assert!(said.len() > 2 && said.iter().all(|line| line.body["wall"] == "2026-05-31T10:00:00.000Z"), "{said:?}");
+    assert!(said.len() > 2 && said.iter().all(|line| line.body()["wall"] == "2026-05-31T10:00:00.000Z"), "{said:?}");
     agrees(&recovered, &played, &plan).unwrap();
     let replayed = replay(&plan, played);
     assert_eq!((replayed.mismatch, format!("{:?}", replayed.record)), (None, format!("{:?}", whole.record)));
