@@ -334,6 +334,7 @@ fn scatters_as_foretold(doubtful: &Plan, names: &[(&str, usize)], drawn: bool, d
         // Noise makes an elastic storey look as if it flowed a little: the most of what it may do is told of it too.
         let most = if sure && !drawn { within } else { 1.0 };
         let told = u / scatter - 1.0;
+        eprintln!("TOLD {name}[{place}] {scatter} {u} {told} {sure}");
         assert!((-within..most).contains(&told), "{name}[{place}]: {scatter} of runs, {u} foretold");
     }
 }

@@ -62,6 +62,37 @@ pub(super) fn widen(
     }
 }
 
+/// Lets the errors of the fits, as figures and reports tell them, be no less than what rounding makes of the results.
+pub(super) fn floor(history: &mut History, results: &[NamedResult]) {
+    let widened = |error: &mut f64, name: &str| {
+        let parts = results.iter().filter(|result| result.name == name).flat_map(|result| &result.contributions);
+        let rounding = parts.filter(|part| matches!(part.source, Source::Rounding { .. }));
+        *error = error.hypot(rounding.map(|part| part.amount * part.amount).sum::<f64>().sqrt());
+    };
+    match history {
+        History::Ramp(ramp) => {
+            if let Some(fit) = &mut ramp.fit {
+                widened(&mut fit.slope_error, "stiffness");
+                widened(&mut fit.intercept_error, "intercept_force");
+            }
+            if let Some(fit) = &mut ramp.bilinear {
+                widened(&mut fit.stiffness_error, "stiffness");
+                widened(&mut fit.yield_force_error, "yield_force");
+            }
+            if let Some((_, error)) = ramp.multilinear.as_mut().and_then(|fit| fit.stiffnesses.first_mut()) {
+                widened(error, "stiffness");
+            }
+        }
+        History::Sweep(sweep) => {
+            if let Some(fit) = &mut sweep.fit {
+                widened(&mut fit.slope_error, "damping");
+                widened(&mut fit.intercept_error, "coulomb_force");
+            }
+        }
+        _ => {}
+    }
+}
+
 struct Doubts {
     quanta: Quanta,
     procedure: ProcedureId,
