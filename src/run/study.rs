@@ -246,10 +246,6 @@ pub(super) fn over_rules(rules: &[Rule], tick: Tick, find: Find) -> Result<Vec<V
     let mut contributions: Vec<Vec<Contribution>> = Vec::new();
     for (place, rule) in rules.iter().enumerate() {
         let found = find(*rule, &mut |done, of| tick(place * of + done, rules.len() * of))?;
-        eprintln!(
-            "RULE {rule:?} {:?}",
-            found.iter().map(|parts| (parts.iter().map(|p| p.amount * p.amount).sum::<f64>()).sqrt()).collect::<Vec<f64>>()
-        );
         if contributions.is_empty() {
             contributions = found;
         } else {
