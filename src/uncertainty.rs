@@ -38,6 +38,10 @@ pub enum Source {
         specimen: usize,
         storey: usize,
     },
+    /// The factor on the matrix of the masses of a frame, as a whole.
+    MassMatrix(usize),
+    /// The factor on the matrix of its stiffnesses, as a whole.
+    StiffnessMatrix(usize),
     /// The computed damping ratio of one mode of a frame, from 0; of Rayleigh damping the one ratio that it has.
     DampingRatio {
         procedure: ProcedureId,
@@ -60,6 +64,18 @@ pub enum Source {
     Drawn {
         procedure: ProcedureId,
         draw: u16,
+    },
+    /// One of the readings by which the place was found where a specimen rests after a blow of a procedure, from 0, or after
+    /// none.
+    RestReading {
+        procedure: ProcedureId,
+        blow: u16,
+        reading: u16,
+    },
+    /// What it still carries there beyond what readings can tell from none.
+    RestLoad {
+        procedure: ProcedureId,
+        blow: u16,
     },
     /// What the rounding of a procedure's readings leaves open of a fitted result, or of an entry of a list, beyond what its scatter
     /// shows.

@@ -74,6 +74,7 @@ codes! {
     E406 SettingOutOfRange Error;
     E407 NotFinite Error;
     E408 Edition Error;
+    E409 StoreyBendsOtherwise Error;
     // 5: files
     E501 FileNotFound Error;
     E502 BadPath Error;
@@ -153,6 +154,7 @@ codes! {
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
     W722 FewDegreesOfFreedom Warning;
+    W726 FewDecades Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -99,17 +99,22 @@ fn how_well(run: &Run<'_>, parts: &[Contribution], uncertainty: f64) -> Known {
     known(parts, run.record).unwrap_or(Known::surely(uncertainty))
 }
 
-/// A line for each source; the draws of the readings are one.
+/// A line for each source; the draws of the readings are one, and so are the readings at a place of rest.
 fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution>) -> Vec<Line> {
     let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. } | Source::Drawn { .. });
     let (draws, moved): (Vec<&Contribution>, Vec<&Contribution>) = contributions.partition(drawn);
+    let (readings, moved): (Vec<&Contribution>, Vec<&Contribution>) =
+        moved.into_iter().partition(|part| matches!(part.source, Source::RestReading { .. }));
     let mut lines: Vec<Line> = moved.into_iter().map(|part| line(run, part)).collect();
-    if let Some(first) = draws.first() {
-        let together = draws.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
-        #[expect(clippy::cast_precision_loss, reason = "a few")]
-        let degrees = draws.len() as f64;
-        let count = Some(draws.len());
-        lines.push(Line { contribution: together, draws: count, degrees, sensitivity: None, ..line(run, first) });
+    for (parts, sampled) in [(draws, true), (readings, false)] {
+        if let Some(first) = parts.first() {
+            let together = parts.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
+            let one = line(run, first);
+            #[expect(clippy::cast_precision_loss, reason = "a few")]
+            let degrees = if sampled { parts.len() as f64 } else { one.degrees };
+            let draws = sampled.then_some(parts.len());
+            lines.push(Line { contribution: together, draws, degrees, sensitivity: None, ..one });
+        }
     }
     lines.sort_by(|a, b| b.contribution.abs().total_cmp(&a.contribution.abs()));
     lines
@@ -168,7 +173,12 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             let u = plan.rig.calibration_of(axis).zero();
             (of_axis("zero of the load cell", plan, axis), From::Rig, Some(0.0), Some(u), Dimension::FORCE)
         }
-        Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
+        Source::MassMatrix(index) => of_matrix(plan, index, "mass_matrix", 0),
+        Source::StiffnessMatrix(index) => of_matrix(plan, index, "stiffness_matrix", 1),
+        Source::RestLoad { .. } => ("load that was left".to_owned(), From::Program, None, None, Dimension::FORCE),
+        Source::Readings { .. } | Source::RestReading { .. } => {
+            ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::Drawn { .. } => {
             let name = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
             (name.to_owned(), From::Rig, None, None, Dimension::FORCE)
@@ -189,6 +199,14 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
 fn of_axis(what: &str, plan: &Plan, axis: usize) -> String {
     let axes = plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom());
     named_axis(axis, axes).map_or_else(|| what.to_owned(), |axis| format!("{what} of axis {axis}"))
+}
+
+/// The factor on a matrix of a frame, with its uncertainty; 0 is that of the masses.
+fn of_matrix(plan: &Plan, specimen: usize, field: &str, which: usize) -> (String, From, Option<f64>, Option<f64>, Dimension) {
+    let specimen = plan.specimens.get(specimen);
+    let name = specimen.map_or("", |specimen| specimen.name.as_str());
+    let u = specimen.and_then(|specimen| specimen.frame.as_ref()).map(|frame| frame.matrix_uncertainty[which]);
+    (format!("factor on {name}.{field}"), From::Rig, Some(1.0), u, Dimension::NUMBER)
 }
 
 /// The specimen's name, and a number of one of its storeys with its uncertainty.

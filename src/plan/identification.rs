@@ -4,6 +4,7 @@
 use crate::formula::Formula;
 pub use crate::mechanics::multilinear_fit::BreakCount;
 pub use crate::mechanics::relaxation::RelaxationModel;
+pub use crate::mechanics::relaxation_law::RelaxationLaw;
 
 /// Sec. 5 step 1: prescribed displacements, a pause at each, the mean of some samples.
 #[derive(Clone, Debug)]
@@ -46,11 +47,20 @@ impl StiffnessRamp {
 /// How the force is watched while it relaxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WatchedHold {
-    pub model: RelaxationModel,
+    pub model: WatchedModel,
     /// In a pause, after the first.
     pub readings: u32,
-    /// N, to which the force is to be known. None: the noise of the rig's cell, if it declares one.
-    pub accuracy: Option<f64>,
+}
+
+/// What is fitted to the force while it relaxes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WatchedModel {
+    /// A force that comes to rest. `accuracy` (N) is how near to that the force is to be known; None: the noise of the rig's cell, if it
+    /// declares one.
+    Decay { model: RelaxationModel, accuracy: Option<f64> },
+    /// A share of what is reached is lost by a law; None: by the one that the readings prefer. `rate` (N/s) is how fast a pause may still
+    /// lose at its end.
+    Reached { law: Option<RelaxationLaw>, rate: f64 },
 }
 
 /// What is fitted to force on displacement.

@@ -23,14 +23,16 @@ use crate::quantity::Dimension;
 use crate::uncertainty::Source;
 
 pub use axis::{AxisCalibration, AxisPlan};
-pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
+pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use devices::Behind;
 pub use escalate::{Between, BlowOn, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
-pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, StiffnessRamp, WatchedHold};
+pub use identification::{
+    BreakCount, DampingSweep, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
+};
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{

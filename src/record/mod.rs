@@ -19,6 +19,7 @@ pub use crate::mechanics::frame::{FrameEnergies, Modes};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
+pub use crate::mechanics::reached_fit::{LawFit, ReachedFit};
 pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
 use crate::quantity::Dimension;
 use crate::rig::Identity;
@@ -155,6 +156,8 @@ pub struct RampHistory {
     /// Pauses that were watched, and what they tell.
     pub holds: Vec<Hold>,
     pub relaxation: Option<Box<RelaxationFit>>,
+    /// By which law the reached force relaxes, where the plan asks for that.
+    pub reached: Option<Box<ReachedFit>>,
 }
 
 /// One reading of a damping sweep.
@@ -308,6 +311,9 @@ impl History {
     #[must_use]
     pub fn degrees(&self, result: &str) -> Option<f64> {
         match self {
+            Self::Ramp(RampHistory { reached: Some(fit), .. }) if ReachedFit::RESULTS.contains(&result) => {
+                Some(fit.best().degrees)
+            }
             Self::Ramp(ramp) => match (result, ramp.relaxation.as_deref()) {
                 ("relaxed_stiffness", Some(fit)) => Some(fit.degrees_of_stiffness()),
                 ("time_constant" | "branch_stiffness" | "remaining_relaxation" | "needed_pause", Some(fit)) => Some(fit.degrees),

@@ -3,6 +3,8 @@
 mod attribution;
 mod axes;
 mod blow;
+#[cfg(test)]
+mod contacts_tests;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -37,6 +39,8 @@ mod impact;
 mod impact_tests;
 mod inputs;
 mod inspect;
+#[cfg(test)]
+mod matrix_doubts_tests;
 mod move_to;
 pub mod need;
 #[cfg(test)]
@@ -48,6 +52,9 @@ mod propagation;
 mod propagation_tests;
 pub mod rehearsal;
 mod request;
+mod rest_doubts;
+#[cfg(test)]
+mod rest_doubts_tests;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
@@ -319,7 +326,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
-        ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
+        ProcedureKind::Unload(unload) => unload::perform(unload, plan, inputs, session),
         ProcedureKind::FrameUnload(unload) => unload::perform_frame(unload, plan, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),

@@ -5,9 +5,9 @@ use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, expansion, number};
 use super::{blows, budget, contact_log, curve, cycles, frames, method, storey, words};
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
-use crate::plan::{Contact, Impact, ProcedureKind, RelaxationModel};
+use crate::plan::{Contact, Impact, ProcedureKind, RelaxationLaw, RelaxationModel};
 use crate::quantity::Dimension;
-use crate::record::{History, Hold, ImpactHistory, LineFit, NamedResult, ProcedureRecord, RelaxationFit};
+use crate::record::{History, Hold, ImpactHistory, LineFit, NamedResult, ProcedureRecord, ReachedFit, RelaxationFit};
 use crate::uncertainty::{Known, known};
 
 /// Every procedure that was run, in order.
@@ -29,6 +29,9 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
                 }
                 if let Some(fit) = &history.relaxation {
                     body.push(relaxed(fit, &history.holds));
+                }
+                if let Some(fit) = &history.reached {
+                    body.push(relaxed_by_a_law(fit, &history.holds));
                 }
                 if let Some(fit) = history.fit {
                     body.push(fitted("R = K·X + R₀", ("K", Dimension::STIFFNESS), ("R₀", Dimension::FORCE), fit));
@@ -180,6 +183,32 @@ fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
         with(fit.time_constant, Dimension::TIME),
         number::text(fit.scatter, Dimension::FORCE),
         with(fit.remaining, Dimension::FORCE),
+    ))
+}
+
+/// The law by which the reached force relaxes, why that one, and how fast the pauses were still losing.
+fn relaxed_by_a_law(fit: &ReachedFit, holds: &[Hold]) -> Block {
+    let with = |(value, error): (f64, f64), dimension| number::with_uncertainty(value, Some(error), dimension);
+    let best = fit.best();
+    let (law, share) = match best.law {
+        RelaxationLaw::Exponential => ("R̂ − R grows by g (1 − e^(−t/τ))", "g"),
+        RelaxationLaw::Logarithmic => ("R̂ − R grows by a ln(1 + t/t₀)", "a"),
+    };
+    let chosen = fit.margin().map_or_else(String::new, |margin| {
+        let other = if margin > 0.0 { "an exponential" } else { "the logarithm of time" };
+        format!(" BIC, corrected for few readings, prefers it to {other} by {:.1}.", margin.abs())
+    });
+    let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
+    Block::note(format!(
+        "Relaxation by least squares over {readings} readings in {} pauses, each step by its own time: {law} of each increment of the \
+         reached force R̂, {share} = {}, {} = {} (± standard error); the readings scatter by {} about it.{chosen} The worst pause ended \
+         while the force fell by {}.",
+        holds.len(),
+        with(best.share, Dimension::NUMBER),
+        best.law.time_name(),
+        with(best.time, Dimension::TIME),
+        number::text(best.scatter, Dimension::FORCE),
+        with(best.rate, Dimension::FORCE_RATE),
     ))
 }
 

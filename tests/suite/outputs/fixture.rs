@@ -70,6 +70,7 @@ pub fn finished() -> Finished {
             multilinear: None,
             holds: Vec::new(),
             relaxation: None,
+            reached: None,
         }),
     };
     let sweep = ProcedureRecord {
