@@ -56,7 +56,7 @@ pub fn made_of(
     shelf: &mut dyn Shelf,
 ) -> Result<Vec<Listed>, OutputError> {
     if let Some(steps) = driven {
-        return output::put_driven(steps, shelf);
+        return output::put_driven(steps, record.drift.as_ref(), shelf);
     }
     let prediction = rehearse::prediction(plan, record);
     let provenance = &Provenance { prediction, ..provenance.clone() };

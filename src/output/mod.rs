@@ -26,8 +26,8 @@ use std::collections::BTreeSet;
 
 use crate::inert;
 use crate::plan::{Format, Link, Plan, PlanFile};
-use crate::record::Record;
 use crate::record::equipment::{Device, Equipment};
+use crate::record::{Drift, Record};
 use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
@@ -248,8 +248,8 @@ pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
 ///
 /// # Errors
 /// It cannot be encoded or kept.
-pub fn put_driven(steps: &[DrivenStep], shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
-    Ok(vec![tables::put_driven(steps, shelf)?])
+pub fn put_driven(steps: &[DrivenStep], found: Option<&Drift>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+    tables::put_driven(steps, found, shelf)
 }
 
 /// The manifest of files that are made and of others whose digests are known: path and SHA-256 in hex.

@@ -16,8 +16,8 @@ use super::{OutputError, Run, tell_apart, wants};
 use crate::inert;
 use crate::plan::Format;
 use crate::record::{
-    BlowHistory, EscalateHistory, History, Hold, ImpactHistory, ImpactStep, ProcedureRecord, RampStep, StoreyImpactHistory,
-    SweepStep,
+    BlowHistory, Drift, EscalateHistory, History, Hold, ImpactHistory, ImpactStep, ProcedureRecord, RampStep,
+    StoreyImpactHistory, SweepStep,
 };
 use crate::run::driven::DrivenStep;
 use table::{Form, Table};
@@ -38,16 +38,22 @@ pub(super) fn put(run: &Run<'_>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, O
 
 fn all<'a>(run: &Run<'a>) -> Vec<Table<'a>> {
     let of_procedures = run.record.procedures.iter().flat_map(of_procedure);
-    let drift = run.record.drift.as_ref().map(|found| Table::of_steps("drift".to_owned(), 1, 1, |_| drift::rows(found)));
+    let drift = run.record.drift.as_ref().map(of_drift);
     of_procedures.chain(drift).collect()
 }
 
-/// Puts the targets of a client that drove the rig, and what was read there.
-pub(super) fn put_driven(steps: &[DrivenStep], shelf: &mut dyn Shelf) -> Result<Listed, OutputError> {
+/// Puts the targets of a client that drove the rig and what was read there; what its zeros did, where they were read.
+pub(super) fn put_driven(steps: &[DrivenStep], found: Option<&Drift>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
     // A row a step and axis; which axis it is, is said where there are several.
     let axes = steps.iter().map(|step| step.command.len()).max().unwrap_or(1);
     let table = Table::of_steps("served".to_owned(), steps.len(), axes, |range| driven_rows(&steps[range], axes > 1));
-    put_one(&table, Form::Csv, "tables/served.csv", shelf)
+    let served = (table, "tables/served.csv");
+    let drift = found.map(|found| (of_drift(found), "tables/drift.csv"));
+    once(served).chain(drift).map(|(table, path)| put_one(&table, Form::Csv, path, shelf)).collect()
+}
+
+fn of_drift(found: &Drift) -> Table<'_> {
+    Table::of_steps("drift".to_owned(), 1, 1, |_| drift::rows(found))
 }
 
 fn put_one(table: &Table<'_>, form: Form, path: &str, shelf: &mut dyn Shelf) -> Result<Listed, OutputError> {

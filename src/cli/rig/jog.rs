@@ -111,7 +111,7 @@ fn on_a_real_rig(
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = real_rig::wall_clock();
     let (recorded, steps) = tape::record_driven(plan, rig, &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
-    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, shelf))?;
+    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, None, shelf))?;
     tell(&format!("  on record: {}\n", folder.path().display()));
     if let Some(fault) = &recorded.fault {
         tell(&format!("  the record could not be kept to its end: {fault}\n"));

@@ -132,7 +132,12 @@ fn on_record(
         served = serve::serve(&door.listener, protocol, specimen, arguments.once, &wanted, &mut tell_event);
     });
     watcher.finish();
-    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, shelf))?;
+    let drift = recorded.record.drift.as_ref();
+    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, drift, shelf))?;
+    for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
+        let note = settings.paint_note("  note:");
+        tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));
+    }
     tell(&format!("  {}\n", folder.path().display()));
     served.map_err(|error| listening(arguments, &error))?;
     told?;

@@ -66,19 +66,25 @@ impl GrblDevice {
     }
 
     /// Sends a line that acts once however often it is heard, and collects what comes before its `ok`.
-    fn command(&mut self, line: &[u8], mut each: impl FnMut(&Word), enough: impl Fn(&[Word]) -> bool) -> Result<(), DeviceFault> {
+    fn command(
+        &mut self,
+        line: &[u8],
+        mut each: impl FnMut(&Word, &[u8]),
+        enough: impl Fn(&[Word]) -> bool,
+    ) -> Result<(), DeviceFault> {
         let known = self.known;
-        let mut seen = Vec::new();
+        let (mut seen, mut lines) = (Vec::new(), Vec::new());
         self.talk.exchange(line, b"\n", |line| {
             for word in grbl::words(line) {
                 if let Some(fault) = fault(&word, known) {
                     return Answer::Fault(fault);
                 }
                 if word == Word::Ok && enough(&seen) {
-                    seen.iter().for_each(&mut each);
+                    seen.iter().zip(&lines).for_each(|(word, line): (&Word, &Vec<u8>)| each(word, line));
                     return Answer::Take(());
                 }
                 seen.push(word);
+                lines.push(line.to_vec());
             }
             Answer::Ignore
         })
@@ -127,6 +133,30 @@ impl GrblDevice {
     }
 }
 
+/// Who a controller is that says its version in this line.
+pub(super) fn introduced(line: &[u8]) -> Option<DeviceIdentity> {
+    let (firmware, serial) = grbl::words(line).into_iter().find_map(|word| match word {
+        Word::Version(version, text) => Some((version, text)),
+        _ => None,
+    })?;
+    let simulated = serial.starts_with(super::SIMULATED);
+    Some(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot: None, simulated, raw: vec![line.to_vec()] })
+}
+
+/// Where the axis is by the first status of a line.
+pub(super) fn decoded(line: Vec<u8>) -> Option<Sample> {
+    let status = grbl::words(&line).into_iter().find_map(|word| match word {
+        Word::Status(status) => Some(status),
+        _ => None,
+    })?;
+    Some(sample_of(status, line))
+}
+
+fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
+    let moving = Some(status.state.is_moving());
+    Sample { displacement: Some(status.position), moving, raw: vec![raw], ..Sample::default() }
+}
+
 /// The first word of a line that `pick` takes, with the line.
 fn find<T>(line: &[u8], known: bool, pick: impl Fn(&Word) -> Option<T>) -> Answer<(T, Vec<u8>)> {
     let words = grbl::words(line);
@@ -167,14 +197,14 @@ impl Device for GrblDevice {
             _ => return Err(DeviceFault::Unfit("it is moving already".to_owned())),
         }
         let mut who = None;
-        let keep = |word: &Word| {
-            if let Word::Version(version, text) = word {
-                who = Some((version.clone(), text.clone()));
+        let keep = |word: &Word, line: &[u8]| {
+            if let Word::Version(..) = word {
+                who = introduced(line);
             }
         };
         self.command(grbl::BUILD, keep, |seen| seen.iter().any(|word| matches!(word, Word::Version(..))))?;
         let mut settings = BTreeMap::new();
-        let keep = |word: &Word| {
+        let keep = |word: &Word, _: &[u8]| {
             if let Word::Setting(number, value) = word {
                 settings.extend(value.parse::<f64>().map(|value| (*number, value)));
             }
@@ -183,9 +213,7 @@ impl Device for GrblDevice {
         check(&settings)?;
         self.settings = settings;
         (self.known, self.unanswered, self.held) = (true, false, false);
-        let (firmware, serial) = who.unwrap_or_default();
-        let simulated = serial.starts_with(super::SIMULATED);
-        Ok(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot: None, simulated, raw: Vec::new() })
+        who.ok_or_else(|| DeviceFault::Unfit("it does not say what version it is".to_owned()))
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
@@ -204,7 +232,7 @@ impl Device for GrblDevice {
         for frame in &going.frames {
             self.unanswered = true;
             self.talk.drain()?;
-            let answered = self.command(frame, |_| (), |_| true);
+            let answered = self.command(frame, |_, _| (), |_| true);
             self.unanswered = !matches!(answered, Ok(()) | Err(DeviceFault::Refused { .. } | DeviceFault::Rebooted { .. }));
             answered?;
         }
@@ -220,8 +248,7 @@ impl Device for GrblDevice {
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         let (status, raw) = self.fit_status()?;
-        let moving = Some(status.state.is_moving());
-        Ok(Sample { displacement: Some(status.position), moving, raw: vec![raw], ..Sample::default() })
+        Ok(sample_of(status, raw))
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {

@@ -154,7 +154,8 @@ fn told(resume: &ResumeBody) -> String {
         }
         _ => String::new(),
     };
-    format!("resumed by {}: {}; {target}{relaxed}", resume.by, resume.reason)
+    let when = resume.wall.as_ref().map_or_else(String::new, |wall| format!(" at {wall}"));
+    format!("resumed{when} by {}: {}; {target}{relaxed}", resume.by, resume.reason)
 }
 
 /// A record's body, typed.
