@@ -142,6 +142,12 @@ impl<'a> DryRun<'a> {
         }
         section("Limits", self.limits());
         section("Requirements, as predicted", self.requirements());
+        let undeclared = self.plan.rig.undeclared(self.plan.degrees_of_freedom());
+        if !undeclared.is_empty()
+            && self.assessment.requirements.iter().flat_map(|each| &each.conditions).any(|it| it.uncertainty.is_some())
+        {
+            let _ = writeln!(text, "Not in u, for the plan does not declare it: {}\n", undeclared.join(", "));
+        }
         if let Some(stopped) = self.stopped() {
             let _ = writeln!(text, "{}", settings.paint_heading(&stopped));
         }
