@@ -82,7 +82,7 @@ impl Played {
     }
 
     fn take(&mut self, line: &Line) -> Result<(), Unplayable> {
-        if let Some(time) = line.body.get("t").and_then(serde_json::Value::as_f64) {
+        if let Some(time) = line.time() {
             self.time = time;
         }
         match line.kind {
@@ -154,10 +154,11 @@ fn told(resume: &ResumeBody) -> String {
         }
         _ => String::new(),
     };
-    format!("resumed by {}: {}; {target}{relaxed}", resume.by, resume.reason)
+    let when = resume.wall.as_ref().map_or_else(String::new, |wall| format!(" at {wall}"));
+    format!("resumed{when} by {}: {}; {target}{relaxed}", resume.by, resume.reason)
 }
 
 /// A record's body, typed.
 pub(super) fn body<T: DeserializeOwned>(line: &Line) -> Result<T, Unplayable> {
-    T::deserialize(&line.body).map_err(|error| Unplayable::Body { seq: line.seq, kind: line.kind, reason: error.to_string() })
+    line.read().map_err(|error| Unplayable::Body { seq: line.seq, kind: line.kind, reason: error.to_string() })
 }
