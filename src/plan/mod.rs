@@ -15,6 +15,7 @@ mod integrator;
 mod portal;
 mod rig;
 mod stepping;
+mod undeclared;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};
