@@ -178,8 +178,10 @@ fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)],
     let rigid = |procedure: &Procedure| match &procedure.kind {
         ProcedureKind::Impact(Impact { contact, .. })
         | ProcedureKind::StoreyImpact(StoreyImpact { contact, .. })
-        | ProcedureKind::Escalate(Escalate { blow: BlowOn::Specimen(Impact { contact, .. }), .. })
-        | ProcedureKind::Escalate(Escalate { blow: BlowOn::Storey(StoreyImpact { contact, .. }), .. }) => {
+        | ProcedureKind::Escalate(Escalate {
+            blow: BlowOn::Specimen(Impact { contact, .. }) | BlowOn::Storey(StoreyImpact { contact, .. }),
+            ..
+        }) => {
             matches!(contact, Contact::Rigid)
         }
         _ => false,

@@ -62,14 +62,13 @@ impl Met {
 #[must_use]
 pub fn longest_stable_step(integrator: Integrator, met: &Met) -> f64 {
     match integrator {
-        Integrator::Tangent => f64::INFINITY,
         Integrator::Explicit if met.highest > 0.0 => 2.0 / met.highest.sqrt(),
         Integrator::AlphaOs { .. } if met.shortfall > 0.0 => {
             let (alpha, largest) = (Coefficients::of(integrator).alpha, longest_angle(integrator, met));
             let gains = met.share > ((1.0 + alpha) / (1.0 - alpha)).powi(2);
             largest / if gains { met.highest.sqrt() } else { (met.shortfall / met.share).sqrt() }
         }
-        Integrator::Explicit | Integrator::AlphaOs { .. } => f64::INFINITY,
+        Integrator::Tangent | Integrator::Explicit | Integrator::AlphaOs { .. } => f64::INFINITY,
     }
 }
 

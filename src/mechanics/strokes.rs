@@ -45,7 +45,7 @@ pub fn change_along(stroke: &[OutAndBack]) -> Option<f64> {
 /// K of the specimen along its strokes with its standard error, N/m: one slope of the mean force for all, each with an intercept of its
 /// own, for where a specimen rests may drift between them.
 #[must_use]
-pub fn own_stiffness<'a>(strokes: impl Iterator<Item = &'a [OutAndBack]> + Clone) -> Option<(f64, f64)> {
+pub fn own_stiffness<'a>(strokes: &(impl Iterator<Item = &'a [OutAndBack]> + Clone)) -> Option<(f64, f64)> {
     let middle = |stroke: &[OutAndBack]| {
         #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
         let count = stroke.len() as f64;
@@ -97,8 +97,8 @@ mod tests {
     #[test]
     fn strokes_that_rest_elsewhere_have_one_stiffness() {
         let strokes = [stroke(|_| 0.0, 0.0), stroke(|_| 0.0, 250.0), Vec::new()];
-        let (stiffness, error) = own_stiffness(strokes.iter().map(Vec::as_slice)).unwrap();
+        let (stiffness, error) = own_stiffness(&strokes.iter().map(Vec::as_slice)).unwrap();
         assert!((stiffness - 4e5).abs() < 1e-4 && error < 1e-3, "{stiffness} {error}");
-        assert_eq!(own_stiffness([&[][..]].into_iter()), None);
+        assert_eq!(own_stiffness(&[&[][..]].into_iter()), None);
     }
 }

@@ -277,7 +277,7 @@ impl Sweep {
         }
         let left_out: Vec<usize> = flowed.iter().filter(|_| !all).map(|(stroke, _)| stroke.out.start).collect();
         let kept = strokes.iter().filter(|(stroke, _)| !left_out.contains(&stroke.out.start));
-        let own_stiffness = own_stiffness(kept.map(|(_, pairs)| pairs.as_slice())).filter(|own| self.contradicts(*own));
+        let own_stiffness = own_stiffness(&kept.map(|(_, pairs)| pairs.as_slice())).filter(|own| self.contradicts(*own));
         if let (Some((own, _)), Some(assumed)) = (own_stiffness, self.stiffness) {
             let (own, assumed) = (readable(own, Dimension::STIFFNESS), readable(assumed.value, Dimension::STIFFNESS));
             remarks.push(format!(

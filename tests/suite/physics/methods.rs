@@ -199,7 +199,9 @@ fn the_tangent_form_errs_by_what_its_slope_is_late() {
         let mut solver = ImpactSolver::new(&input, place, force);
         let began = force * force / (2.0 * stiffness);
         let (mut slope, mut late, mut reckoned, mut largest) = (stiffness, 0.0, 0.0, 0.0_f64);
-        for _ in 0..(30.0 / time_step) as u32 {
+        let mut time = 0.0;
+        while time < 30.0 {
+            time += time_step;
             let target = solver.predict();
             let read = specimen.move_to(target);
             solver.complete(target, read);
