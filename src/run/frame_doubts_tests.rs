@@ -308,8 +308,7 @@ fn scatters_as_foretold(doubtful: &Plan, names: &[(&str, usize)], drawn: bool, d
         let (scatter, u) = (scatter(values), combined(&parts).unwrap());
         // Where the record leaves open how the storeys go on, the most of what they may do is told, and marked.
         let sure = parts.iter().all(|part| part.smooth || part.amount.abs() < 0.1 * u);
-        // Noise makes an elastic storey look as if it flowed a little: the most of what it may do is told of it too.
-        let most = if sure && !drawn { within } else { 1.0 };
+        let most = if sure { within } else { 1.0 };
         let told = u / scatter - 1.0;
         assert!((-within..most).contains(&told), "{name}[{place}]: {scatter} of runs, {u} foretold");
     }
