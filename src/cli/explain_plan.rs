@@ -122,6 +122,7 @@ impl<'a> DryRun<'a> {
             {
                 let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
                 section(&format!("{}, modes", procedure.name), modes);
+                section(&format!("{}, shapes", procedure.name), explain_shake::shapes(history.modes.as_ref()));
                 let heading = format!("{}, impact on storey {}", procedure.name, history.struck + 1);
                 let foretold = explain_tracking::storey_rows(self.plan, blow, history);
                 let energy = explain_tracking::energy(self.plan, index);
@@ -133,6 +134,7 @@ impl<'a> DryRun<'a> {
             if let (History::Shake(history), ProcedureKind::Shake(shake)) = (&procedure.history, &planned.kind) {
                 let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
                 section(&format!("{}, modes", procedure.name), modes);
+                section(&format!("{}, shapes", procedure.name), explain_shake::shapes(history.modes.as_ref()));
                 let foretold = explain_tracking::shake_rows(self.plan, shake, history);
                 let energy = explain_tracking::energy(self.plan, index);
                 section(&format!("{}, shake", procedure.name), [explain_shake::steps(history), foretold, energy].concat());
