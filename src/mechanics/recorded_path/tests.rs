@@ -200,29 +200,3 @@ fn the_record_tells_what_is_open() {
     assert_eq!(smooth.rules(), [Rule::Shifted, Rule::Kept]);
     assert!(recorded(Bilinear::new(1000.0, 200.0, 0.1), &way(&LOOPS, STEP)).swung_back());
 }
-
-/// 1000 N/m read with 1 N of noise every 0.1 mm: a way that is 0.05 mm off reads K·0.05 mm more than the record did, by a slope of
-/// readings 10 mm apart, and not the newton by which the next reading happens to differ.
-#[test]
-fn a_noisy_way_goes_on_from_its_own_reading() {
-    let mut state = 9;
-    let place = |step: u32| 1e-4 * f64::from(step);
-    let reading = |step| Reading {
-        target: place(step),
-        displacement: place(step),
-        force: 1000.0 * place(step) + crate::mechanics::testing::normal(&mut state),
-    };
-    let readings: Vec<Reading> = (0..400).map(reading).collect();
-    let path = RecordedPath::new(readings.clone(), 1000.0, 1.0, 0.0).unwrap();
-    let off = 5e-5;
-    let mut again = path.again(Distortion::NONE);
-    let mut squares = 0.0;
-    for reading in &readings[1..] {
-        let (displacement, force) = again.move_to(reading.target + off);
-        assert!((displacement - reading.displacement - off).abs() < 1e-12);
-        squares += (force - reading.force - 1000.0 * off).powi(2);
-    }
-    // √2 N over 10 mm is 141 N/m of slope, 7 mN over 0.05 mm; by the next reading it would be 0.7 N.
-    let miss = (squares / 399.0).sqrt();
-    assert!(miss < 0.012, "{miss} N");
-}
