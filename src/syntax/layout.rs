@@ -53,6 +53,9 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
 /// Words a top-level item starts with, other than a block.
 pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
 
+/// Words and signs of the fields of a block that lacks its `{`, at most.
+const FIELDS_WITHOUT_BRACE: usize = 500;
+
 /// Signs between two values.
 const OPERATORS: [&str; 12] = ["+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!="];
 
@@ -172,9 +175,12 @@ impl Cutter<'_> {
             next += 1;
         }
         let field = self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "=");
-        let brace = (next..self.tokens.list.len()).find(|at| self.tokens.is(*at, "{") || self.tokens.is(*at, "}"));
-        let closed = brace.is_some_and(|at| self.tokens.is(at, "}"));
-        let lacks = head.end > head.start && words && !item && field && closed;
+        // Looked for so far only: reading a file takes as long as the file is.
+        let closed = || {
+            let brace = (next..next + FIELDS_WITHOUT_BRACE).find(|at| self.tokens.is(*at, "{") || self.tokens.is(*at, "}"));
+            brace.is_some_and(|at| self.tokens.is(at, "}"))
+        };
+        let lacks = head.end > head.start && words && !item && field && closed();
         if lacks {
             let (first, last) = (self.tokens.list[head.start], self.tokens.list[head.end - 1]);
             self.faults.push(faults::brace_missing(self.tokens.span(first.start, last.end)));
