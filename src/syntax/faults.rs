@@ -1,7 +1,7 @@
 //! Every fault of the text, as a diagnostic: the code, the sentence, the place and the way out. Found elsewhere, worded
 //! here.
 
-use super::{letters, misspelt::Slip, numbers};
+use super::{letters, limits, misspelt::Slip, numbers};
 use crate::{
     diagnostic::{Code, Diagnostic},
     source::Span,
@@ -262,6 +262,7 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
         }
         Slip::Superscript(written) => {
             let meant = "as in `mm^2` or `1/s`";
+            let written: String = written.chars().take(12).collect();
             fault(
                 Code::Syntax,
                 format!("`{written}` is no exponent of the language"),
@@ -311,7 +312,7 @@ fn foreign_word(word: &str, span: Span, often: &str) -> Diagnostic {
         }
         None => (format!("`{short}` holds {point}, which no name or unit may hold"), "not a letter from a to z".to_owned()),
     };
-    let help = match letters::written_plainly(word) {
+    let help = match letters::written_plainly(word).filter(|plain| plain.len() <= limits::NAME_CHARS) {
         Some(plain) => format!("write `{plain}`: names are made of a–z, 0–9 and _"),
         None => "names are made of a–z, 0–9 and _; other letters stand in texts and comments".to_owned(),
     };
