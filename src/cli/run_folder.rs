@@ -83,7 +83,11 @@ pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
         created.write_all(&file.bytes)?;
         created.sync_all()
     };
-    write().map_err(|error| Failure::file(&path, plain(&error)))
+    write().map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => Failure::file(&path, "is there already: somebody else wrote it")
+            .help("a record beside it is whole: make its results in a new folder with `psd report RUN --out FOLDER`"),
+        _ => Failure::file(&path, plain(&error)),
+    })
 }
 
 #[cfg(test)]

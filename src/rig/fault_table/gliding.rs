@@ -165,6 +165,7 @@ fn cut_off_anywhere_it_is_brought_back_and_goes_on_to_the_same_end() {
             by: "A. Witness".to_owned(),
             reason: "power".to_owned(),
             doubt: decision.doubt,
+            assured: Vec::new(),
             found: (found.displacement, found.force),
             recorded: decision.recorded,
             t: before.time,

@@ -163,6 +163,7 @@ fn sites_that_were_cut_off_anywhere_are_brought_to_the_same_end() {
             by: "A. Witness".to_owned(),
             reason: "power".to_owned(),
             doubt: decision.doubt,
+            assured: Vec::new(),
             found: (found.displacement, found.force),
             recorded: decision.recorded,
             t: before.time,

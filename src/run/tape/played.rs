@@ -154,7 +154,8 @@ fn told(resume: &ResumeBody) -> String {
         }
         _ => String::new(),
     };
-    format!("resumed by {}: {}; {target}{relaxed}", resume.by, resume.reason)
+    let assured: String = resume.assured.iter().map(|assured| format!("; {}", assured.told())).collect();
+    format!("resumed by {}: {}{assured}; {target}{relaxed}", resume.by, resume.reason)
 }
 
 /// A record's body, typed.
