@@ -152,6 +152,7 @@ codes! {
     W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
+    W727 GateWithinNoise Warning;
 }
 
 impl std::fmt::Display for Code {

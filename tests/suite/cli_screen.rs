@@ -161,7 +161,7 @@ fn ctrl_c_and_no_and_the_end_of_the_input_stop_and_none_is_a_yes() {
 
 #[test]
 fn the_first_key_after_the_window_got_another_size_is_heard() {
-    for (key, reason) in [("h", "held on request"), ("q", "stopped on request"), ("\u{3}", "stopped on request")] {
+    for (key, reason) in [("h", "on request"), ("q", "stopped on request"), ("\u{3}", "stopped on request")] {
         let mut terminal = Terminal::run(&["--operator", "B"]);
         terminal.wait_for("on?");
         terminal.resize(110);

@@ -110,16 +110,18 @@ impl GrblDevice {
             State::Held if self.unanswered => {
                 refused("a move that was never answered may wait in it: look at it, then begin again with `--let-go`")
             }
-            State::Held if self.held => {
-                // Nothing waits in it, so that nothing moves when it is let go of.
-                self.talk.send(grbl::RESUME)?;
-                self.until(|state| state == State::Idle)?;
-                self.held = false;
-                Ok(())
-            }
+            State::Held if self.held => self.resume_at_rest(),
             State::Held => refused("it is held by somebody else"),
             _ => refused("it is still moving"),
         }
+    }
+
+    /// Nothing waits in it, so that nothing moves when it is let go of.
+    fn resume_at_rest(&mut self) -> Result<(), DeviceFault> {
+        self.talk.send(grbl::RESUME)?;
+        self.until(|state| state == State::Idle)?;
+        self.held = false;
+        Ok(())
     }
 
     /// Lets go of an axis that stands held at this place, as a person wants: it forgets what was interrupted, and moves nothing.
@@ -269,7 +271,9 @@ impl Device for GrblDevice {
         // While it jogs this ends the jog and leaves it idle; at rest it leaves it held. A reset would lose the position.
         self.talk.send(grbl::HOLD)?;
         self.held = true;
-        self.until(|state| !state.is_moving()).map(drop)
+        let rest = self.until(|state| !state.is_moving())?;
+        // It was at rest, and nothing waits in it: it keeps its load without being held, and whoever comes next finds it idle.
+        if rest.state == State::Held && !self.unanswered { self.resume_at_rest() } else { Ok(()) }
     }
 
     fn emergency(&self) -> Vec<u8> {
