@@ -112,6 +112,11 @@ pub trait Results {
         }
     }
 
+    /// Degrees of freedom by which the size of a source is known; infinite of what was not estimated from readings.
+    fn degrees(&self, _: Source) -> f64 {
+        f64::INFINITY
+    }
+
     /// By how many of its standard uncertainties a source is moved here.
     fn moved(&self, _: Source) -> f64 {
         0.0
@@ -170,11 +175,18 @@ impl Formula {
         self.collect_references(&mut references);
         let mut sources = sources_of(&references, results);
         self.collect_stated(&mut sources);
+        if sources.is_empty() {
+            return Ok(Vec::new());
+        }
+        let value = self.number(results, critical)?;
         let effect = |source| {
             // Half the effect of moving the source by ±u: exact for a linear formula.
             let up = self.number(&Moved { results, source, by: 1.0 }, critical)?;
             let down = self.number(&Moved { results, source, by: -1.0 }, critical)?;
-            Ok(Contribution::new(source, 0.5 * (up - down)))
+            let (above, below) = (up - value, value - down);
+            // Both sides move it the same way: it folds there, as `abs` does about 0, and the halves would cancel.
+            let folds = above * below < 0.0;
+            Ok(Contribution::new(source, if folds { above.abs().max(below.abs()).copysign(above) } else { 0.5 * (up - down) }))
         };
         sources.into_iter().map(effect).collect()
     }
@@ -390,6 +402,16 @@ mod tests {
         let nothing = Formula::Binary(Operator::Subtract, Box::new(energy.clone()), Box::new(energy));
         assert_eq!(nothing.evaluate(&NoResults, None), Ok(Estimate { value: 0.0, uncertainty: Some(0.0) }));
         assert_eq!(of(Source::StrikerMass(0), 20.0, 0.0), Formula::Constant(20.0));
+    }
+
+    /// |K − 99.9| with K = 100 ± 2: one way and the other it grows by nearly 2, and half of their difference is nearly nothing.
+    #[test]
+    fn what_folds_within_its_uncertainty_is_as_uncertain_as_what_is_folded() {
+        let off = |by: f64| {
+            let off = Formula::Binary(Operator::Subtract, Box::new(stiffness()), Box::new(Formula::Constant(by)));
+            Formula::Call(Function::Abs, vec![off]).evaluate(&One, None).unwrap().uncertainty.unwrap()
+        };
+        assert!((off(99.9) - 2.0).abs() < 1e-12 && (off(100.0) - 2.0).abs() < 1e-12 && (off(90.0) - 2.0).abs() < 1e-12);
     }
 
     #[test]

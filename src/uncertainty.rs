@@ -3,7 +3,10 @@
 //! 5.2 and F.1.2.3). In: contributions. Out: standard uncertainties, and results with one source moved. It knows no
 //! procedure and no plan.
 
+mod degrees;
+
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+pub use degrees::{FEW, Known, MOST_DRAWS, known, known_entries};
 
 /// Something that is not known exactly, independent of every other source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,6 +38,10 @@ pub enum Source {
         specimen: usize,
         storey: usize,
     },
+    /// The factor on the matrix of the masses of a frame, as a whole.
+    MassMatrix(usize),
+    /// The factor on the matrix of its stiffnesses, as a whole.
+    StiffnessMatrix(usize),
     /// The computed damping ratio of one mode of a frame, from 0; of Rayleigh damping the one ratio that it has.
     DampingRatio {
         procedure: ProcedureId,
@@ -57,6 +64,25 @@ pub enum Source {
     Drawn {
         procedure: ProcedureId,
         draw: u16,
+    },
+    /// One of the readings by which the place was found where a specimen rests after a blow of a procedure, from 0, or after
+    /// none.
+    RestReading {
+        procedure: ProcedureId,
+        blow: u16,
+        reading: u16,
+    },
+    /// What it still carries there beyond what readings can tell from none.
+    RestLoad {
+        procedure: ProcedureId,
+        blow: u16,
+    },
+    /// What the rounding of a procedure's readings leaves open of a fitted result, or of an entry of a list, beyond what its scatter
+    /// shows.
+    Rounding {
+        procedure: ProcedureId,
+        result: &'static str,
+        entry: usize,
     },
     /// Times are told to a whole step.
     TimeStep {
@@ -153,6 +179,10 @@ impl Results for Moved<'_> {
 
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         self.results.contributions(reference)
+    }
+
+    fn degrees(&self, source: Source) -> f64 {
+        self.results.degrees(source)
     }
 }
 

@@ -6,6 +6,7 @@ use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
 use crate::record::{Beyond, History, Outcome, ProcedureRecord, Record};
 use crate::rig::failpoint::{self, Guarding};
+use crate::uncertainty::{FEW, Known, known};
 
 /// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -60,11 +61,15 @@ pub struct ConditionOutcome {
     /// SI; None where a result does not exist.
     pub value: Option<f64>,
     pub uncertainty: Option<f64>,
+    /// Effective degrees of freedom of that uncertainty.
+    pub degrees: f64,
     pub bound: Option<Bound>,
     /// Distance inside the bound, SI; negative: missed by so much.
     pub margin: Option<f64>,
-    /// w = U = 2u of the margin under the guarded rule, SI; None under the simple one, and where no uncertainty is known.
+    /// w = U = k·u of the margin under the guarded rule, SI; None under the simple one, and where no uncertainty is known.
     pub guard_band: Option<f64>,
+    /// Effective degrees of freedom of the uncertainty of the margin, under the guarded rule.
+    pub margin_degrees: f64,
     /// Why it is inconclusive.
     pub reason: Option<String>,
 }
@@ -179,9 +184,6 @@ fn enters(of_force: bool, kind: &str, result: &str) -> bool {
     !(given || (of_force && of_ways))
 }
 
-/// k of the expanded uncertainty U = k·u: about 95 % of a normal distribution.
-pub const COVERAGE: f64 = 2.0;
-
 /// Value and bound are evaluated each on its own, so that a report shows whichever exists.
 pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record: &dyn Results) -> ConditionOutcome {
     let value = condition.value.evaluate(record, None);
@@ -190,32 +192,47 @@ pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record
         (Ok(value), Ok(bound)) => Some((value.value, *bound)),
         _ => None,
     };
-    let guard_band = match rule {
+    let margin_known = match rule {
         DecisionRule::Simple => None,
-        DecisionRule::Guarded => known.and_then(|(value, bound)| guard_band(condition, value, bound, record)),
+        DecisionRule::Guarded => known.and_then(|(value, bound)| margin_known(condition, value, bound, record)),
     };
+    let guard_band = margin_known.map(Known::expanded);
     let verdict = match known {
         Some((value, bound)) => bound.verdict(value, guard_band),
         None => Verdict::Inconclusive,
     };
     let missing = value.as_ref().err().or(bound.as_ref().err()).map(ToString::to_string);
-    let too_near = || (verdict == Verdict::Inconclusive).then(|| "the limit is nearer than the guard band w = U".to_owned());
+    let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_known));
     ConditionOutcome {
         text: condition.text.clone(),
         verdict,
         dimension: condition.dimension,
         value: value.as_ref().ok().map(|value| value.value),
         uncertainty: value.as_ref().ok().and_then(|value| value.uncertainty),
+        degrees: how_well(&condition.value, record).map_or(f64::INFINITY, |known| known.degrees),
         bound: bound.ok(),
         margin: known.map(|(value, bound)| bound.margin(value)),
         guard_band,
+        margin_degrees: margin_known.map_or(f64::INFINITY, |known| known.degrees),
         reason: missing.or_else(too_near),
     }
 }
 
-/// w = U = 2u of the distance between value and bound, so that a limit which was measured itself counts too, and a result
+/// Why a limit within the guard band decides nothing, and why the band is wide where few readings made it so.
+fn near(margin: Option<Known>) -> String {
+    let few = margin.filter(|known| known.degrees < f64::from(FEW));
+    let why = few.map(|known| format!(" = {:.2} u, of {:.1} degrees of freedom", known.coverage(), known.degrees));
+    "the limit is nearer than the guard band w = U".to_owned() + &why.unwrap_or_default()
+}
+
+/// How well a formula is known, with its degrees of freedom.
+fn how_well(formula: &Formula, record: &dyn Results) -> Option<Known> {
+    known(&formula.contributions(record, None).ok()?, record)
+}
+
+/// w = U = k·u of the distance between value and bound, so that a limit which was measured itself counts too, and a result
 /// that stands on both sides counts once. None where nothing of it is uncertain.
-fn guard_band(condition: &Condition, value: f64, bound: Bound, record: &dyn Results) -> Option<f64> {
+fn margin_known(condition: &Condition, value: f64, bound: Bound, record: &dyn Results) -> Option<Known> {
     let difference = |a: &Formula, b: &Formula| Formula::Binary(Operator::Subtract, Box::new(a.clone()), Box::new(b.clone()));
     let distance = match (&condition.test, bound) {
         (Test::Compare { limit, .. }, _) => difference(&condition.value, limit),
@@ -231,8 +248,7 @@ fn guard_band(condition: &Condition, value: f64, bound: Bound, record: &dyn Resu
             difference(&off, &tolerance)
         }
     };
-    let uncertainty = distance.evaluate(record, None).ok()?.uncertainty?;
-    (uncertainty > 0.0).then_some(COVERAGE * uncertainty)
+    how_well(&distance, record).filter(|known| known.standard > 0.0)
 }
 
 fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaError> {
@@ -258,6 +274,21 @@ fn rounding(a: f64, b: f64) -> f64 {
 
 fn equal(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= rounding(a, b)
+}
+
+impl ConditionOutcome {
+    /// How well the value is known.
+    #[must_use]
+    pub fn known(&self) -> Option<Known> {
+        self.uncertainty.map(|standard| Known { standard, degrees: self.degrees })
+    }
+
+    /// How well its margin is known, where a guard band is kept.
+    #[must_use]
+    pub fn margin_known(&self) -> Option<Known> {
+        let degrees = self.margin_degrees;
+        self.guard_band.map(|band| Known { standard: band / Known { standard: 1.0, degrees }.coverage(), degrees })
+    }
 }
 
 impl Bound {

@@ -54,7 +54,7 @@ pub fn hold(
     }
     let weighing = load_cell.map(|device| (weighed, device)).into_iter().chain(own(|axis| axis.load_cell.as_ref()));
     for (behind, device) in weighing {
-        channels(checker, behind, count, device)?;
+        channels(checker, behind, device)?;
     }
     let cells = axes.iter().filter_map(|axis| axis.load_cell.as_ref());
     ports(checker, &all.chain(load_cell).chain(cells).collect::<Vec<&Device>>())
@@ -70,12 +70,11 @@ fn points(checker: &mut Checker, axes: usize, device: &Device) -> Option<()> {
     }
 }
 
-/// A channel for every axis behind it, and none too many. What tells all axes of a rig tells no single one of several.
-fn channels(checker: &mut Checker, behind: usize, axes: usize, device: &Device) -> Option<()> {
+/// A channel for every axis behind it, and none too many. How many `native` has it says itself, when it is asked who it is.
+fn channels(checker: &mut Checker, behind: usize, device: &Device) -> Option<()> {
     let dialect = &device.link.dialect;
     let has = match dialect {
-        Dialect::Native if behind == axes && axes <= dialect.most_channels() => behind,
-        Dialect::Native => axes,
+        Dialect::Native => behind.min(dialect.most_channels()),
         _ => dialect.most_channels(),
     };
     match dialect {

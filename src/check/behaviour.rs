@@ -5,7 +5,10 @@ use super::choice::Chosen;
 use super::faults::specimens as fault;
 use super::table_file;
 use crate::mechanics::beam;
-use crate::plan::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading};
+use crate::mechanics::logarithmic::lost_after_long;
+use crate::plan::{
+    Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading,
+};
 use crate::schema::Variant;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind};
@@ -14,6 +17,11 @@ use crate::syntax::ast::{Expr, ExprKind};
 pub const MOST_PARTS: usize = 16;
 /// Springs one behind the other, at most: each one more makes every move some ten times dearer.
 pub const MOST_IN_SERIES: usize = 4;
+
+/// How long a force relaxes where the plan does not say, in reference times.
+const LONGEST_OF_REFERENCE: f64 = 1e6;
+/// And how long at least: shorter, the logarithm has no room.
+const LEAST_OF_REFERENCE: f64 = 10.0;
 
 /// A behaviour as it was written, with the variants it may be one of.
 pub struct Written<'a> {
@@ -76,17 +84,20 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
             let (force, displacement) = (number("force_factor"), number("displacement_factor"));
             let exponent = number("unloading_exponent");
             let (rate, residual) = (number("deterioration_exponent"), number("residual_strength"));
-            let capacity = checker.optional_argument(&chosen, "energy_capacity", place)?;
             let (rate, residual) = (rate?, residual?);
-            Some(Behaviour::Pinching(Pinching {
+            let pinching = Pinching {
                 stiffness: stiffness?,
                 yield_force: yield_force?,
                 hardening: hardening?,
                 force_factor: force?,
                 displacement_factor: displacement?,
                 unloading_exponent: exponent?,
-                deterioration: capacity.map(|capacity| Deterioration { capacity, exponent: rate, residual }),
-            }))
+                capping: None,
+                deterioration: None,
+            };
+            let deterioration = deterioration(checker, &chosen, place, (rate, residual))?;
+            let capping = capping(checker, &chosen, place, &pinching, residual)?;
+            Some(Behaviour::Pinching(Pinching { capping, deterioration, ..pinching }))
         }
         "degrading" => {
             let (stiffness, half, residual) = (number("stiffness"), number("half_displacement"), number("residual"));
@@ -115,6 +126,7 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
             let of = Box::new(part(checker, written, beside?, Stands::BesideBranch)?);
             Some(Behaviour::Maxwell { of, stiffness: stiffness?, time_constant: time_constant? })
         }
+        "logarithmic" => logarithmic(checker, written, &chosen, expr.span, stands),
         "multilinear" => multilinear(checker, &chosen, place),
         "table" => table(checker, &chosen),
         "fracture" => fracture(checker, written, &chosen, expr.span),
@@ -124,6 +136,77 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
         "portal" => portal(checker, &chosen, place, expr.span),
         _ => beam(checker, &chosen, place, written.own_mass),
     }
+}
+
+/// The capacities of the modes of deterioration; Some(None) where none is stated.
+#[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+fn deterioration<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Place,
+    (exponent, residual): (f64, f64),
+) -> Option<Option<Deterioration>> {
+    let mut of = |name| checker.optional_argument(chosen, name, place);
+    let stated = [of("energy_capacity"), of("capping_capacity"), of("unloading_capacity"), of("reloading_capacity")];
+    let [strength, capping, unloading, reloading] = stated;
+    let all = [strength?, capping?, unloading?, reloading?];
+    let [strength, capping, unloading, reloading] = all.map(|capacity| capacity.unwrap_or(f64::INFINITY));
+    let rule = Deterioration { strength, capping, unloading, reloading, exponent, residual };
+    Some(all.iter().any(Option::is_some).then_some(rule))
+}
+
+/// Where a backbone begins to fall: past yield, and its partners only with it.
+#[expect(clippy::option_option, reason = "left out and faulty are different things here")]
+fn capping<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Place,
+    pinching: &Pinching,
+    residual: f64,
+) -> Option<Option<Capping>> {
+    let displacement = checker.optional_argument(chosen, "capping_displacement", place)?;
+    let slope = checker.constant_argument(chosen, "capping_slope", place)?;
+    let given = |name: &str| chosen.find(name).and_then(|(_, written)| written).map(|written| written.span);
+    let Some(displacement) = displacement else {
+        return match ["capping_slope", "capping_capacity"].into_iter().find_map(|name| Some((name, given(name)?))) {
+            Some((name, span)) => checker.fail(fault::missing_partner(name, "capping_displacement", span)),
+            None => Some(None),
+        };
+    };
+    let yielded = pinching.yield_force / pinching.stiffness;
+    match given("capping_displacement") {
+        Some(span) if displacement <= yielded => checker.fail(fault::capped_before_yield(displacement, yielded, span)),
+        _ => Some(Some(Capping { displacement, slope, residual })),
+    }
+}
+
+/// What is reached relaxes with the logarithm of time: not more of it than there is.
+fn logarithmic<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    chosen: &Chosen<'a>,
+    span: Span,
+    stands: Stands,
+) -> Option<Behaviour> {
+    let (share, time) = (
+        checker.constant_argument(chosen, "share", written.place),
+        checker.constant_argument(chosen, "reference_time", written.place),
+    );
+    let longest = checker.optional_argument(chosen, "longest", written.place)?;
+    if stands == Stands::Inside {
+        return checker.fail(fault::felt_inside("logarithmic", span));
+    }
+    let of = Box::new(inner(checker, written, chosen)?);
+    let (share, reference_time) = (share?, time?);
+    let longest = longest.unwrap_or(LONGEST_OF_REFERENCE * reference_time);
+    if longest < LEAST_OF_REFERENCE * reference_time {
+        return checker.fail(fault::relaxes_too_short(longest, reference_time, span));
+    }
+    let lost = lost_after_long(share, reference_time, longest);
+    if lost >= 1.0 {
+        return checker.fail(fault::relaxes_away(share, lost, longest, span));
+    }
+    Some(Behaviour::Logarithmic { of, share, reference_time, longest })
 }
 
 fn inner<'a>(checker: &mut Checker<'a>, written: &Written<'a>, chosen: &Chosen<'a>) -> Option<Behaviour> {

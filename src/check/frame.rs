@@ -18,6 +18,15 @@ use crate::syntax::ast::ExprKind;
 /// Fields that make a specimen a frame.
 pub const FIELDS: [&str; 3] = ["storeys", "mass_matrix", "stiffness_matrix"];
 
+/// A stiffness is that of its behaviour to so much of it: the last digits of a sum or a quotient.
+const SAME: f64 = 1e-9;
+
+/// And may be off by so many of its standard uncertainties, where the plan states one.
+const WITHIN: f64 = 3.0;
+
+/// Uncertainties of the matrices, and what they are of.
+const MATRIX_UNCERTAINTIES: [&str; 2] = ["mass_matrix_uncertainty", "stiffness_matrix_uncertainty"];
+
 /// Fields of a specimen of one degree of freedom, which a frame has none of.
 const OF_ONE: [&str; 8] = ["mass", "mass_uncertainty", "length", "area", "density", "behaviour", "damping", "coulomb"];
 
@@ -46,7 +55,8 @@ fn said_once(checker: &mut Checker, block: usize) -> Option<()> {
     let storeys = checker.given(block, "storeys");
     let matrices = ["mass_matrix", "stiffness_matrix"].map(|field| checker.given(block, field));
     let first = storeys.or(matrices[0]).or(matrices[1])?.1;
-    let beside_storeys = matrices.into_iter().flatten().filter(|_| storeys.is_some());
+    let of_matrices = MATRIX_UNCERTAINTIES.map(|field| checker.given(block, field));
+    let beside_storeys = matrices.into_iter().chain(of_matrices).flatten().filter(|_| storeys.is_some());
     let of_one = OF_ONE.iter().filter_map(|field| checker.given(block, field));
     let other = beside_storeys.chain(of_one).map(|(_, entry)| &entry.key).next();
     if let Some(other) = other {
@@ -57,6 +67,16 @@ fn said_once(checker: &mut Checker, block: usize) -> Option<()> {
         (None, [None, Some((_, stiffness))]) => checker.fail(fault::matrix_alone(&stiffness.key, "mass_matrix")),
         _ => Some(()),
     }
+}
+
+/// Of one degree of freedom there are no matrices to be uncertain.
+pub fn no_matrix_uncertainties(checker: &mut Checker, block: usize) -> Option<()> {
+    for (field, matrix) in MATRIX_UNCERTAINTIES.into_iter().zip(["mass_matrix", "stiffness_matrix"]) {
+        if let Some((_, entry)) = checker.given(block, field) {
+            return checker.fail(fault::matrix_uncertainty_alone(&entry.key, matrix));
+        }
+    }
+    Some(())
 }
 
 fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
@@ -106,8 +126,16 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
         (None, None, Some(behaviour)) => behaviour.initial_stiffness(),
         (None, None, None) => return checker.fail(fault::storey_without_stiffness(number, at)),
     };
-    let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
     let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
+    if let Some(initial) = behaviour.as_ref().map(Behaviour::initial_stiffness)
+        && (stiffness - initial).abs() > SAME * stiffness.max(initial) + WITHIN * stiffness_uncertainty
+    {
+        let said = ["stiffness", "column_stiffness"].into_iter().find_map(|field| Some((field, chosen.span(field)?)));
+        let (field, said) = said.unwrap_or(("stiffness", at));
+        let bends = chosen.span("behaviour").unwrap_or(at);
+        return checker.fail(fault::storey_bends_otherwise(number, (field, stiffness, said), (initial, bends)));
+    }
+    let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
     let stated = [
         ("mass_uncertainty", mass_uncertainty, mass, Dimension::MASS),
         ("stiffness_uncertainty", stiffness_uncertainty, stiffness, Dimension::STIFFNESS),
@@ -131,7 +159,10 @@ fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
         let fault = fault::matrices_of_two_sizes(&stiffness_file, stiffness.len(), mass.len(), written.value.span);
         return checker.fail(fault);
     }
-    Some(Frame { storeys: Vec::new(), mass, stiffness, files: Some([mass_file, stiffness_file]) })
+    let matrix_uncertainty = MATRIX_UNCERTAINTIES.map(|field| checker.constant(block, field));
+    let [Some(of_mass), Some(of_stiffness)] = matrix_uncertainty else { return None };
+    let files = Some([mass_file, stiffness_file]);
+    Some(Frame { storeys: Vec::new(), mass, stiffness, files, matrix_uncertainty: [of_mass, of_stiffness] })
 }
 
 fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String, Vec<Vec<f64>>)> {

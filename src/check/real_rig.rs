@@ -14,6 +14,7 @@ use super::rig::{CheckedRig, kind, place_of};
 use crate::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
 use crate::quantity::Dimension;
 use crate::schema::{Field, Kind, Need, RigKind};
+use crate::source::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind};
 
 /// A request is sent after 0, T, 3T and given up after 7T.
@@ -311,4 +312,28 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             checker.faults.push(fault::device_not_pinned(field, &device.port, entry.value.span));
         }
     }
+    let Some((_, written)) = checker.given(block, "axes") else { return };
+    for (axis, own) in link.axes.iter().enumerate() {
+        for (field, device) in [("actuator", &own.actuator), ("load_cell", &own.load_cell)] {
+            if let Some(device) = device.as_ref().filter(|device| unpinned(device)) {
+                let at = own_device_at(&written.value, axis, field);
+                checker.faults.push(fault::device_not_pinned(&format!("{field} of axis {}", axis + 1), &device.port, at));
+            }
+        }
+    }
+}
+
+/// Where an axis names a device of its own; the list of axes, where that cannot be told.
+fn own_device_at(axes: &Expr, axis: usize, field: &str) -> Span {
+    let written = match &axes.kind {
+        ExprKind::List { items, .. } => items.get(axis),
+        _ => Some(axes),
+    };
+    let named = written.and_then(|written| match &written.kind {
+        ExprKind::Call { arguments, .. } => {
+            arguments.iter().find(|argument| argument.name.as_ref().is_some_and(|name| name.node == field))
+        }
+        _ => None,
+    });
+    named.map_or(axes.span, |argument| argument.value.span)
 }

@@ -31,6 +31,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         let (mass, frame) = (frame.total_mass(), Some((*frame).clone()));
         return Some(Specimen { mass_uncertainty, frame, ..Specimen::new(&name?.node, mass, None) });
     }
+    let no_matrices = frame::no_matrix_uncertainties(checker, block);
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) {
         // A misspelt field is said already.
@@ -53,6 +54,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     };
     let (damping, coulomb) = (checker.constant(block, "damping"), checker.constant(block, "coulomb"));
     let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
+    no_matrices?;
     Some(Specimen {
         name: name?.node.clone(),
         mass: mass?,
@@ -104,6 +106,10 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str, asked_at: Span)
     }
     if frame::is_frame(checker, block) {
         let frame = frame::frame(checker, block)?;
+        if frame.storeys.is_empty() {
+            let source = Source::MassMatrix(specimen);
+            return Some(Stated { source, value, uncertainty: frame.matrix_uncertainty[0] * value }.formula());
+        }
         let of_storey = |(storey, it): (usize, &Storey)| {
             let source = Source::StoreyMass { specimen, storey };
             Stated { source, value: it.mass, uncertainty: it.mass_uncertainty }.formula()
@@ -170,7 +176,7 @@ pub fn warn_of_short_tables(checker: &mut Checker, specimens: &[Option<Specimen>
         }
         // Behind a spring or beside one the specimen's displacement is not the table's.
         let table = match behaviour {
-            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } => of,
+            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } | Behaviour::Logarithmic { of, .. } => of,
             other => other,
         };
         let (Behaviour::Table(table), [named_at]) = (table, named.as_slice()) else { continue };

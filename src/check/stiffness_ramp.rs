@@ -4,7 +4,10 @@ use super::checker::Checker;
 use super::curve;
 use super::faults::{specimens, values};
 use super::fields::whole;
-use crate::plan::{ProcedureKind, RampFit, RelaxationModel, StiffnessRamp, WatchedHold};
+use crate::plan::{ProcedureKind, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel};
+
+/// Readings of a pause that span two decades of time: the first comes after one hundredth of it.
+const ENOUGH_READINGS: u32 = 10;
 
 /// Most readings of one ramp.
 pub const MOST_READINGS: f64 = 1e7;
@@ -58,14 +61,24 @@ fn fit(checker: &mut Checker, block: usize) -> Option<RampFit> {
 /// How the pauses are watched; None where a fault was reported.
 #[expect(clippy::option_option, reason = "left out and faulty are different things here")]
 fn relaxation(checker: &mut Checker, block: usize) -> Option<Option<WatchedHold>> {
-    let Some((entry, _)) = checker.given(block, "relaxation") else { return Some(None) };
+    let Some((entry, written)) = checker.given(block, "relaxation") else { return Some(None) };
     let place = checker.place(block, entry);
     let chosen = checker.choice(block, "relaxation")?;
     let readings = checker.constant_argument(&chosen, "readings", place).and_then(whole);
-    let accuracy = checker.optional_argument(&chosen, "accuracy", place);
-    let model = match chosen.variant.name {
-        "standard_linear_solid" => RelaxationModel::StandardLinearSolid,
-        _ => RelaxationModel::Exponential,
+    let decay = match chosen.variant.name {
+        "standard_linear_solid" => Some(RelaxationModel::StandardLinearSolid),
+        "exponential" => Some(RelaxationModel::Exponential),
+        _ => None,
     };
-    Some(Some(WatchedHold { model, readings: readings?, accuracy: accuracy? }))
+    if let Some(model) = decay {
+        let accuracy = checker.optional_argument(&chosen, "accuracy", place);
+        return Some(Some(WatchedHold { model: WatchedModel::Decay { model, accuracy: accuracy? }, readings: readings? }));
+    }
+    let (rate, readings) = (checker.constant_argument(&chosen, "rate", place)?, readings?);
+    let law = (chosen.variant.name == "logarithmic").then_some(RelaxationLaw::Logarithmic);
+    if law.is_none() && readings < ENOUGH_READINGS {
+        let at = chosen.find("readings").and_then(|(_, given)| given).map_or(written.value.span, |given| given.span);
+        checker.faults.push(specimens::few_decades(readings, at));
+    }
+    Some(Some(WatchedHold { model: WatchedModel::Reached { law, rate }, readings }))
 }

@@ -3,72 +3,85 @@
 
 use std::path::Path;
 
-use super::evidence::{Folder, MANIFEST};
+use super::evidence::Folder;
 use super::exit::{Exit, Failure};
+use super::loader::plain;
 use super::output::tell;
 use super::rehearse;
-use super::run_folder::write_new;
+use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
-use crate::output::{self, OutputError, OutputFile, Provenance, Run};
+use crate::output::{self, Listed, OutputError, Provenance, Run, Shelf};
 use crate::plan::Plan;
 use crate::record::Record;
 use crate::run::driven::DrivenStep;
 use crate::run::tape::Recorded;
 use crate::verdict::{self, Assessment};
 
-/// Tells the verdict and writes every result into the run's own folder. The files come back for who blesses or prints them.
+/// Tells the verdict and writes every result into the run's own folder.
 pub fn conclude(
     folder: &Path,
     plan: &Plan,
     provenance: &Provenance,
     recorded: &Recorded,
     settings: Settings,
-) -> Result<(Exit, Vec<OutputFile>), Failure> {
+) -> Result<Exit, Failure> {
     let assessment = verdict::assess(plan, &recorded.record);
     let provenance = &as_recorded(folder, plan, provenance);
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
     tell(&output::console::verdict_text(&run, settings.color));
-    let mut files = made_of(plan, &recorded.record, &assessment, provenance, None)?;
-    write_results(folder, &files, &Folder::read(folder)?.kept())?;
-    // What is blessed holds no record: its manifest is its own.
-    files.push(output::manifest_with(&files, &[]));
+    let kept = Folder::digests(folder)?.kept();
+    write_made(folder, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
     let exit = Exit::from(assessment.verdict);
     match (&recorded.fault, &recorded.mismatch) {
-        (None, None) => Ok((exit, files)),
+        (None, None) => Ok(exit),
         (Some(fault), _) => {
             tell(&format!("  the record could not be kept to its end: {fault}\n"));
-            Ok((exit.max(Exit::Fault), files))
+            Ok(exit.max(Exit::Fault))
         }
         (None, Some(mismatch)) => {
             tell(&format!("  the record does not fit the plan: {mismatch}\n"));
-            Ok((exit.max(Exit::Fault), files))
+            Ok(exit.max(Exit::Fault))
         }
     }
 }
 
-/// Every file that a run gives; not the manifest, which also lists what lies beside them. A rig that a client drove gives
-/// the table of its steps alone.
+/// Puts every file that a run gives on a shelf; not the manifest, which also lists what lies beside them. A rig that a client
+/// drove gives the table of its steps alone.
 pub fn made_of(
     plan: &Plan,
     record: &Record,
     assessment: &Assessment,
     provenance: &Provenance,
     driven: Option<&[DrivenStep]>,
-) -> Result<Vec<OutputFile>, OutputError> {
+    shelf: &mut dyn Shelf,
+) -> Result<Vec<Listed>, OutputError> {
     if let Some(steps) = driven {
-        return Ok(vec![output::driven(steps)?]);
+        return output::put_driven(steps, record.drift.as_ref(), shelf);
     }
     let prediction = rehearse::prediction(plan, record);
     let provenance = &Provenance { prediction, ..provenance.clone() };
-    let mut files = output::everything(&Run { plan, record, assessment, provenance })?;
-    files.retain(|file| file.path != MANIFEST);
-    Ok(files)
+    output::put_everything(&Run { plan, record, assessment, provenance }, shelf)
 }
 
-/// Writes the results, and a manifest of them and of what lies beside them, by path and digest.
-pub fn write_results(folder: &Path, files: &[OutputFile], beside: &[(String, String)]) -> Result<(), Failure> {
-    let manifest = output::manifest_with(files, beside);
-    files.iter().chain([&manifest]).try_for_each(|file| write_new(folder, file))
+/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest.
+pub fn write_made(
+    folder: &Path,
+    beside: &[Listed],
+    make: impl FnOnce(&mut dyn Shelf) -> Result<Vec<Listed>, OutputError>,
+) -> Result<(), Failure> {
+    let mut shelf = FolderShelf::new(folder);
+    let listed = match make(&mut shelf) {
+        Ok(listed) => listed,
+        Err(error) => return Err(shelf.failed(error)),
+    };
+    let all: Vec<Listed> = listed.into_iter().chain(beside.iter().cloned()).collect();
+    write_new(folder, &output::manifest_with(&[], &all))
+}
+
+/// The summary of results that are written.
+pub fn summary(folder: &Path) -> Result<String, Failure> {
+    let path = folder.join(output::SUMMARY);
+    std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
 }
 
 /// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where

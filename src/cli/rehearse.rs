@@ -3,11 +3,11 @@
 //! stay from each limit. It reads no result of the real run, for there is none yet.
 
 use super::args::{Format, RunArguments};
-use super::conclude::conclude;
+use super::conclude::{conclude, summary};
 use super::exit::{Exit, Failure};
 use super::explain_plan::DryRun;
 use super::output::{give, tell};
-use super::run::{Ran, on_its_rig, summary};
+use super::run::{Ran, on_its_rig};
 use super::settings::Settings;
 use super::watch::Attendance;
 use crate::diagnostic::excerpt::escape;
@@ -23,7 +23,7 @@ use crate::run::rehearsal;
 pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Exit, Failure> {
     let part = rehearsal::measured_part(plan)?;
     let Ran { folder, provenance, recorded } = on_its_rig(&part, arguments, attendance, settings)?;
-    let (exit, files) = conclude(folder.path(), &part, &provenance, &recorded, settings)?;
+    let exit = conclude(folder.path(), &part, &provenance, &recorded, settings)?;
     let predicted = if exit <= Exit::Missed {
         let stand_in = rehearsal::prediction(plan, &recorded.record)?;
         let dry = DryRun::on(plan, &stand_in, told(plan, &stand_in));
@@ -39,7 +39,7 @@ pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, 
     };
     match arguments.format {
         Format::Human => give(&format!("{}\n", folder.path().display()))?,
-        Format::Json => give(&String::from_utf8_lossy(summary(&files)))?,
+        Format::Json => give(&summary(folder.path())?)?,
     }
     Ok(exit.max(predicted))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::amend::amend;
 use super::args::ReportArguments;
-use super::conclude::write_results;
+use super::conclude::write_made;
 use super::evidence::{AMENDMENT, AmendmentFile, Folder, PlayedBack};
 use super::exit::{Exit, Failure};
 use super::loader::plain;
@@ -51,7 +51,7 @@ pub fn conclude_played(
     if steps.is_none() {
         tell(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color));
     }
-    write_results(folder, &played.results()?, beside)?;
+    write_made(folder, beside, |shelf| played.results(shelf))?;
     let exit = Exit::from(assessment.verdict);
     let Some(mismatch) = mismatch else { return Ok(exit) };
     tell(&format!("  the record does not fit the plan: {mismatch}\n"));

@@ -81,7 +81,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     if let Some(torn) = torn {
         tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
     }
-    let (exit, _) = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
+    let exit = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
     give(&format!("{}\n", arguments.run.display()))?;
     Ok(exit)
 }

@@ -3,7 +3,7 @@
 
 use super::args::{Format, RunArguments};
 use super::bless::BlessedFolder;
-use super::conclude::conclude;
+use super::conclude::{conclude, summary};
 use super::exit::{Exit, Failure};
 use super::output::{give, tell};
 use super::record_file::{self, Circumstances};
@@ -15,7 +15,7 @@ use super::watch::{Attendance, Watcher};
 use super::{plan_file, provenance, real_rig};
 use crate::diagnostic::json;
 use crate::golden::{Outcome, Tested, console};
-use crate::output::{OutputFile, Provenance};
+use crate::output::Provenance;
 use crate::plan::{Link, Plan};
 use crate::rig::{Wish, virtual_rig};
 use crate::run::tape::{self, Recorded};
@@ -47,7 +47,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
             .help("leave out `--set`, `--rig` and `--date`, or write them into the plan"));
     }
     let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
-    let (exit, files) = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
+    let exit = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         let trial = trial::of(&arguments.plan, Extent::All)?;
         if trial.ended.as_ref() == Some(&recorded.record.outcome) {
@@ -59,7 +59,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     }
     match arguments.format {
         Format::Human => give(&format!("{}\n", folder.path().display()))?,
-        Format::Json => give(&String::from_utf8_lossy(summary(&files)))?,
+        Format::Json => give(&summary(folder.path())?)?,
     }
     Ok(exit)
 }
@@ -114,8 +114,4 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
     opened.watcher.finish();
     Ok(Ran { folder, provenance, recorded })
-}
-
-pub(super) fn summary(files: &[OutputFile]) -> &[u8] {
-    files.iter().find(|file| file.path == "summary.json").map_or(&[], |file| &file.bytes)
 }

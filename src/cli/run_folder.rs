@@ -1,14 +1,14 @@
 //! The run folder: new or empty, each file created once. In: where the person wants it, and the files. Out: the
-//! folder on disk. Never overwrites and never deletes.
+//! folder on disk. Never overwrites, and deletes nothing but what it has just written.
 
 use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write as _};
+use std::io::{BufWriter, ErrorKind, IntoInnerError, Write};
 use std::path::{Component, Path, PathBuf};
 
 use super::exit::Failure;
 use super::loader::plain;
 use crate::inert;
-use crate::output::OutputFile;
+use crate::output::{OutputError, OutputFile, Shelf};
 
 /// An empty folder that belongs to this run.
 #[derive(Debug)]
@@ -70,24 +70,76 @@ impl RunFolder {
 
 /// Creates one file under `folder`, which must not have it.
 pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
-    let relative = Path::new(&file.path);
-    let path = folder.join(relative);
-    if !relative.components().all(|part| matches!(part, Component::Normal(_))) {
-        return Err(Failure::file(path, "would be written outside its folder"));
-    }
-    let write = || -> std::io::Result<()> {
-        if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent)?;
-        }
-        let mut created = OpenOptions::new().write(true).create_new(true).open(&path)?;
-        created.write_all(&file.bytes)?;
-        created.sync_all()
-    };
-    write().map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => Failure::file(&path, "is there already: somebody else wrote it")
+    let path = inside(folder, &file.path)?;
+    written(&path, &mut |out| out.write_all(&file.bytes)).map_err(|error| unwritten(&path, &error))
+}
+
+/// Why a file was not written; where one is there already, also what is left to do.
+fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::AlreadyExists => Failure::file(path, "is there already: somebody else wrote it")
             .help("a record beside it is whole: make its results in a new folder with `psd report RUN --out FOLDER`"),
-        _ => Failure::file(&path, plain(&error)),
-    })
+        _ => Failure::file(path, plain(error)),
+    }
+}
+
+/// Where a file of the folder lies.
+fn inside(folder: &Path, relative: &str) -> Result<PathBuf, Failure> {
+    let path = folder.join(relative);
+    if Path::new(relative).components().all(|part| matches!(part, Component::Normal(_))) {
+        return Ok(path);
+    }
+    Err(Failure::file(path, "would be written outside its folder"))
+}
+
+fn written(path: &Path, write: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>) -> std::io::Result<()> {
+    if let Some(parent) = path.parent() {
+        std::fs::create_dir_all(parent)?;
+    }
+    let mut created = BufWriter::with_capacity(WRITE_BYTES, OpenOptions::new().write(true).create_new(true).open(path)?);
+    write(&mut created)?;
+    created.into_inner().map_err(IntoInnerError::into_error)?.sync_all()
+}
+
+/// Bytes of a file that are given to the disk at once.
+const WRITE_BYTES: usize = 64 * 1024;
+
+/// Files put into a folder as they are made.
+pub struct FolderShelf<'a> {
+    folder: &'a Path,
+    created: Vec<PathBuf>,
+    failure: Option<Failure>,
+}
+
+impl<'a> FolderShelf<'a> {
+    pub const fn new(folder: &'a Path) -> Self {
+        Self { folder, created: Vec::new(), failure: None }
+    }
+
+    /// Why not all files are there. Where one could not be made, none of those before it stays: the results can be made again.
+    pub fn failed(self, error: OutputError) -> Failure {
+        self.failure.unwrap_or_else(|| {
+            for path in &self.created {
+                let _ = std::fs::remove_file(path);
+            }
+            error.into()
+        })
+    }
+}
+
+impl Shelf for FolderShelf<'_> {
+    fn put(&mut self, path: &str, write: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>) -> std::io::Result<()> {
+        let place = match inside(self.folder, path) {
+            Ok(place) => place,
+            Err(failure) => {
+                self.failure = Some(failure);
+                return Err(ErrorKind::InvalidInput.into());
+            }
+        };
+        written(&place, write).inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
+        self.created.push(place);
+        Ok(())
+    }
 }
 
 #[cfg(test)]
@@ -125,5 +177,25 @@ mod tests {
             std::os::unix::fs::symlink(root.path().join(target), &link).unwrap();
             assert!(RunFolder::named(&link).unwrap_err().to_string().contains("is a link"));
         }
+    }
+
+    #[test]
+    fn what_could_not_all_be_made_leaves_nothing_and_what_could_not_be_kept_names_its_file() {
+        let root = tempfile::tempdir().unwrap();
+        let mut shelf = FolderShelf::new(root.path());
+        shelf.put("tables/a.csv", &mut |out| out.write_all(b"x")).unwrap();
+        let failure = shelf.failed(OutputError::Pdf("no such font".to_owned()));
+        assert!(failure.to_string().contains("no such font") && !root.path().join("tables/a.csv").exists());
+
+        let mut shelf = FolderShelf::new(root.path());
+        shelf.put("tables/a.csv", &mut |out| out.write_all(b"x")).unwrap();
+        let told = shelf.put("tables/a.csv", &mut |out| out.write_all(b"y")).unwrap_err().to_string();
+        let failure = shelf.failed(OutputError::Pdf(told)).to_string();
+        assert!(
+            failure.contains("tables/a.csv") && std::fs::read(root.path().join("tables/a.csv")).unwrap() == b"x",
+            "{failure}"
+        );
+        let mut shelf = FolderShelf::new(root.path());
+        assert!(shelf.put("../a.csv", &mut |_| Ok(())).is_err());
     }
 }

@@ -58,7 +58,11 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     let assessment = verdict::assess(plan, &record);
     let run = Run { plan, record: &record, assessment: &assessment, provenance: &provenance };
     let mut files = match extent {
-        Extent::All => made_of(plan, &record, &assessment, &provenance, None)?,
+        Extent::All => {
+            let mut files = Vec::new();
+            made_of(plan, &record, &assessment, &provenance, None, &mut files)?;
+            files
+        }
         Extent::Compared => numbers(&run)?,
     };
     files.push(figure_data(&run));

@@ -74,6 +74,7 @@ codes! {
     E406 SettingOutOfRange Error;
     E407 NotFinite Error;
     E408 Edition Error;
+    E409 StoreyBendsOtherwise Error;
     // 5: files
     E501 FileNotFound Error;
     E502 BadPath Error;
@@ -152,6 +153,8 @@ codes! {
     W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
+    W722 FewDegreesOfFreedom Warning;
+    W726 FewDecades Warning;
     W727 GateWithinNoise Warning;
 }
 

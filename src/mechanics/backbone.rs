@@ -30,6 +30,8 @@ pub struct BilinearFit {
     /// goes beyond it of intercept, `K_p` and knee. The same columns in two rows are what the two share.
     pub shares: [[f64; 4]; 6],
     pub r_squared: f64,
+    /// Degrees of freedom of the scatter about the two lines: the points less their four numbers.
+    pub degrees: f64,
 }
 
 /// Results of a bilinear fit in the order of their shares; the first four name the independent errors.
@@ -173,6 +175,7 @@ fn fitted(points: &[(f64, f64)], knee: f64, [intercept, stiffness, hardened]: [f
         hardening_error: error(of_hardening),
         shares: effects.map(share),
         r_squared: if total > 0.0 { 1.0 - squares / total } else { 1.0 },
+        degrees: count - 4.0,
     })
 }
 

@@ -37,7 +37,7 @@ pub struct Scope {
 #[must_use]
 pub fn of_impact(input: &ImpactInput, behaviour: &Behaviour, until: Until, scope: &Scope) -> Foretold {
     let mut specimen = SpecimenModel::new(behaviour);
-    let mut blow = Blow { solver: ImpactSolver::new(input, 0.0, specimen.move_to(0.0)), input: input.striker_energy(), until };
+    let mut blow = Blow { solver: ImpactSolver::new(input, 0.0, specimen.move_to(0.0)), until };
     follow(&mut blow, &mut |place, force| force[0] = specimen.move_to(place[0]), (1, input.time_step), scope)
 }
 
@@ -61,8 +61,7 @@ pub fn of_frame(
 #[must_use]
 pub fn of_storey_impact(input: &FrameImpactInput, frame: &Frame, until: Until, scope: &Scope) -> Option<Foretold> {
     let order = input.frame.matrices.order();
-    let energy = 0.5 * input.striker_mass * input.striker_velocity * input.striker_velocity;
-    let mut struck = Struck { solver: FrameImpactSolver::new(input).ok()?, unloaded: vec![0.0; order], input: energy, until };
+    let mut struck = Struck { solver: FrameImpactSolver::new(input).ok()?, unloaded: vec![0.0; order], until };
     Some(follow(&mut struck, &mut storeys(frame, &input.frame), (order, input.frame.time_step), scope))
 }
 
@@ -132,8 +131,6 @@ fn storeys<'a>(frame: &Frame, input: &'a FrameInput<'_>) -> impl FnMut(&[f64], &
 
 struct Blow {
     solver: ImpactSolver,
-    /// J
-    input: f64,
     until: Until,
 }
 
@@ -144,8 +141,8 @@ impl Steps for Blow {
 
     fn complete(&mut self, place: &[f64], force: &[f64]) -> (f64, Vec<f64>) {
         let taken = self.solver.taken(place[0], force[0]);
-        self.solver.complete(place[0], force[0]);
-        (self.input, vec![taken])
+        let input = self.solver.complete(place[0], force[0]).input;
+        (input, vec![taken])
     }
 
     fn over(&self) -> bool {
@@ -185,8 +182,6 @@ impl Steps for Shaken<'_> {
 struct Struck {
     solver: FrameImpactSolver,
     unloaded: Vec<f64>,
-    /// J
-    input: f64,
     until: Until,
 }
 
@@ -197,7 +192,7 @@ impl Steps for Struck {
 
     fn complete(&mut self, place: &[f64], force: &[f64]) -> (f64, Vec<f64>) {
         self.solver.complete(place, force);
-        (self.input, self.solver.taken(force).to_vec())
+        (self.solver.striker().input, self.solver.taken(force).to_vec())
     }
 
     fn over(&self) -> bool {

@@ -91,6 +91,8 @@ pub fn of_floor(frame: &FrameState, striker: &StrikerState, struck: usize, stiff
         indentation: striker.indentation,
         state: striker.state,
         energies: striker.energies,
+        input: striker.input,
+        contacts: striker.contacts,
     }
 }
 

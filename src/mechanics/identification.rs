@@ -10,6 +10,8 @@ pub struct LineFit {
     /// Of slope and intercept, −1 to 1: both turn about the middle of the points.
     pub correlation: f64,
     pub r_squared: f64,
+    /// Of the scatter about the line: the points less the two numbers of it.
+    pub degrees: f64,
 }
 
 /// Least squares with an intercept, about the means so that no digits are lost. None with fewer than three points, with
@@ -46,6 +48,7 @@ pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
         // Covariance −x̄ s²/Sxx over both errors (JCGM 100:2008, H.3.3).
         correlation: -mean_x / (xx / count + mean_x * mean_x).sqrt(),
         r_squared: if yy > 0.0 { 1.0 - residual / yy } else { 1.0 },
+        degrees: count - 2.0,
     })
 }
 

@@ -61,6 +61,13 @@ impl ImpactInput {
     pub fn striker_energy(&self) -> f64 {
         0.5 * self.striker_mass * self.striker_velocity * self.striker_velocity
     }
+
+    /// What there is to be put into the test when it begins, J: the striker's ½ Ms V0², and of a specimen that carries a load
+    /// already what it gives back elastically, `stored` = ½R²/K. What a weight that falls adds comes to it on the way.
+    #[must_use]
+    pub fn first_input(&self, stored: f64) -> f64 {
+        self.striker_energy() + stored
+    }
 }
 
 /// The end of a step; step 0 is the start.
@@ -96,6 +103,10 @@ pub struct ImpactState {
     pub state: StepState,
     /// Under `hertz` the contact loss holds also the energy stored in the contact, given back as it opens.
     pub energies: Energies,
+    /// Energy put into the test so far, J: what errors are shares of ([`ImpactInput::first_input`]).
+    pub input: f64,
+    /// Blows so far: contacts that began.
+    pub contacts: u64,
 }
 
 /// The step of one scheme: the code that the interactive solver and the simulation share.
@@ -104,6 +115,8 @@ struct Step<S> {
     bodies: Bodies,
     scheme: S,
     input_energy: f64,
+    /// [`ImpactState::input`] but for the work of a weight, J.
+    first_input: f64,
     tangent: TangentStiffness,
     /// `K_I` of the I-modification, N/m; 0 without it.
     modification: f64,
@@ -113,12 +126,14 @@ struct Step<S> {
 impl<S: Scheme> Step<S> {
     fn new(input: &ImpactInput, scheme: S, displacement: f64, restoring_force: f64) -> Self {
         let input_energy = input.striker_energy();
+        let first_input = input.first_input(0.5 * restoring_force * restoring_force / input.stiffness);
         let first = (displacement, restoring_force);
         let (noise, resolution) = (input.force_noise, input.resolution);
         Self {
             bodies: input.bodies(),
             scheme,
             input_energy,
+            first_input,
             tangent: TangentStiffness::new(input.stiffness, input.max_tangent_ratio, noise, resolution, first),
             modification: if input.i_modification { input.operator_stiffness } else { 0.0 },
             state: ImpactState {
@@ -138,6 +153,8 @@ impl<S: Scheme> Step<S> {
                 indentation: 0.0,
                 state: StepState::Free,
                 energies: Energies { striker: input_energy, ..Energies::default() },
+                input: first_input,
+                contacts: 0,
             },
         }
     }
@@ -154,6 +171,7 @@ impl<S: Scheme> Step<S> {
             striker_displacement: state.striker_displacement,
             striker_velocity: state.striker_velocity,
             contact_force: state.contact_force,
+            touching: state.state != StepState::Free,
             tangent_stiffness: state.tangent_stiffness,
             indentation: state.indentation,
         }
@@ -216,6 +234,8 @@ impl<S: Scheme> Step<S> {
             indentation: advance.indentation,
             state: advance.state,
             energies,
+            input: before.input.max(self.first_input + energies.weight),
+            contacts: before.contacts + u64::from(advance.contacts),
         };
     }
 }
@@ -258,6 +278,12 @@ impl ImpactSolver {
     pub fn taken(&mut self, measured_displacement: f64, restoring_force: f64) -> f64 {
         let target = self.predict();
         self.step.felt(target, measured_displacement, restoring_force)
+    }
+
+    /// The same of a place (m) that is no target of a step.
+    #[must_use]
+    pub fn taken_at(&self, place: f64, measured_displacement: f64, restoring_force: f64) -> f64 {
+        self.step.felt(place, measured_displacement, restoring_force)
     }
 
     /// Ends the step with what was measured at its end.

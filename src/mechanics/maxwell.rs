@@ -1,9 +1,8 @@
 //! Force that relaxes: a spring and a dashpot one behind the other (a Maxwell branch), beside a specimen. In: how the specimen was
 //! moved, in time. Out: the force of the branch, in closed form, so that a pause of hours costs as much as none and the number
-//! of looks changes nothing.
+//! of looks changes nothing. Of a force that relaxes by a share of itself, read force for displacement and a number for stiffness.
 
 use super::path::Rate;
-use crate::plan::Behaviour;
 
 /// How a piston moves over some time: v(t) = v + a t + ½ j t² + `fading`·exp(−t/`lag`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +27,14 @@ impl Travel {
     #[must_use]
     pub const fn even(velocity: f64, seconds: f64) -> Self {
         Self { start: Rate { velocity, acceleration: 0.0, jerk: 0.0 }, fading: 0.0, lag: 0.0, seconds }
+    }
+
+    /// The same way with every motion times `factor`: a force that follows it has this for its rate.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let Rate { velocity, acceleration, jerk } = self.start;
+        let start = Rate { velocity: factor * velocity, acceleration: factor * acceleration, jerk: factor * jerk };
+        Self { start, fading: factor * self.fading, ..*self }
     }
 
     /// Motion of this piston relative to one below it, over the same time and with the same lag.
@@ -62,18 +69,6 @@ impl MaxwellBranch {
         Self { stiffness, time_constant, force: 0.0 }
     }
 
-    /// The branches that stand beside a behaviour, the outermost first.
-    #[must_use]
-    pub fn all_of(behaviour: &Behaviour) -> Vec<Self> {
-        let mut found = Vec::new();
-        let mut left = behaviour;
-        while let Behaviour::Maxwell { of, stiffness, time_constant } = left {
-            found.push(Self::new(*stiffness, *time_constant));
-            left = of;
-        }
-        found
-    }
-
     /// N/m
     #[must_use]
     pub const fn stiffness(&self) -> f64 {
@@ -90,6 +85,11 @@ impl MaxwellBranch {
     #[must_use]
     pub fn rate_after(&self, seconds: f64) -> f64 {
         (self.force / self.time_constant).abs() * (-seconds / self.time_constant).exp()
+    }
+
+    /// It is moved so far (m) in no time.
+    pub fn jump(&mut self, moved: f64) {
+        self.force += self.stiffness * moved;
     }
 
     /// q(T) = q e^(−T/τ) + K₁ ∫ v(s) e^(−(T−s)/τ) ds.

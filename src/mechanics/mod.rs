@@ -19,21 +19,29 @@ pub mod identification;
 pub mod impact;
 pub mod integrator;
 pub mod law;
+pub mod logarithmic;
 pub mod maxwell;
 pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
+pub mod reached_fit;
+#[cfg(test)]
+mod reached_fit_tests;
 pub mod recorded_path;
 pub mod relaxation;
+pub mod relaxation_law;
 #[cfg(test)]
 mod relaxation_tests;
+pub mod relaxing;
 pub mod rerun;
+pub mod rounding;
 pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
 pub mod structure;
+pub mod student;
 pub mod summary;
 pub mod tangent;
 #[cfg(test)]

@@ -11,8 +11,16 @@
 //! peak error          max |d_m − d_c|                          m
 //! ```
 //!
-//! Where the recursion takes another force r* than the one read, as under the I-modification, E_err = ∫ r* dd_c − ∫ r_m dd_m: what
-//! a correction has taken back is no error.
+//! Where the recursion takes another force r* than the one read, as under the I-modification, r* = r_m − K_I(d_m − d_c), it
+//! supposes that the specimen goes on from d_m to d_c along K_I. So do the monitors:
+//!
+//! ```text
+//! E_err = ∫ r* dd_c − (∫ r_m dd_m + ∫_{d_m}^{d_c} r dx),    ∫_{d_m}^{d_c} r dx = ½(r_m + r*)(d_c − d_m)
+//! ```
+//!
+//! What the specimen stores on the way that it is behind by is given back when the actuator gets there, and is no error; on a
+//! spring K = K_I nothing is left at any step, however large the lag (without the last term it would swing by sin φ of ½KA²
+//! twice a cycle of A sin ωt, and end as it began). What is left is what the specimen did not do as K_I says.
 //!
 //! **Energy error** (Thewalt and Roman 1994; Mosqueda, Stojadinović and Mahin 2007): the recursion believes that the
 //! specimen took ∫ r_m dd_c, it took ∫ r_m dd_m. Negative: tracking puts energy into the test, and its amplitudes grow;
@@ -69,6 +77,10 @@ pub struct Monitor {
     force: f64,
     /// r* − r_m at the last step, N.
     corrected: f64,
+    /// ∫ r* dd_c − ∫ r_m dd_m, J.
+    integrated: f64,
+    /// Work from where it was measured before the first step to where it was sent, J.
+    behind_at_start: f64,
     errors: f64,
     commands: f64,
     tracking: Tracking,
@@ -78,8 +90,23 @@ impl Monitor {
     /// From what was asked for (m), measured (m) and read (N) before the first step.
     #[must_use]
     pub fn new(commanded: f64, measured: f64, force: f64) -> Self {
-        let mut monitor =
-            Self { commanded, measured, force, corrected: 0.0, errors: 0.0, commands: 0.0, tracking: Tracking::default() };
+        Self::new_as(commanded, measured, force, force)
+    }
+
+    /// The same, where a correction would have `taken` (N) for the force at the command; the recursion begins with the one read.
+    #[must_use]
+    pub fn new_as(commanded: f64, measured: f64, force: f64, taken: f64) -> Self {
+        let mut monitor = Self {
+            commanded,
+            measured,
+            force,
+            corrected: 0.0,
+            integrated: 0.0,
+            behind_at_start: work_behind((commanded, measured), force, taken - force),
+            errors: 0.0,
+            commands: 0.0,
+            tracking: Tracking::default(),
+        };
         monitor.size(commanded, measured);
         monitor
     }
@@ -94,7 +121,8 @@ impl Monitor {
         let corrected = taken - force;
         let (asked, went) = (commanded - self.commanded, measured - self.measured);
         let tracking = &mut self.tracking;
-        tracking.energy_error += 0.5 * (self.force + force) * (asked - went) + 0.5 * (self.corrected + corrected) * asked;
+        self.integrated += 0.5 * (self.force + force) * (asked - went) + 0.5 * (self.corrected + corrected) * asked;
+        tracking.energy_error = self.integrated - (work_behind((commanded, measured), force, corrected) - self.behind_at_start);
         tracking.indicator += 0.25 * ((self.measured + measured) * asked - (self.commanded + commanded) * went);
         (self.commanded, self.measured, self.force, self.corrected) = (commanded, measured, force, corrected);
         self.size(commanded, measured);
@@ -113,6 +141,11 @@ impl Monitor {
         self.tracking.peak_error = self.tracking.peak_error.max(error.abs());
         self.tracking.nrms_error = if self.commands > 0.0 { (self.errors / self.commands).sqrt() } else { 0.0 };
     }
+}
+
+/// ½(r_m + r*)(d_c − d_m), J; none where no force is corrected, for then nothing is supposed of the way between.
+fn work_behind((commanded, measured): (f64, f64), force: f64, corrected: f64) -> f64 {
+    if corrected == 0.0 { 0.0 } else { (force + 0.5 * corrected) * (commanded - measured) }
 }
 
 #[cfg(test)]
@@ -157,23 +190,60 @@ mod tests {
         assert!((found.nrms_error - 0.1).abs() < 1e-12 && (found.peak_error - 0.001).abs() < 1e-12);
     }
 
-    /// A lag whose force is corrected to the command by the spring's own K: ½K(d_c² − d_m²) is all that is left, and over a
-    /// cycle nothing.
-    #[test]
-    fn what_a_correction_takes_back_is_no_error() {
-        let (amplitude, phase) = (0.01, 0.1);
-        let at = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
+    /// A cycle of A sin ωt behind by φ on a spring K, corrected along `operator`: the error at every step.
+    fn corrected(amplitude: f64, phase: f64, operator: f64, force: impl Fn(f64) -> f64) -> Vec<f64> {
+        let angle = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
         let place = |angle: f64| amplitude * (angle - phase).sin();
-        let mut monitor = Monitor::new(0.0, place(0.0), STIFFNESS * place(0.0));
-        for step in 1..=STEPS {
-            let (commanded, measured) = (amplitude * at(step).sin(), place(at(step)));
-            let found = monitor.take_as(commanded, measured, STIFFNESS * measured, STIFFNESS * commanded);
-            let stored = |from: f64, to: f64| 0.5 * STIFFNESS * (to * to - from * from);
-            let left = stored(0.0, commanded) - stored(place(0.0), measured);
-            // The first step begins with a force that nothing has corrected yet.
-            let first = 0.5 * STIFFNESS * place(0.0) * amplitude * at(1).sin();
-            assert!((found.energy_error - left - first).abs() < 1e-12, "step {step}: {found:?}, {left} J");
+        let taken = |commanded: f64, measured: f64| force(measured) - operator * (measured - commanded);
+        let first = place(0.0);
+        let mut monitor = Monitor::new_as(0.0, first, force(first), taken(0.0, first));
+        let steps = (1..=2 * STEPS).map(|step| {
+            let (commanded, measured) = (amplitude * angle(step).sin(), place(angle(step)));
+            monitor.take_as(commanded, measured, force(measured), taken(commanded, measured)).energy_error
+        });
+        steps.collect()
+    }
+
+    /// Corrected along the spring's own K nothing is an error at any step, where without the correction a cycle puts in
+    /// πKA² sin φ. The recursion begins with a force that nothing has corrected: half of that over the first step.
+    #[test]
+    fn what_a_spring_gives_back_is_no_error() {
+        for (amplitude, phase) in [(0.01_f64, 0.1_f64), (0.01, 1.2), (0.03, -0.5)] {
+            let way = amplitude * (std::f64::consts::TAU / f64::from(STEPS)).sin();
+            let first = -0.5 * STIFFNESS * amplitude * phase.sin() * way;
+            for error in corrected(amplitude, phase, STIFFNESS, |place| STIFFNESS * place) {
+                assert!((error - first).abs() < 1e-12 * STIFFNESS, "{phase}: {error} J, {first} J");
+            }
         }
+    }
+
+    /// A `K_I` that is not the spring's corrects by its share alone: r* = K d_m − K_I(d_m − d_c), and of each cycle
+    /// π(K − K_I)A² sin φ is left.
+    #[test]
+    fn what_a_correction_leaves_counts() {
+        let (amplitude, phase): (f64, f64) = (0.01, 0.2);
+        for share in [0.5, 0.9, 1.3] {
+            let steps = corrected(amplitude, phase, share * STIFFNESS, |place| STIFFNESS * place);
+            let (one, two) = (steps[STEPS as usize - 1], steps[2 * STEPS as usize - 1]);
+            let exact = -std::f64::consts::PI * (1.0 - share) * STIFFNESS * amplitude * amplitude * phase.sin();
+            assert!(((two - one) / exact - 1.0).abs() < 1e-5, "K_I = {share} K: {} J a cycle, {exact} J", two - one);
+        }
+    }
+
+    /// A specimen that flows at ±F where the recursion supposes that it is still elastic: over a way w it is off by K_I·e·w, e
+    /// what the actuator is behind by.
+    #[test]
+    fn a_correction_of_what_flows_is_an_error() {
+        let (flow, behind, operator, step) = (5.0, 1e-3, STIFFNESS, 1e-4);
+        let mut monitor = Monitor::new_as(0.1, 0.1 - behind, flow, flow + operator * behind);
+        let mut last = Tracking::default();
+        for index in 1..=100 {
+            let commanded = 0.1 + step * f64::from(index);
+            last = monitor.take_as(commanded, commanded - behind, flow, flow + operator * behind);
+        }
+        // Less half of the first step, which begins with the force that was read.
+        let exact = operator * behind * step * 99.5;
+        assert!((last.energy_error - exact).abs() < 1e-12, "{last:?}, {exact} J");
     }
 
     /// By hand: from rest to 2 mm asked, 1 mm gone, 10 N read: ½·10 N·1 mm; ¼(1·2 − 2·1) mm² is nothing on the first step.

@@ -37,6 +37,8 @@ pub struct MultilinearFit {
     pub change_errors: Vec<f64>,
     pub shares: CurveShares,
     pub r_squared: f64,
+    /// Degrees of freedom of the scatter about the curve: the points less its numbers.
+    pub degrees: f64,
     /// The criterion for 0, 1, … breaks, less its least, where it chose.
     pub criterion: Vec<f64>,
 }
@@ -233,6 +235,7 @@ fn stated(
         change_errors: (0..count).map(|k| stiffness * error(&[(k + 1, 1.0), (k + 2, -1.0)])).collect(),
         shares,
         r_squared: if total > 0.0 { 1.0 - line.squares / total } else { 1.0 },
+        degrees: freedom,
         criterion,
     })
 }

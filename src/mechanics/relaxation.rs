@@ -44,6 +44,8 @@ pub struct RelaxationFit {
     pub worst: Amplitude,
     /// Standard deviation of a reading about the fit, N.
     pub scatter: f64,
+    /// Degrees of freedom of that scatter: the readings less all that was found.
+    pub degrees: f64,
 }
 
 /// What the hold that loses most has to lose.
@@ -68,6 +70,14 @@ impl RelaxationFit {
         }
         let variance = (times * tau_error).powi(2) + (tau / force * error).powi(2) + 2.0 * times * tau / force * covariance;
         (tau * times, variance.max(0.0).sqrt())
+    }
+
+    /// Degrees of freedom by which the relaxed stiffness is known: of the exponential it is the slope of a line through the holds.
+    #[must_use]
+    pub fn degrees_of_stiffness(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "far fewer holds than 2^53")]
+        let holds = self.holds.len() as f64;
+        if self.model == RelaxationModel::Exponential { (holds - 2.0).max(1.0) } else { self.degrees }
     }
 
     /// Force of a hold `seconds` after its first reading, N.
@@ -314,6 +324,7 @@ impl Problem<'_> {
             remaining: (0.0, 0.0),
             worst: Amplitude { force: 0.0, error: 0.0, covariance: 0.0 },
             scatter: variance.sqrt(),
+            degrees: freedom,
             holds: solved.holds.clone(),
         };
         let last = |hold: &Hold| hold.readings.last().map_or(0.0, |(time, _)| *time);

@@ -36,7 +36,7 @@
 //! loss counts the way ½Δt(v₀+v₁) and not d₁ − d₀, which under explicit Newmark differ by ¼Δt²(a₀ − a₁).
 
 use super::contact::StepState;
-use super::law::{Advance, Bodies, Start};
+use super::law::{Advance, Bodies, Start, begun};
 use super::method::Coefficients;
 use crate::plan::Integrator;
 
@@ -147,6 +147,7 @@ impl Split {
             contact_loss: force * striker_moved - 0.5 * (start.contact_force + force) * way,
             damping_work: 0.5 * damping * (from.velocity + velocity) * way,
             indentation_work: if state == StepState::Limit { force * (indentation - start.indentation) } else { 0.0 },
+            contacts: begun(start.touching, state),
         }
     }
 }

@@ -20,7 +20,7 @@ pub struct ImpactSummary {
     pub max_contact_force: f64,
     /// ∫F dt, N·s
     pub impulse: f64,
-    /// Blows: times a free step was followed by one in contact.
+    /// Blows: contacts that began ([`super::law::Advance::contacts`]).
     pub contacts: u64,
     /// Separation over closing speed of the first blow; none before it has ended.
     pub restitution: Option<f64>,
@@ -32,7 +32,7 @@ pub struct ImpactSummary {
     pub absorbed_energy: f64,
     /// ½ Ms V0², J
     pub striker_energy: f64,
-    /// As a fraction of the input.
+    /// Over the energy put into the test ([`ImpactState::input`]).
     pub energy_error: f64,
     /// The structure was still on its way where X was largest: not a peak.
     pub still_rising: bool,
@@ -60,7 +60,6 @@ enum FirstBlow {
 pub struct SummaryBuilder {
     input: ImpactInput,
     first_blow: FirstBlow,
-    last_state: StepState,
     last_velocity: f64,
     /// N
     last_contact_force: f64,
@@ -73,7 +72,6 @@ impl SummaryBuilder {
         Self {
             input: *input,
             first_blow: FirstBlow::ToCome { closing: input.striker_velocity },
-            last_state: StepState::Free,
             last_velocity: 0.0,
             last_contact_force: 0.0,
             summary: ImpactSummary {
@@ -110,18 +108,15 @@ impl SummaryBuilder {
         summary.impulse += state.contact_force * self.input.time_step;
         summary.indentation = state.indentation;
         summary.indentation_energy = state.energies.indentation;
-        if summary.striker_energy > 0.0 {
-            summary.energy_error = state.energies.error / summary.striker_energy;
+        if state.input > 0.0 {
+            summary.energy_error = state.energies.error / state.input;
         }
         if summary.stop_time.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
             summary.stop_time = Some(state.time);
         }
         let touching = state.state != StepState::Free;
-        if touching && self.last_state == StepState::Free {
-            summary.contacts += 1;
-        }
+        summary.contacts = state.contacts;
         self.follow_first_blow(state, touching);
-        self.last_state = state.state;
         self.last_velocity = state.velocity;
         self.last_contact_force = state.contact_force;
     }

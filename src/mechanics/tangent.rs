@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 
 /// A tangent stiffness needs a change of force this many times the load cell's noise. Smaller, and noise becomes a
 /// stiffness (at 10 a secant errs by 14 %, one standard deviation); larger, and it follows the specimen late.
-pub(super) const NOISE_MULTIPLE: f64 = 10.0;
+pub(crate) const NOISE_MULTIPLE: f64 = 10.0;
 /// Readings of a window at most: what more of them do not tell, they tell too late.
 const MOST_READINGS: usize = 4096;
 

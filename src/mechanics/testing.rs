@@ -1,7 +1,7 @@
 //! Noise for tests of what is fitted. In: a seed. Out: the same numbers on every machine. No run draws from it.
 
 /// Knuth's congruential generator (MMIX), its upper half, from 0 to 1.
-pub(super) fn uniform(state: &mut u64) -> f64 {
+pub(crate) fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     f64::from(u32::try_from(*state >> 32).expect("a half")) / f64::from(u32::MAX)
 }

@@ -2,7 +2,7 @@
 //! Out: labelled texts, for the certificate and for `psd check --explain`.
 
 use crate::mechanics::beam::first_mode_mass_factor;
-use crate::plan::{Beam, Behaviour, Breaks, Ends, Loads, Mechanism, Portal, Sections, Unloading};
+use crate::plan::{Beam, Behaviour, Breaks, Ends, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
 use crate::quantity::Dimension;
 
 /// Shows a number that somebody stated, or that follows from such.
@@ -72,13 +72,7 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                     ("unloading exponent", pinching.unloading_exponent, Of::NUMBER),
                 ],
             );
-            let lost = pinching.deterioration.map_or_else(String::new, |lost| {
-                let energy = lost.capacity * pinching.yield_force * pinching.yield_force / pinching.stiffness;
-                let [energy, residual] = [(energy, Of::ENERGY), (lost.residual, Of::NUMBER)].map(|(value, of)| shown(value, of));
-                let exponent = shown(lost.exponent, Of::NUMBER);
-                format!(", strength lost with energy: all but {residual} of it with {energy}, exponent {exponent}")
-            });
-            told + &lost
+            told + &capped(pinching, shown) + &worn(pinching, shown)
         }
         Behaviour::Degrading { stiffness, half_displacement, residual } => list(
             "degrading",
@@ -124,9 +118,39 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
             let (stiffness, tau) = (shown(*stiffness, Of::STIFFNESS), shown(*time_constant, Of::TIME));
             format!("[{}], beside it {stiffness} that relax with a time constant of {tau}", words(of, shown))
         }
+        Behaviour::Logarithmic { of, share, reference_time, longest } => {
+            let share = shown(*share, Of::NUMBER);
+            let [time, longest] = [*reference_time, *longest].map(|time| shown(time, Of::TIME));
+            format!("[{}], of which {share}·ln(1 + t/{time}) relaxes, until {longest}", words(of, shown))
+        }
         Behaviour::Beam(beam) => beam_words(beam, shown),
         Behaviour::Portal(portal) => portal_words(portal, shown),
     }
+}
+
+fn capped(pinching: &Pinching, shown: Shown<'_>) -> String {
+    pinching.capping.map_or_else(String::new, |capping| {
+        let place = shown(capping.displacement, Dimension::LENGTH);
+        let [slope, residual] = [capping.slope, capping.residual].map(|number| shown(number, Dimension::NUMBER));
+        format!(", falling from {place} on with {slope} of its stiffness, to {residual} of its strength")
+    })
+}
+
+/// What is lost with energy, mode by mode.
+fn worn(pinching: &Pinching, shown: Shown<'_>) -> String {
+    let Some(lost) = pinching.deterioration else { return String::new() };
+    let residual = shown(lost.residual, Dimension::NUMBER);
+    let modes = [
+        (format!("strength lost with energy: all but {residual} of it"), lost.strength),
+        ("post-capping strength".to_owned(), lost.capping),
+        ("unloading stiffness".to_owned(), lost.unloading),
+        ("reloading stiffness".to_owned(), lost.reloading),
+    ];
+    let told = modes.into_iter().filter(|(_, capacity)| capacity.is_finite()).map(|(words, capacity)| {
+        let energy = capacity * pinching.yield_force * pinching.yield_force / pinching.stiffness;
+        format!(", {words} with {}", shown(energy, Dimension::ENERGY))
+    });
+    format!("{}, exponent {}", told.collect::<String>(), shown(lost.exponent, Dimension::NUMBER))
 }
 
 fn beam_words(beam: &Beam, shown: Shown<'_>) -> String {

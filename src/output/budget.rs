@@ -7,7 +7,7 @@ use crate::plan::{Plan, ProcedureKind, ShakeDamping, Storey};
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, ProcedureRecord};
 use crate::rig::named_axis;
-use crate::uncertainty::{Contribution, Source};
+use crate::uncertainty::{Contribution, Known, Source, known};
 
 /// The budget of one result.
 #[derive(Clone, Debug)]
@@ -18,6 +18,8 @@ pub(super) struct Budget<'a> {
     pub value: f64,
     /// u, of all lines together.
     pub uncertainty: f64,
+    /// The same with its degrees of freedom.
+    pub known: Known,
     pub lines: Vec<Line>,
 }
 
@@ -38,6 +40,8 @@ pub(super) struct Line {
     pub sensitivity: Option<f64>,
     /// Number of draws of what is sampled; all else is linearised.
     pub draws: Option<usize>,
+    /// Of the contribution's size; infinite where it was not estimated from readings.
+    pub degrees: f64,
     /// Whether the result follows the input smoothly.
     pub smooth: bool,
 }
@@ -69,7 +73,8 @@ pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureR
     made.flat_map(|result| match &result.value {
         ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } => {
             let lines = lines(run, result.contributions.iter());
-            vec![Budget { result, entry: None, value: *value, uncertainty: *uncertainty, lines }]
+            let known = how_well(run, &result.contributions, *uncertainty);
+            vec![Budget { result, entry: None, value: *value, uncertainty: *uncertainty, known, lines }]
         }
         ResultValue::Number { .. } => Vec::new(),
         ResultValue::List(values) => of_entries(run, result, values),
@@ -81,21 +86,35 @@ pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureR
 fn of_entries<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> Vec<Budget<'a>> {
     let known = values.iter().zip(result.entry_uncertainties()).enumerate();
     let budget = |(entry, (value, uncertainty)): (usize, (&f64, Option<f64>))| {
-        let lines = lines(run, result.contributions.iter().filter(|part| part.entry == entry));
-        Some(Budget { result, entry: Some(entry), value: *value, uncertainty: uncertainty?, lines })
+        let mine: Vec<Contribution> = result.contributions.iter().filter(|part| part.entry == entry).copied().collect();
+        let lines = lines(run, mine.iter());
+        let uncertainty = uncertainty?;
+        Some(Budget { result, entry: Some(entry), value: *value, uncertainty, known: how_well(run, &mine, uncertainty), lines })
     };
     known.filter_map(budget).collect()
 }
 
-/// A line for each source; the draws of the readings are one.
+/// u with its degrees of freedom.
+fn how_well(run: &Run<'_>, parts: &[Contribution], uncertainty: f64) -> Known {
+    known(parts, run.record).unwrap_or(Known::surely(uncertainty))
+}
+
+/// A line for each source; the draws of the readings are one, and so are the readings at a place of rest.
 fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution>) -> Vec<Line> {
     let drawn = |part: &&Contribution| matches!(part.source, Source::Readings { .. } | Source::Drawn { .. });
     let (draws, moved): (Vec<&Contribution>, Vec<&Contribution>) = contributions.partition(drawn);
+    let (readings, moved): (Vec<&Contribution>, Vec<&Contribution>) =
+        moved.into_iter().partition(|part| matches!(part.source, Source::RestReading { .. }));
     let mut lines: Vec<Line> = moved.into_iter().map(|part| line(run, part)).collect();
-    if let Some(first) = draws.first() {
-        let together = draws.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
-        let draws = Some(draws.len());
-        lines.push(Line { contribution: together, draws, sensitivity: None, ..line(run, first) });
+    for (parts, sampled) in [(draws, true), (readings, false)] {
+        if let Some(first) = parts.first() {
+            let together = parts.iter().map(|part| part.amount * part.amount).sum::<f64>().sqrt();
+            let one = line(run, first);
+            #[expect(clippy::cast_precision_loss, reason = "a few")]
+            let degrees = if sampled { parts.len() as f64 } else { one.degrees };
+            let draws = sampled.then_some(parts.len());
+            lines.push(Line { contribution: together, draws, degrees, sensitivity: None, ..one });
+        }
     }
     lines.sort_by(|a, b| b.contribution.abs().total_cmp(&a.contribution.abs()));
     lines
@@ -154,21 +173,40 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             let u = plan.rig.calibration_of(axis).zero();
             (of_axis("zero of the load cell", plan, axis), From::Rig, Some(0.0), Some(u), Dimension::FORCE)
         }
-        Source::Readings { .. } => ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE),
+        Source::MassMatrix(index) => of_matrix(plan, index, "mass_matrix", 0),
+        Source::StiffnessMatrix(index) => of_matrix(plan, index, "stiffness_matrix", 1),
+        Source::RestLoad { .. } => ("load that was left".to_owned(), From::Program, None, None, Dimension::FORCE),
+        Source::Readings { .. } | Source::RestReading { .. } => {
+            ("noise and resolution of the readings".to_owned(), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::Drawn { .. } => {
             let name = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
             (name.to_owned(), From::Rig, None, None, Dimension::FORCE)
         }
+        Source::Rounding { procedure, .. } => {
+            let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
+            (format!("resolution of the readings of {name}"), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
-    Line { input, from, value, uncertainty, dimension, contribution: part.amount, sensitivity, draws: None, smooth: part.smooth }
+    let degrees = run.record.degrees(part.source);
+    let contribution = part.amount;
+    Line { input, from, value, uncertainty, dimension, contribution, sensitivity, draws: None, degrees, smooth: part.smooth }
 }
 
 /// What a channel of the axis at this place is called; of a rig of one axis nothing is said of it.
 fn of_axis(what: &str, plan: &Plan, axis: usize) -> String {
     let axes = plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom());
     named_axis(axis, axes).map_or_else(|| what.to_owned(), |axis| format!("{what} of axis {axis}"))
+}
+
+/// The factor on a matrix of a frame, with its uncertainty; 0 is that of the masses.
+fn of_matrix(plan: &Plan, specimen: usize, field: &str, which: usize) -> (String, From, Option<f64>, Option<f64>, Dimension) {
+    let specimen = plan.specimens.get(specimen);
+    let name = specimen.map_or("", |specimen| specimen.name.as_str());
+    let u = specimen.and_then(|specimen| specimen.frame.as_ref()).map(|frame| frame.matrix_uncertainty[which]);
+    (format!("factor on {name}.{field}"), From::Rig, Some(1.0), u, Dimension::NUMBER)
 }
 
 /// The specimen's name, and a number of one of its storeys with its uncertainty.

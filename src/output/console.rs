@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::standing::Standing;
-use super::{Run, deviations, number, standing, summary};
+use super::{Run, deviations, expansion, number, standing, summary};
 use crate::inert::one_line;
 use crate::plan::DecisionRule;
 use crate::run::rehearsal;
@@ -49,7 +49,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         let line = format!("  {verdict}  {}  {}", cells.join("  "), row[4]);
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    text.push_str(rule(run));
+    text.push_str(&rule(run));
     for deviation in deviations::of(run) {
         let _ = writeln!(text, "  note: {}", one_line(&deviation));
     }
@@ -67,14 +67,18 @@ fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
 }
 
 /// The rule of decision, where an uncertainty is printed that it regards or not.
-fn rule(run: &Run<'_>) -> &'static str {
+fn rule(run: &Run<'_>) -> String {
+    let told = match expansion::largest(run.assessment) {
+        Some(factor) => format!("± is U = k·u (95 %; k up to {factor}, of few degrees of freedom)"),
+        None => "± is U = 2u".to_owned(),
+    };
     let uncertain = run.assessment.requirements.iter().flat_map(|requirement| &requirement.conditions);
     match run.assessment.rule {
-        DecisionRule::Guarded => "  decision rule: guarded; ± is U = 2u, and a limit nearer than that decides nothing\n",
+        DecisionRule::Guarded => format!("  decision rule: guarded; {told}, and a limit nearer than that decides nothing\n"),
         DecisionRule::Simple if uncertain.into_iter().any(|condition| condition.uncertainty.is_some()) => {
-            "  decision rule: simple; ± is U = 2u, the value alone decides\n"
+            format!("  decision rule: simple; {told}, the value alone decides\n")
         }
-        DecisionRule::Simple => "",
+        DecisionRule::Simple => String::new(),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Pure functions of (plan, record, assessment): tables, figures, summary, certificate, console text. They return
+//! Pure functions of (plan, record, assessment): tables, figures, summary, certificate, console text. They give
 //! bytes; only `cli` writes files. Knows no clock, no file, no environment: the same run gives the same bytes.
 
 mod amendment;
@@ -9,13 +9,13 @@ pub mod comparison;
 pub mod console;
 mod deviations;
 mod document;
+mod expansion;
 mod figures;
 mod manifest;
 mod number;
 mod prediction;
-mod shake_table;
+mod shelf;
 pub mod standing;
-mod storey_table;
 pub mod summary;
 mod tables;
 
@@ -26,8 +26,8 @@ use std::collections::BTreeSet;
 
 use crate::inert;
 use crate::plan::{Format, Link, Plan, PlanFile};
-use crate::record::Record;
 use crate::record::equipment::{Device, Equipment};
+use crate::record::{Drift, Record};
 use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
@@ -35,6 +35,11 @@ use crate::verdict::Assessment;
 pub use prediction::{PredictedLimit, PredictedProcedure, PredictedRequirement, Prediction, REHEARSAL_FILE};
 
 pub use amendment::{Amendment, Amends, Change};
+
+pub use shelf::{Listed, Nowhere, Shelf};
+
+/// Name of the summary.
+pub const SUMMARY: &str = "summary.json";
 
 /// Everything an output is made from.
 #[derive(Clone, Copy)]
@@ -138,8 +143,10 @@ pub struct OutputFile {
 /// Why an output could not be made. None of these is the run's fault: its record is whole.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    #[error("the table of `{procedure}` could not be written: {reason}")]
-    Table { procedure: String, reason: String },
+    #[error("the table `{table}` could not be written: {reason}")]
+    Table { table: String, reason: String },
+    #[error("`{path}` could not be kept: {reason}")]
+    Kept { path: String, reason: String },
     #[error("the figure `{figure}` of `{procedure}` could not be drawn: {reason}")]
     Figure { figure: &'static str, procedure: String, reason: String },
     #[error("the report could not be set on paper: {0}")]
@@ -153,11 +160,24 @@ pub enum OutputError {
 /// # Errors
 /// A table, figure or summary that cannot be encoded.
 pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
-    let figures = figures::all(run)?;
-    let mut tables = tables::all(run)?;
-    // As they will lie in the folder, for the report names them.
-    tell_apart(&mut tables);
     let mut files = Vec::new();
+    put_everything(run, &mut files)?;
+    files.push(manifest::of(&files));
+    Ok(files)
+}
+
+/// Puts every file a run leaves but the manifest, each as soon as it is made; the report comes last, for it tells the digests
+/// of the tables.
+///
+/// # Errors
+/// A table, figure or summary that cannot be encoded or kept.
+pub fn put_everything(run: &Run<'_>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+    let summary = summary_file(run)?;
+    let foretold = run.provenance.prediction.as_ref().map(prediction::file).transpose()?;
+    let figures = figures::all(run)?;
+    let tables = tables::put(run, shelf)?;
+    let mut files = vec![summary];
+    files.extend(foretold);
     let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
     if html || pdf {
         let report = certificate::document(run, &figures, &tables);
@@ -170,17 +190,21 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
             files.push(OutputFile { path: "certificate.pdf".to_owned(), bytes });
         }
     }
-    files.push(summary_file(run)?);
-    files.extend(run.provenance.prediction.as_ref().map(prediction::file).transpose()?);
-    files.extend(tables);
     for figure in figures {
         files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
         files.push(OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() });
     }
     files.extend(plan_files(run.plan));
-    tell_apart(&mut files);
-    files.push(manifest::of(&files));
-    Ok(files)
+    tell_apart(files.iter_mut().map(|file| &mut file.path));
+    let mut listed = tables;
+    for file in &files {
+        listed.push(put_whole(shelf, file)?);
+    }
+    Ok(listed)
+}
+
+fn put_whole(shelf: &mut dyn Shelf, file: &OutputFile) -> Result<Listed, OutputError> {
+    shelf::put(shelf, file).map_err(|error| OutputError::Kept { path: file.path.clone(), reason: error.to_string() })
 }
 
 /// The files of numbers and words alone: the summary and the tables.
@@ -189,13 +213,12 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
 /// A table or a summary that cannot be encoded.
 pub fn numbers(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let mut files = vec![summary_file(run)?];
-    files.extend(tables::all(run)?);
-    tell_apart(&mut files);
+    tables::put(run, &mut files)?;
     Ok(files)
 }
 
 fn summary_file(run: &Run<'_>) -> Result<OutputFile, OutputError> {
-    Ok(OutputFile { path: "summary.json".to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() })
+    Ok(OutputFile { path: SUMMARY.to_owned(), bytes: summary::Summary::of(run).to_json()?.into_bytes() })
 }
 
 /// What the figures of a run plot, for who holds it against another run.
@@ -208,7 +231,7 @@ pub fn figure_data(run: &Run<'_>) -> OutputFile {
 fn plan_files(plan: &Plan) -> Vec<OutputFile> {
     let file = |file: &PlanFile| OutputFile { path: format!("plan/{}", safe_path(&file.name)), bytes: file.text.clone().into() };
     let mut files: Vec<OutputFile> = plan.files.iter().map(file).collect();
-    tell_apart(&mut files);
+    tell_apart(files.iter_mut().map(|file| &mut file.path));
     files
 }
 
@@ -221,12 +244,12 @@ pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     Ok(drawn.map(|figure| OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() }).collect())
 }
 
-/// The table of a client that drove the rig.
+/// Puts the table of a client that drove the rig: all that is made of it.
 ///
 /// # Errors
-/// It cannot be encoded.
-pub fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
-    tables::driven(steps)
+/// It cannot be encoded or kept.
+pub fn put_driven(steps: &[DrivenStep], found: Option<&Drift>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+    tables::put_driven(steps, found, shelf)
 }
 
 /// The manifest of files that are made and of others whose digests are known: path and SHA-256 in hex.
@@ -248,25 +271,25 @@ fn safe_path(name: &str) -> String {
 }
 
 /// Paths that differ only in the size of their letters are one file on many systems: the later one gets a number.
-fn tell_apart(files: &mut [OutputFile]) {
+fn tell_apart<'a>(paths: impl Iterator<Item = &'a mut String>) {
     let mut seen = BTreeSet::new();
-    for file in files {
-        let own = file.path.clone();
+    for path in paths {
+        let own = path.clone();
         let (stem, ending) = match own.rsplit_once('.') {
             Some((stem, ending)) if !ending.contains('/') => (stem, format!(".{ending}")),
             _ => (own.as_str(), String::new()),
         };
         let mut number = 1;
-        while !seen.insert(file.path.to_lowercase()) {
+        while !seen.insert(path.to_lowercase()) {
             number += 1;
-            file.path = format!("{stem}-{number}{ending}");
+            *path = format!("{stem}-{number}{ending}");
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{OutputFile, safe_path, tell_apart};
+    use super::{safe_path, tell_apart};
 
     #[test]
     fn a_path_never_leaves_the_run_folder() {
@@ -277,10 +300,8 @@ mod tests {
     }
     #[test]
     fn no_two_files_are_one_where_the_size_of_letters_says_nothing() {
-        let mut files = ["tables/hit.csv", "tables/Hit.csv", "tables/HIT-2.csv", "plan/a", "plan/A"]
-            .map(|path| OutputFile { path: path.to_owned(), bytes: Vec::new() });
-        tell_apart(&mut files);
-        let paths = files.map(|file| file.path);
+        let mut paths = ["tables/hit.csv", "tables/Hit.csv", "tables/HIT-2.csv", "plan/a", "plan/A"].map(str::to_owned);
+        tell_apart(paths.iter_mut());
         assert_eq!(paths, ["tables/hit.csv", "tables/Hit-2.csv", "tables/HIT-2-2.csv", "plan/a", "plan/A-2"]);
     }
 }

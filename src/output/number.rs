@@ -4,7 +4,8 @@
 use crate::plan::Comparison;
 use crate::quantity::Dimension;
 use crate::quantity::display::{self, digits, minus, significant, trimmed, unit};
-use crate::verdict::{Bound, COVERAGE, ConditionOutcome};
+use crate::uncertainty::Known;
+use crate::verdict::{Bound, ConditionOutcome};
 
 /// A value in its readable unit: `7.922 mm`, `−2.000 kN`, `20` for a count.
 pub(super) fn text(value: f64, dimension: Dimension) -> String {
@@ -61,39 +62,39 @@ pub(super) struct Parts {
     pub value: String,
     /// Standard, u.
     pub standard: Option<String>,
-    /// Expanded, U = 2u.
+    /// Expanded, U = k·u.
     pub expanded: Option<String>,
     /// As print sets it; empty for a plain number.
     pub unit: String,
 }
 
 /// A value with its uncertainties, apart for the columns of a table.
-pub(super) fn parts(value: f64, uncertainty: Option<f64>, dimension: Dimension) -> Parts {
+pub(super) fn parts(value: f64, known: Option<Known>, dimension: Dimension) -> Parts {
     let (unit, factor) = unit(value, dimension);
     let set = display::typeset(&unit);
-    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite()).map(|u| u / factor) else {
+    let Some(known) = known.filter(|known| known.standard.is_finite()) else {
         // A row of zeros is counted by nobody.
         let small = value != 0.0 && (value / factor).abs() < 1e-3;
         let value = if small { minus(&format!("{:.3e}", value / factor)) } else { digits(value, factor, dimension) };
         return Parts { value, standard: None, expanded: None, unit: set };
     };
+    let (uncertainty, expanded) = (known.standard / factor, known.expanded() / factor);
     let scaled = value / factor;
     let (value, [standard, expanded]) = match decimals_of(scaled, uncertainty) {
         Some(decimals) => (
             minus(&format!("{scaled:.decimals$}")),
-            [uncertainty, COVERAGE * uncertainty].map(|uncertainty| format!("{uncertainty:.decimals$}")),
+            [uncertainty, expanded].map(|uncertainty| format!("{uncertainty:.decimals$}")),
         ),
-        None => (
-            digits(value, factor, dimension),
-            [uncertainty, COVERAGE * uncertainty].map(|uncertainty| minus(&significant(uncertainty, 2))),
-        ),
+        None => {
+            (digits(value, factor, dimension), [uncertainty, expanded].map(|uncertainty| minus(&significant(uncertainty, 2))))
+        }
     };
     Parts { value, standard: Some(standard), expanded: Some(expanded), unit: set }
 }
 
 /// A value and its standard uncertainty in one unit, both to the uncertainty's second digit: `300.02 ± 0.15 kN/m`.
 pub(super) fn with_uncertainty(value: f64, uncertainty: Option<f64>, dimension: Dimension) -> String {
-    let parts = parts(value, uncertainty, dimension);
+    let parts = parts(value, uncertainty.map(Known::surely), dimension);
     match parts.standard {
         Some(standard) => joined(&format!("{} ± {standard}", parts.value), &parts.unit),
         None => text(value, dimension),
@@ -114,7 +115,8 @@ fn decimals_of(value: f64, uncertainty: f64) -> Option<usize> {
 pub(super) fn value(condition: &ConditionOutcome) -> Option<String> {
     let value = condition.value?;
     let (scale, percent) = if in_percent(condition) { (100.0, "\u{a0}%") } else { (1.0, "") };
-    let parts = parts(scale * value, condition.uncertainty.map(|u| scale * u), condition.dimension);
+    let known = condition.known().map(|known| Known { standard: scale * known.standard, ..known });
+    let parts = parts(scale * value, known, condition.dimension);
     Some(
         match parts.expanded {
             Some(expanded) => joined(&format!("{} ± {expanded}", parts.value), &parts.unit),
@@ -227,9 +229,11 @@ mod tests {
             dimension,
             value: Some(value),
             uncertainty: None,
+            degrees: f64::INFINITY,
             bound: Some(bound),
             margin: Some(bound.margin(value)),
             guard_band: None,
+            margin_degrees: f64::INFINITY,
             reason: None,
         };
         let below = |limit| Bound::Compare { comparison: Comparison::Less, limit };

@@ -153,6 +153,9 @@ pub struct BudgetSummary {
     pub entry: Option<usize>,
     pub unit: String,
     pub u: Option<f64>,
+    /// Effective degrees of freedom of u; absent where they are more than 10,000.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub degrees_of_freedom: Option<f64>,
     pub contributions: Vec<ContributionSummary>,
 }
 
@@ -172,6 +175,9 @@ pub struct ContributionSummary {
     pub sensitivity: Option<f64>,
     /// Change of the result when the input moves by its standard uncertainty, in the unit of the result.
     pub contribution: Option<f64>,
+    /// By which the size of the contribution is known; absent of what was not estimated from readings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub degrees_of_freedom: Option<f64>,
     /// Whether the result follows the input smoothly; where not, the contribution is the largest change seen.
     pub smooth: bool,
 }
@@ -182,6 +188,12 @@ pub struct Quantity {
     pub value: Value,
     pub unit: String,
     pub u: Uncertainty,
+    /// Effective degrees of freedom of u, of a list entry by entry; absent where they are more than 10,000.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub degrees_of_freedom: Option<Uncertainty>,
+    /// The factor of the expanded uncertainty U = k·u, which holds 95.45 %; 2 where it is absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k: Option<Uncertainty>,
 }
 
 /// The standard uncertainty of a number, or of each entry of a list; null where none is known.
@@ -215,7 +227,7 @@ pub struct RequirementSummary {
     pub unit: Option<String>,
     /// Standard uncertainty of the value.
     pub u: Option<f64>,
-    /// w = 2u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
+    /// w = U = k·u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
     pub guard_band: Option<f64>,
     /// As the plan wrote it.
     pub condition: Option<String>,
@@ -236,7 +248,10 @@ pub struct ConditionSummary {
     pub margin: Option<f64>,
     pub unit: String,
     pub u: Option<f64>,
-    /// w = 2u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
+    /// The factor of the expanded uncertainty U = k·u of the value, which holds 95.45 %; 2 where it is absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k: Option<f64>,
+    /// w = U = k·u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
     pub guard_band: Option<f64>,
     /// Why it is inconclusive.
     pub reason: Option<String>,

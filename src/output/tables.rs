@@ -1,76 +1,67 @@
-//! Tables: one row a step, SI, the column names of the language. In: the record. Out: CSV with shortest round-trip
-//! numbers and Parquet (zstd), both from one Polars frame. Knows nothing of units for people.
+//! Tables: one row a step, SI, the column names of the language. In: the record. Out: CSV and Parquet, put where the caller
+//! wants them. Knows nothing of units for people.
 
 mod blows;
 mod cyclic;
 mod drift;
+mod floors;
+mod table;
 
-use polars::prelude::{Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PolarsError, SerWriter as _};
+use std::iter::once;
 
-use super::{OutputError, OutputFile, Run, shake_table, storey_table, wants};
+use polars::prelude::Column;
+
+use super::shelf::{Listed, Shelf, put_written};
+use super::{OutputError, Run, tell_apart, wants};
 use crate::inert;
 use crate::plan::Format;
-use crate::record::{BlowHistory, History, Hold, ImpactStep, ProcedureRecord, RampStep, SweepStep};
+use crate::record::{
+    BlowHistory, Drift, EscalateHistory, History, Hold, ImpactHistory, ImpactStep, ProcedureRecord, RampStep,
+    StoreyImpactHistory, SweepStep,
+};
 use crate::run::driven::DrivenStep;
+use table::{Form, Table};
 
-/// The tables of every procedure that recorded steps, in the formats the plan asks for.
-pub(super) fn all(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+/// Puts the tables of every procedure that recorded steps, in the formats the plan asks for.
+pub(super) fn put(run: &Run<'_>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+    let forms = [(Format::Csv, Form::Csv), (Format::Parquet, Form::Parquet)];
+    let forms: Vec<Form> = forms.into_iter().filter(|(format, _)| wants(run.plan, *format)).map(|(_, form)| form).collect();
+    let tables = all(run);
     let mut files = Vec::new();
-    for procedure in &run.record.procedures {
-        let failed = |error: PolarsError| OutputError::Table { procedure: procedure.name.clone(), reason: error.to_string() };
-        let Some(frame) = frame(procedure).map_err(failed)? else { continue };
-        written(run, &procedure.name, frame, &mut files).map_err(failed)?;
-        if let History::Escalate(history) = &procedure.history {
-            for (number, blow) in (1..).zip(&history.blows) {
-                let (height, columns) = match &blow.history {
-                    BlowHistory::Impact(history) => (history.steps.len(), impact(&history.steps)),
-                    BlowHistory::Storey(history) => storey_table::columns(history),
-                };
-                let frame = DataFrame::new(height, columns).map_err(failed)?;
-                written(run, &format!("{}_{number}", procedure.name), frame, &mut files).map_err(failed)?;
-            }
-            if let Some((height, columns)) = blows::storeys(history) {
-                let frame = DataFrame::new(height, columns).map_err(failed)?;
-                written(run, &format!("{}_storeys", procedure.name), frame, &mut files).map_err(failed)?;
-            }
-        }
-        if let History::Ramp(history) = &procedure.history
-            && !history.holds.is_empty()
-        {
-            let holds = holds(&history.holds).map_err(failed)?;
-            written(run, &format!("{}_holds", procedure.name), holds, &mut files).map_err(failed)?;
-        }
-        if let History::Cycle(history) = &procedure.history {
-            let cycles = cyclic::cycles(history).map_err(failed)?;
-            written(run, &format!("{}_cycles", procedure.name), cycles, &mut files).map_err(failed)?;
-        }
+    for table in &tables {
+        let stem = inert::file_part(&table.name);
+        files.extend(forms.iter().map(|form| (format!("tables/{stem}.{}", form.ending()), table, *form)));
     }
-    if let Some(found) = &run.record.drift {
-        let failed = |error: PolarsError| OutputError::Table { procedure: "drift".to_owned(), reason: error.to_string() };
-        let (height, columns) = drift::rows(found);
-        let frame = DataFrame::new(height, columns).map_err(failed)?;
-        written(run, "drift", frame, &mut files).map_err(failed)?;
-    }
-    Ok(files)
+    tell_apart(files.iter_mut().map(|(path, ..)| path));
+    files.iter().map(|(path, table, form)| put_one(table, *form, path, shelf)).collect()
 }
 
-/// One table in the formats the plan asks for.
-fn written(run: &Run<'_>, name: &str, mut frame: DataFrame, files: &mut Vec<OutputFile>) -> Result<(), PolarsError> {
-    let stem = inert::file_part(name);
-    if wants(run.plan, Format::Csv) {
-        files.push(OutputFile { path: format!("tables/{stem}.csv"), bytes: csv(&mut frame)? });
-    }
-    if wants(run.plan, Format::Parquet) {
-        files.push(OutputFile { path: format!("tables/{stem}.parquet"), bytes: parquet(&mut frame)? });
-    }
-    Ok(())
+fn all<'a>(run: &Run<'a>) -> Vec<Table<'a>> {
+    let of_procedures = run.record.procedures.iter().flat_map(of_procedure);
+    let drift = run.record.drift.as_ref().map(of_drift);
+    of_procedures.chain(drift).collect()
 }
 
-/// The targets of a client that drove the rig, and what was read there.
-pub(super) fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
-    let failed = |error: PolarsError| OutputError::Table { procedure: "served".to_owned(), reason: error.to_string() };
+/// Puts the targets of a client that drove the rig and what was read there; what its zeros did, where they were read.
+pub(super) fn put_driven(steps: &[DrivenStep], found: Option<&Drift>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
     // A row a step and axis; which axis it is, is said where there are several.
-    let several = steps.iter().any(|step| step.command.len() > 1);
+    let axes = steps.iter().map(|step| step.command.len()).max().unwrap_or(1);
+    let table = Table::of_steps("served".to_owned(), steps.len(), axes, |range| driven_rows(&steps[range], axes > 1));
+    let served = (table, "tables/served.csv");
+    let drift = found.map(|found| (of_drift(found), "tables/drift.csv"));
+    once(served).chain(drift).map(|(table, path)| put_one(&table, Form::Csv, path, shelf)).collect()
+}
+
+fn of_drift(found: &Drift) -> Table<'_> {
+    Table::of_steps("drift".to_owned(), 1, 1, |_| drift::rows(found))
+}
+
+fn put_one(table: &Table<'_>, form: Form, path: &str, shelf: &mut dyn Shelf) -> Result<Listed, OutputError> {
+    let failed = |error: std::io::Error| OutputError::Table { table: table.name.clone(), reason: error.to_string() };
+    put_written(shelf, path, |out| table.write(form, out)).map_err(failed)
+}
+
+fn driven_rows(steps: &[DrivenStep], several: bool) -> Vec<Column> {
     let rows: Vec<(&DrivenStep, usize)> =
         steps.iter().flat_map(|step| (0..step.command.len()).map(move |axis| (step, axis))).collect();
     let of = |name, read: fn(&(&DrivenStep, usize)) -> f64| numbers(name, &rows, read);
@@ -84,37 +75,59 @@ pub(super) fn driven(steps: &[DrivenStep]) -> Result<OutputFile, OutputError> {
         of("displacement_m", |(step, axis)| step.displacement[*axis]),
         of("restoring_force_n", |(step, axis)| step.force[*axis]),
     ]);
-    let mut frame = DataFrame::new(rows.len(), columns).map_err(failed)?;
-    Ok(OutputFile { path: "tables/served.csv".to_owned(), bytes: csv(&mut frame).map_err(failed)? })
+    columns
 }
 
-fn csv(frame: &mut DataFrame) -> Result<Vec<u8>, PolarsError> {
-    let mut bytes = Vec::new();
-    CsvWriter::new(&mut bytes).include_header(true).finish(frame)?;
-    Ok(bytes)
+/// The table of a procedure's steps, and those beside it; none where it records no steps.
+fn of_procedure(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
+    let name = procedure.name.clone();
+    let beside = |what: &str| format!("{name}_{what}");
+    match &procedure.history {
+        History::Ramp(history) => {
+            let holds = (!history.holds.is_empty()).then(|| Table::of(beside("holds"), &history.holds, holds));
+            once(Table::of(name, &history.steps, ramp)).chain(holds).collect()
+        }
+        History::Move(steps) => vec![Table::of(name, steps, ramp)],
+        History::FrameUnload(steps) => vec![Table::of(name, steps, floors::unloading)],
+        History::Sweep(history) => vec![Table::of(name, &history.steps, sweep)],
+        History::Impact(history) => vec![of_impact(name, history)],
+        History::StoreyImpact(history) => vec![of_storey_impact(name, history)],
+        History::Shake(history) => {
+            let storeys = history.steps.first().map_or(1, |step| step.computed.len());
+            vec![Table::of_steps(name, history.steps.len(), storeys, |range| floors::shake(&history.steps[range]))]
+        }
+        History::Escalate(history) => of_blows(name, history),
+        History::Cycle(history) => {
+            let cycles = Table::of(beside("cycles"), &history.cycles, cyclic::cycles);
+            vec![Table::of(name, &history.steps, cyclic::steps), cycles]
+        }
+        History::Inspect => Vec::new(),
+    }
 }
 
-fn parquet(frame: &mut DataFrame) -> Result<Vec<u8>, PolarsError> {
-    let mut bytes = Vec::new();
-    ParquetWriter::new(&mut bytes).with_compression(ParquetCompression::Zstd(None)).finish(frame)?;
-    Ok(bytes)
+fn of_blows(name: String, history: &EscalateHistory) -> Vec<Table<'_>> {
+    let blows = history.blows.iter().zip(1..).map(|(blow, number)| {
+        let name = format!("{name}_{number}");
+        match &blow.history {
+            BlowHistory::Impact(history) => of_impact(name, history),
+            BlowHistory::Storey(history) => of_storey_impact(name, history),
+        }
+    });
+    let blows: Vec<Table<'_>> = blows.collect();
+    let has_storeys = history.storeys().next().is_some_and(|blow| !blow.floors.is_empty());
+    let storeys = has_storeys.then(|| Table::of_steps(format!("{name}_storeys"), 1, 1, |_| blows::storeys(history)));
+    once(Table::of_steps(name, 1, 1, |_| blows::rows(history))).chain(blows).chain(storeys).collect()
 }
 
-/// The frame of a procedure; None where it records no steps.
-fn frame(procedure: &ProcedureRecord) -> Result<Option<DataFrame>, PolarsError> {
-    let (height, columns) = match &procedure.history {
-        History::Ramp(history) => (history.steps.len(), ramp(&history.steps)),
-        History::Move(steps) => (steps.len(), ramp(steps)),
-        History::FrameUnload(steps) => storey_table::unloading(steps),
-        History::Sweep(history) => (history.steps.len(), sweep(&history.steps)),
-        History::Impact(history) => (history.steps.len(), impact(&history.steps)),
-        History::StoreyImpact(history) => storey_table::columns(history),
-        History::Shake(history) => shake_table::columns(&history.steps),
-        History::Escalate(history) => (history.blows.len(), blows::rows(history)),
-        History::Cycle(history) => (history.steps.len(), cyclic::steps(&history.steps)),
-        History::Inspect => return Ok(None),
-    };
-    DataFrame::new(height, columns).map(Some)
+fn of_impact(name: String, history: &ImpactHistory) -> Table<'_> {
+    Table::of(name, &history.steps, impact)
+}
+
+fn of_storey_impact(name: String, history: &StoreyImpactHistory) -> Table<'_> {
+    let storeys = history.floors.first().map_or(1, |floors| floors.computed.len());
+    let columns =
+        |range: std::ops::Range<usize>| floors::storey_impact(&history.blow.steps[range.clone()], &history.floors[range]);
+    Table::of_steps(name, history.floors.len(), storeys, columns)
 }
 
 fn impact(steps: &[ImpactStep]) -> Vec<Column> {
@@ -166,15 +179,14 @@ fn ramp(steps: &[RampStep]) -> Vec<Column> {
 }
 
 /// One row a reading of a hold.
-fn holds(holds: &[Hold]) -> Result<DataFrame, PolarsError> {
+fn holds(holds: &[Hold]) -> Vec<Column> {
     let rows: Vec<(u64, f64, f64)> =
         holds.iter().flat_map(|hold| hold.readings.iter().map(|(time, force)| (hold.step, *time, *force))).collect();
-    let columns = vec![
+    vec![
         integers("step", &rows, |row| row.0),
         numbers("time_s", &rows, |row| row.1),
         numbers("restoring_force_n", &rows, |row| row.2),
-    ];
-    DataFrame::new(rows.len(), columns)
+    ]
 }
 
 fn sweep(steps: &[SweepStep]) -> Vec<Column> {

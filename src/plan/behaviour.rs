@@ -2,6 +2,7 @@
 //! check. Out: data that `mechanics` turns into a model and `output` into words. It bends nothing itself.
 
 use super::portal::Portal;
+use crate::mechanics::logarithmic::lost_after_long;
 
 /// Restoring force of a virtual specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +37,8 @@ pub enum Behaviour {
     Rate { of: Box<Behaviour>, reference_velocity: f64, exponent: f64 },
     /// A spring and a dashpot one behind the other, beside the rest: its force relaxes. `stiffness` N/m, `time_constant` s.
     Maxwell { of: Box<Behaviour>, stiffness: f64, time_constant: f64 },
+    /// What is reached relaxes with the logarithm of time: of every newton `share`·ln(1 + t/`reference_time`) is lost, until `longest` (s).
+    Logarithmic { of: Box<Behaviour>, share: f64, reference_time: f64, longest: f64 },
     /// A portal frame by plastic hinges.
     Portal(Portal),
 }
@@ -84,15 +87,31 @@ pub struct Pinching {
     pub displacement_factor: f64,
     /// a of the unloading stiffness K (x_y/x_max)^a.
     pub unloading_exponent: f64,
-    /// How its strength falls with the energy it has taken. None: not at all.
+    /// Where its strength begins to fall with the displacement. None: nowhere.
+    pub capping: Option<Capping>,
+    /// How it wears with the energy it has taken. None: not at all.
     pub deterioration: Option<Deterioration>,
 }
 
-/// Cyclic deterioration of strength by energy; the rule stands in `mechanics/specimen/pinching.rs`.
+/// A backbone that falls beyond a displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capping {
+    /// m
+    pub displacement: f64,
+    /// How steeply it falls, over the initial stiffness.
+    pub slope: f64,
+    /// Strength that is never lost, over the first one.
+    pub residual: f64,
+}
+
+/// Cyclic deterioration by energy: of each mode γ, the energy that it can take in all, over `F_y` `x_y`; infinite where the mode is off.
+/// The rule stands in `mechanics/specimen/deterioration.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deterioration {
-    /// γ: energy it can take in all, over `F_y` `x_y`.
-    pub capacity: f64,
+    pub strength: f64,
+    pub capping: f64,
+    pub unloading: f64,
+    pub reloading: f64,
     /// c
     pub exponent: f64,
     /// Strength that is never lost, over the first one.
@@ -156,7 +175,7 @@ impl Behaviour {
             Self::Bolted(bolted) if bolted.clearance == 0.0 && bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Bolted(bolted) => bolted.stiffness,
             Self::Table(table) => table.initial_stiffness(),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.initial_stiffness(),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.initial_stiffness(),
             Self::Maxwell { of, stiffness, .. } => of.initial_stiffness() + stiffness,
             Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.initial_stiffness()).sum::<f64>(),
             Self::Parallel(parts) => parts.iter().map(Self::initial_stiffness).sum(),
@@ -175,7 +194,7 @@ impl Behaviour {
             }
             Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Table(table) => table.steepest(|_| true),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.largest_stiffness(),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.largest_stiffness(),
             Self::Maxwell { of, stiffness, .. } => of.largest_stiffness() + stiffness,
             Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.largest_stiffness()).sum::<f64>(),
             Self::Parallel(parts) => parts.iter().map(Self::largest_stiffness).sum(),
@@ -195,6 +214,9 @@ impl Behaviour {
     pub fn relaxed_stiffness(&self) -> f64 {
         match self {
             Self::Maxwell { of, .. } => of.relaxed_stiffness(),
+            Self::Logarithmic { of, share, reference_time, longest } => {
+                of.relaxed_stiffness() * (1.0 - lost_after_long(*share, *reference_time, *longest))
+            }
             other => other.initial_stiffness(),
         }
     }
@@ -204,7 +226,9 @@ impl Behaviour {
     pub fn parts(&self) -> &[Behaviour] {
         match self {
             Self::Series(parts) | Self::Parallel(parts) => parts,
-            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } => std::slice::from_ref(of),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                std::slice::from_ref(of)
+            }
             _ => &[],
         }
     }
@@ -219,6 +243,9 @@ impl Behaviour {
             Self::Bilinear { yield_force, hardening, .. } | Self::BoucWen { yield_force, hardening, .. } => {
                 hardens(*hardening, *yield_force)
             }
+            Self::Pinching(Pinching { stiffness, yield_force, hardening, capping: Some(capping), .. }) => {
+                yield_force + hardening * stiffness * (capping.displacement - yield_force / stiffness)
+            }
             Self::Pinching(pinching) => hardens(pinching.hardening, pinching.yield_force),
             Self::Multilinear { corners } => match corners.as_slice() {
                 [.., [_, before], [_, last]] if before == last => *last,
@@ -229,6 +256,10 @@ impl Behaviour {
             Self::Table(table) => table.points.iter().fold(0.0, |most: f64, [_, force]| most.max(force.abs())) * table.scale,
             Self::Fracture { of, at: Breaks::Force(force) } => of.capacity().min(*force),
             Self::Fracture { of, .. } | Self::Rate { of, .. } => of.capacity(),
+            // What was lost one way is felt more the other way.
+            Self::Logarithmic { of, share, reference_time, longest } => {
+                of.capacity() * (1.0 + lost_after_long(*share, *reference_time, *longest))
+            }
             Self::Series(parts) => parts.iter().map(Self::capacity).fold(f64::INFINITY, f64::min),
             Self::Parallel(parts) => parts.iter().map(Self::capacity).sum(),
             Self::Portal(portal) => portal.capacity(),
@@ -269,7 +300,7 @@ impl Behaviour {
                     *force *= factor;
                 }
             }
-            Self::Rate { of, .. } => **of = of.scaled(factor),
+            Self::Rate { of, .. } | Self::Logarithmic { of, .. } => **of = of.scaled(factor),
             Self::Maxwell { of, stiffness, .. } => {
                 **of = of.scaled(factor);
                 *stiffness *= factor;
@@ -283,7 +314,7 @@ impl Behaviour {
     #[must_use]
     pub fn never_falls(&self) -> bool {
         match self {
-            Self::Fracture { .. } => false,
+            Self::Fracture { .. } | Self::Pinching(Pinching { capping: Some(_), .. }) => false,
             Self::Table(table) => table.points.windows(2).all(|pair| pair[1][1] >= pair[0][1]),
             _ => self.parts().iter().all(Self::never_falls),
         }

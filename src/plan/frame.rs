@@ -19,6 +19,8 @@ pub struct Frame {
     pub stiffness: Vec<Vec<f64>>,
     /// The files of mass and stiffness, where the matrices were read.
     pub files: Option<[String; 2]>,
+    /// Standard, of the matrices of mass and stiffness, each as a whole, relative; 0 where none is stated.
+    pub matrix_uncertainty: [f64; 2],
 }
 
 /// One storey: a floor on its columns.
@@ -67,7 +69,7 @@ impl Frame {
                 stiffness[floor][floor - 1] = -storey.stiffness;
             }
         }
-        Self { storeys, mass, stiffness, files: None }
+        Self { storeys, mass, stiffness, files: None, matrix_uncertainty: [0.0; 2] }
     }
 
     /// Floors, each with an actuator and a load cell.
@@ -82,10 +84,20 @@ impl Frame {
         self.mass.iter().flatten().sum()
     }
 
-    /// Standard, of the mass of all floors together, kg: each is independent of the others.
+    /// Standard, of the mass of all floors together, kg: each is independent of the others, a matrix is one.
     #[must_use]
     pub fn total_mass_uncertainty(&self) -> f64 {
-        self.storeys.iter().map(|storey| storey.mass_uncertainty.powi(2)).sum::<f64>().sqrt()
+        let of_floors = self.storeys.iter().map(|storey| storey.mass_uncertainty.powi(2)).sum::<f64>().sqrt();
+        of_floors.hypot(self.matrix_uncertainty[0] * self.total_mass())
+    }
+
+    /// The same frame with other matrices: each times its factor.
+    #[must_use]
+    pub fn scaled(&self, [mass, stiffness]: [f64; 2]) -> Self {
+        let times = |matrix: &[Vec<f64>], factor: f64| -> Vec<Vec<f64>> {
+            matrix.iter().map(|row| row.iter().map(|entry| factor * entry).collect()).collect()
+        };
+        Self { mass: times(&self.mass, mass), stiffness: times(&self.stiffness, stiffness), ..self.clone() }
     }
 
     /// The same frame with other storeys: its matrices follow.

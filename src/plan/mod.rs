@@ -22,14 +22,16 @@ use crate::quantity::Dimension;
 use crate::uncertainty::Source;
 
 pub use axis::{AxisCalibration, AxisPlan};
-pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Deterioration, Ends, Pinching, Table, Unloading};
+pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Pinching, Table, Unloading};
 pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use devices::Behind;
 pub use escalate::{Between, BlowOn, Escalate, MOST_BLOWS};
 pub use figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
 pub use golden::{Golden, NearColumn, NearResult, Tolerance};
-pub use identification::{BreakCount, DampingSweep, RampFit, RelaxationModel, StiffnessRamp, WatchedHold};
+pub use identification::{
+    BreakCount, DampingSweep, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
+};
 pub use integrator::{Integrator, Mode};
 pub use portal::{Loads, Mechanism, Portal, Sections};
 pub use rig::{
@@ -435,7 +437,7 @@ pub enum DecisionRule {
     /// The value decides, whatever its uncertainty (simple acceptance).
     #[default]
     Simple,
-    /// Between the value and the limit a guard band w = U = 2u must be left: within it nothing is decided.
+    /// Between the value and the limit a guard band w = U = k·u must be left: within it nothing is decided.
     Guarded,
 }
 

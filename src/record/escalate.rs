@@ -2,6 +2,7 @@
 
 use super::{ImpactHistory, NamedResult, Rest, StoreyImpactHistory};
 use crate::formula::ResultValue;
+use crate::uncertainty::Contribution;
 
 /// One blow.
 #[derive(Clone, Debug)]
@@ -68,6 +69,13 @@ impl Blow {
     pub fn rest_of_struck(&self) -> Option<(f64, f64)> {
         let struck = self.storey().map_or(0, |history| history.struck);
         self.rest.as_ref().map(|rest| rest.of(struck))
+    }
+
+    /// What is uncertain of both.
+    #[must_use]
+    pub fn doubts_of_rest(&self) -> Option<[Vec<Contribution>; 2]> {
+        let struck = self.storey().map_or(0, |history| history.struck);
+        self.rest.as_ref().map(|rest| rest.doubts_of(struck))
     }
 }
 

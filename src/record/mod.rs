@@ -19,6 +19,7 @@ pub use crate::mechanics::frame::{FrameEnergies, Modes};
 pub use crate::mechanics::identification::LineFit;
 use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
+pub use crate::mechanics::reached_fit::{LawFit, ReachedFit};
 pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
 use crate::quantity::Dimension;
 use crate::rig::Identity;
@@ -155,6 +156,8 @@ pub struct RampHistory {
     /// Pauses that were watched, and what they tell.
     pub holds: Vec<Hold>,
     pub relaxation: Option<Box<RelaxationFit>>,
+    /// By which law the reached force relaxes, where the plan asks for that.
+    pub reached: Option<Box<ReachedFit>>,
 }
 
 /// One reading of a damping sweep.
@@ -181,6 +184,10 @@ pub struct SweepHistory {
     /// What the fit is of: velocity (m/s), and half the difference of `F_d` (N) between the way out and the way back at
     /// one place.
     pub pairs: Vec<(f64, f64)>,
+    /// Of each pair, the place (m) and the mean of its two forces (N).
+    pub middles: Vec<[f64; 2]>,
+    /// K that the damping forces were told with, N/m.
+    pub stiffness: Option<f64>,
     /// F_d = intercept·sign v + slope·v: intercept is the Coulomb force.
     pub fit: Option<LineFit>,
 }
@@ -299,6 +306,30 @@ pub struct ShakeHistory {
     pub critical_time_step: f64,
 }
 
+impl History {
+    /// Degrees of freedom of the scatter that a result fitted here is known by; None of what is no fit.
+    #[must_use]
+    pub fn degrees(&self, result: &str) -> Option<f64> {
+        match self {
+            Self::Ramp(RampHistory { reached: Some(fit), .. }) if ReachedFit::RESULTS.contains(&result) => {
+                Some(fit.best().degrees)
+            }
+            Self::Ramp(ramp) => match (result, ramp.relaxation.as_deref()) {
+                ("relaxed_stiffness", Some(fit)) => Some(fit.degrees_of_stiffness()),
+                ("time_constant" | "branch_stiffness" | "remaining_relaxation" | "needed_pause", Some(fit)) => Some(fit.degrees),
+                _ => {
+                    let line = ramp.fit.map(|fit| fit.degrees);
+                    let bilinear = || ramp.bilinear.as_ref().map(|fit| fit.degrees);
+                    line.or_else(bilinear).or_else(|| ramp.multilinear.as_ref().map(|fit| fit.degrees))
+                }
+            },
+            Self::Sweep(sweep) => sweep.fit.map(|fit| fit.degrees),
+            Self::Cycle(cycle) => cycle.backbone.as_ref().map(|fit| fit.degrees),
+            _ => None,
+        }
+    }
+}
+
 impl Record {
     #[must_use]
     pub fn procedure(&self, name: &str) -> Option<&ProcedureRecord> {
@@ -345,5 +376,13 @@ impl Results for Record {
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         let found = self.procedures.get(reference.procedure.0).and_then(|procedure| procedure.result(reference.name));
         found.map_or_else(Vec::new, |found| found.contributions_of(reference))
+    }
+
+    fn degrees(&self, source: Source) -> f64 {
+        let (Source::Fit { procedure, result } | Source::FitEntry { procedure, result, .. }) = source else {
+            return f64::INFINITY;
+        };
+        let history = self.procedures.get(procedure.0).map(|procedure| &procedure.history);
+        history.and_then(|history| history.degrees(result)).unwrap_or(f64::INFINITY)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Floors;
 use crate::mechanics::monitor::Tracking;
+use crate::uncertainty::{Contribution, share};
 
 /// All floors after one move, from the ground up; step 0 is where the unloading began.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,12 +49,16 @@ impl Floors for UnloadStep {
 }
 
 /// Where a specimen came to rest, floor by floor; one degree of freedom is one floor.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct Rest {
     /// Measured, m.
     pub displacement: Vec<f64>,
     /// What it still carries, N.
     pub force: Vec<f64>,
+    /// What each source of uncertainty does to the place of each floor, m; empty where nothing is uncertain.
+    pub of_displacement: Vec<Vec<Contribution>>,
+    /// The same of what it still carries, N.
+    pub of_force: Vec<Vec<Contribution>>,
 }
 
 impl Rest {
@@ -82,7 +87,58 @@ impl Rest {
     /// The place farthest out, m, and the largest force left, N, each with its sign.
     #[must_use]
     pub fn largest(&self) -> (f64, f64) {
-        let most = |values: &[f64]| values.iter().copied().reduce(|most, next| if next.abs() > most.abs() { next } else { most });
-        (most(&self.displacement).unwrap_or(0.0), most(&self.force).unwrap_or(0.0))
+        let [place, force] = self.floors_of_largest();
+        (self.displacement.get(place).copied().unwrap_or(0.0), self.force.get(force).copied().unwrap_or(0.0))
     }
+
+    /// The floor farthest out, and the one that carries most, from 0.
+    #[must_use]
+    pub fn floors_of_largest(&self) -> [usize; 2] {
+        let most = |values: &[f64]| {
+            let sizes = values.iter().map(|value| value.abs()).enumerate();
+            sizes.reduce(|most, next| if next.1 > most.1 { next } else { most }).map_or(0, |(floor, _)| floor)
+        };
+        [most(&self.displacement), most(&self.force)]
+    }
+
+    /// What is uncertain of the place (m) and of the force (N) of one floor.
+    #[must_use]
+    pub fn doubts_of(&self, floor: usize) -> [Vec<Contribution>; 2] {
+        [&self.of_displacement, &self.of_force].map(|floors| floors.get(floor).cloned().unwrap_or_default())
+    }
+
+    /// What is uncertain of the places, m: an entry a floor.
+    #[must_use]
+    pub fn doubts_of_places(&self) -> Vec<Contribution> {
+        entries(self.of_displacement.iter().cloned())
+    }
+
+    /// What is uncertain of the drifts, m: what a source does to a floor less what it does to the one below.
+    #[must_use]
+    pub fn doubts_of_drifts(&self) -> Vec<Contribution> {
+        let floors = &self.of_displacement;
+        entries((0..floors.len()).map(|floor| {
+            let mut parts = floors[floor].clone();
+            for part in floor.checked_sub(1).map_or(&[][..], |below| &floors[below]) {
+                share(&mut parts, Contribution { amount: -part.amount, ..*part });
+            }
+            parts
+        }))
+    }
+
+    /// What is uncertain of the shears, N: what a source does to all floors that a storey carries.
+    #[must_use]
+    pub fn doubts_of_shears(&self) -> Vec<Contribution> {
+        entries((0..self.of_force.len()).map(|storey| {
+            let mut parts = Vec::new();
+            self.of_force[storey..].iter().flatten().for_each(|part| share(&mut parts, *part));
+            parts
+        }))
+    }
+}
+
+/// Parts of the entries of a list, those that do nothing left out.
+fn entries(lists: impl Iterator<Item = Vec<Contribution>>) -> Vec<Contribution> {
+    let of_entry = |(entry, parts): (usize, Vec<Contribution>)| parts.into_iter().map(move |part| Contribution { entry, ..part });
+    lists.enumerate().flat_map(of_entry).filter(|part| part.amount != 0.0).collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::mechanics::damping::StrengthRate;
 use crate::mechanics::maxwell::MaxwellBranch;
+use crate::mechanics::relaxing::Relaxing;
 use crate::plan::Settle;
 
 /// What moves after the reference has arrived.
@@ -64,10 +65,15 @@ pub(super) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
     (total <= settle.timeout).then_some(total)
 }
 
-/// The criterion with half of its force rate kept for what relaxes beside the specimen; all of it is the lag's where nothing does.
-pub(super) fn shared(settle: &Settle, unsettled: &Unsettled, branches: &[MaxwellBranch]) -> Settle {
+/// All that dies away of what some specimens lose.
+pub(super) fn dying(relaxing: &[&Relaxing]) -> Vec<MaxwellBranch> {
+    relaxing.iter().flat_map(|relaxing| relaxing.dying()).copied().collect()
+}
+
+/// The criterion with half of its force rate kept for what relaxes with the specimen; all of it is the lag's where nothing does.
+pub(super) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> Settle {
     let left = settle.force_rate - unsettled.drift.abs();
-    if branches.is_empty() || settle.force_rate <= 0.0 || left <= 0.0 || unsettled.lag == 0.0 {
+    if !relaxes || settle.force_rate <= 0.0 || left <= 0.0 || unsettled.lag == 0.0 {
         return *settle;
     }
     Settle { force_rate: settle.force_rate - 0.5 * left, ..*settle }
@@ -162,14 +168,14 @@ mod tests {
         branch.follow(&Travel::even(2e-3 / 1e-6, 1e-6));
         let settle = Settle { force_rate: 5.0, ..SETTLE };
         let still = Unsettled { lagging: 0.0, lag: 0.0, ..LAGGING };
-        assert_eq!(shared(&settle, &still, &[branch]), settle);
+        assert_eq!(shared(&settle, &still, true), settle);
         let wait = relaxing_time(&settle, &still, &[branch], 0.3).unwrap();
         assert!((wait - (2.0 * 20_f64.ln() + 0.3)).abs() < 1e-5, "{wait}");
         assert_eq!(relaxing_time(&Settle { timeout: 5.0, ..settle }, &still, &[branch], 0.3), None);
         assert_eq!(relaxing_time(&SETTLE, &still, &[branch], 0.3), Some(0.0), "a band alone does not ask");
         // Beside a lag either has half of what the drift leaves.
         let drifting = Unsettled { drift: 1.0, ..LAGGING };
-        assert_eq!(shared(&settle, &drifting, &[branch]).force_rate, 3.0);
+        assert_eq!(shared(&settle, &drifting, true).force_rate, 3.0);
         let wait = relaxing_time(&settle, &drifting, &[branch], 0.3).unwrap();
         assert!((wait - (2.0 * 50_f64.ln() + 0.3)).abs() < 1e-5, "{wait}");
     }

@@ -5,14 +5,16 @@ mod glide;
 
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
-use super::settling::{Unsettled, relaxing_time, settling_time, shared};
+use super::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
 use super::virtual_rig::OWN_SPEED;
 use super::virtual_rig::glide::Course;
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
+use crate::mechanics::logarithmic::Went;
 use crate::mechanics::maxwell::{MaxwellBranch, Travel};
 use crate::mechanics::path::Path;
+use crate::mechanics::relaxing::Relaxing;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Frame, Settle, Storey, VirtualLink};
 
@@ -49,13 +51,7 @@ struct Axis {
 enum Structure {
     /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift.
     /// What a storey resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
-    Storeys {
-        models: Vec<SpecimenModel>,
-        dampers: Vec<CellDamping>,
-        branches: Vec<Vec<MaxwellBranch>>,
-        drift: Vec<f64>,
-        shear: Vec<f64>,
-    },
+    Storeys { models: Vec<SpecimenModel>, dampers: Vec<CellDamping>, relaxing: Vec<Relaxing>, drift: Vec<f64>, shear: Vec<f64> },
     /// R = K X.
     Matrix(SymmetricBand),
 }
@@ -70,8 +66,8 @@ impl Structure {
         let models = frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect();
         let damper = |storey: &Storey| CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour);
         let dampers = frame.storeys.iter().map(damper).collect();
-        let branches = frame.storeys.iter().map(|storey| MaxwellBranch::all_of(&storey.behaviour)).collect();
-        Self::Storeys { models, dampers, branches, drift: nothing.clone(), shear: nothing }
+        let relaxing = frame.storeys.iter().map(|storey| Relaxing::of(&storey.behaviour)).collect();
+        Self::Storeys { models, dampers, relaxing, drift: nothing.clone(), shear: nothing }
     }
 
     fn move_to(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
@@ -87,24 +83,32 @@ impl Structure {
         }
     }
 
-    /// What relaxes in the storeys follows the floors, from the ground up.
-    fn relax(&mut self, travels: &[Travel]) {
-        let Self::Storeys { branches, .. } = self else { return };
+    /// What relaxes in the storeys follows the floors, from the ground up, once these have their forces: `before` are the drifts from
+    /// which they set out, m.
+    fn relax(&mut self, travels: &[Travel], before: &[f64]) {
+        let Self::Storeys { relaxing, drift, shear, .. } = self else { return };
         let mut below = None;
-        for (branches, floor) in branches.iter_mut().zip(travels) {
-            let drift = below.map_or(*floor, |below| floor.less(below));
-            for branch in branches {
-                branch.follow(&drift);
-            }
+        let storeys = relaxing.iter_mut().zip(travels).zip(drift.iter().zip(before)).zip(shear);
+        for (((relaxing, floor), (drift, before)), shear) in storeys {
+            let travel = below.map_or(*floor, |below| floor.less(below));
+            relaxing.follow(&travel, Went { moved: drift - before, force: *shear });
             below = Some(floor);
         }
     }
 
-    /// What relaxes in the force of a floor. A floor's force is the difference of two shears, and steady where both relax alike:
-    /// they are taken by their sizes, so that no shear is on its way either.
-    fn relaxing_at(&self, floor: usize) -> Vec<MaxwellBranch> {
+    /// Drifts, m; none of a frame that is given by its matrix.
+    fn drifts(&self) -> Vec<f64> {
         match self {
-            Self::Storeys { branches, .. } => branches.iter().skip(floor).take(2).flatten().copied().collect(),
+            Self::Storeys { drift, .. } => drift.clone(),
+            Self::Matrix(_) => Vec::new(),
+        }
+    }
+
+    /// What relaxes in the force of a floor: in its own storey and in the one above. A floor's force is the difference of two shears, and
+    /// steady where both relax alike: they are taken by their sizes, so that no shear is on its way either.
+    fn relaxing_at(&self, floor: usize) -> Vec<&Relaxing> {
+        match self {
+            Self::Storeys { relaxing, .. } => relaxing.iter().skip(floor).take(2).filter(|storey| !storey.is_none()).collect(),
             Self::Matrix(_) => Vec::new(),
         }
     }
@@ -121,10 +125,10 @@ impl Structure {
     /// What the cells feel of the floors' forces at these velocities (m/s), N.
     fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
         let mut felt = restoring_force.to_vec();
-        if let Self::Storeys { dampers, branches, shear, .. } = self
-            && (dampers.iter().any(|damper| !damper.is_none()) || branches.iter().any(|storey| !storey.is_empty()))
+        if let Self::Storeys { dampers, relaxing, shear, .. } = self
+            && (dampers.iter().any(|damper| !damper.is_none()) || relaxing.iter().any(|storey| !storey.is_none()))
         {
-            let relaxing = branches.iter().map(|storey| storey.iter().map(MaxwellBranch::force).sum::<f64>());
+            let relaxing = relaxing.iter().map(Relaxing::force);
             let storeys = dampers.iter_mut().zip(shear).zip(apart(velocities)).zip(relaxing);
             let felt_by = |(((damper, shear), velocity), relaxing): (((&mut CellDamping, &mut f64), f64), f64)| {
                 damper.felt(*shear, velocity) + relaxing
@@ -186,8 +190,9 @@ impl VirtualFrame {
         }
     }
 
-    /// The storeys follow the pistons.
-    fn follow(&mut self) {
+    /// The storeys, and what relaxes in them, follow the pistons.
+    fn follow(&mut self, travels: &[Travel]) {
+        let before = self.structure.drifts();
         let mut moved = false;
         for (bent, axis) in self.bent.iter_mut().zip(&self.axes) {
             let position = axis.actuator.position();
@@ -199,6 +204,7 @@ impl VirtualFrame {
             self.structure.slide(&velocities);
             self.structure.move_to(&self.bent, &mut self.restoring_force);
         }
+        self.structure.relax(travels, &before);
     }
 
     /// Of the pistons, m/s.
@@ -217,26 +223,25 @@ impl VirtualFrame {
     /// `seconds` pass with the references at rest.
     fn rest(&mut self, seconds: f64) {
         let travels: Vec<Travel> = self.axes.iter_mut().map(|axis| axis.actuator.rest(seconds)).collect();
-        self.structure.relax(&travels);
         self.time += seconds;
-        self.follow();
+        self.follow(&travels);
     }
 
     /// What moves at each axis, and what relaxes in its force: its own storey and the one above.
     fn unsettled(&self, targets: &[f64], aims: &[f64]) -> Vec<(Unsettled, Vec<MaxwellBranch>)> {
         let axes = self.axes.iter().zip(targets.iter().zip(aims)).enumerate();
         let axis = |(floor, (axis, (target, aim))): (usize, (&Axis, (&f64, &f64)))| {
-            let branches = self.structure.relaxing_at(floor);
+            let relaxing = self.structure.relaxing_at(floor);
             let unsettled = Unsettled {
                 lagging: axis.actuator.lagging(),
                 lag: axis.actuator.lag(),
                 miss: (target - aim).abs(),
-                stiffness: axis.stiffness + branches.iter().map(MaxwellBranch::stiffness).sum::<f64>(),
+                stiffness: axis.stiffness + relaxing.iter().map(|storey| storey.stiffness()).sum::<f64>(),
                 damping: axis.damping,
                 drift: self.link.drift,
                 rate: None,
             };
-            (unsettled, branches)
+            (unsettled, dying(&relaxing))
         };
         axes.map(axis).collect()
     }
@@ -245,7 +250,7 @@ impl VirtualFrame {
     fn settle(&mut self, targets: &[f64], aims: &[f64]) -> bool {
         let longest = |waits: Vec<f64>| waits.into_iter().fold(0.0, f64::max);
         let wait = |(unsettled, branches): &(Unsettled, Vec<MaxwellBranch>)| {
-            settling_time(&shared(&self.settle, unsettled, branches), unsettled)
+            settling_time(&shared(&self.settle, unsettled, !branches.is_empty()), unsettled)
         };
         let Some(waited) = self.unsettled(targets, aims).iter().map(wait).collect::<Option<Vec<f64>>>().map(longest) else {
             return false;
@@ -305,9 +310,9 @@ impl Rig for VirtualFrame {
         let ways = self.axes.iter().zip(&aims).map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
         let seconds = ways.fold(0.0, f64::max) / speed;
         let went = self.axes.iter_mut().zip(&aims).map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
-        self.structure.relax(&went.collect::<Vec<Travel>>());
+        let travels: Vec<Travel> = went.collect();
         self.time += seconds;
-        self.follow();
+        self.follow(&travels);
         for axis in &mut self.axes {
             axis.actuator.stop();
         }

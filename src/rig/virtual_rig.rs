@@ -6,11 +6,13 @@ pub(super) mod glide;
 use self::glide::Course;
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
-use super::settling::{Unsettled, relaxing_time, settling_time, shared};
+use super::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
 use super::{CutOff, DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
-use crate::mechanics::maxwell::{MaxwellBranch, Travel};
+use crate::mechanics::logarithmic::Went;
+use crate::mechanics::maxwell::Travel;
 use crate::mechanics::path::Path;
+use crate::mechanics::relaxing::Relaxing;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Plan, Settle, Specimen, VirtualLink};
 
@@ -27,8 +29,8 @@ pub struct VirtualRig {
     cell: LoadCell,
     specimen: SpecimenModel,
     damping: CellDamping,
-    /// Beside the specimen: what relaxes.
-    branches: Vec<MaxwellBranch>,
+    /// What relaxes with the specimen.
+    relaxing: Relaxing,
     /// N·s/m, for the force rate while settling.
     viscous: f64,
     /// s
@@ -60,7 +62,7 @@ impl VirtualRig {
             cell: LoadCell::new(link.noise, link.force_resolution, link.drift, link.seed),
             specimen: model,
             damping: CellDamping::new(viscous, coulomb).with_rate_of(&behaviour),
-            branches: MaxwellBranch::all_of(&behaviour),
+            relaxing: Relaxing::of(&behaviour),
             viscous,
             time: 0.0,
             bent: 0.0,
@@ -94,17 +96,16 @@ impl VirtualRig {
         }
     }
 
-    /// The specimen, what relaxes beside it and the friction on it follow the piston.
+    /// The specimen, what relaxes with it and the friction on it follow the piston.
     fn follow(&mut self, travel: &Travel) {
-        for branch in &mut self.branches {
-            branch.follow(travel);
-        }
         let position = self.actuator.position();
+        let moved = position - self.bent;
         if position != self.bent {
             self.damping.force(self.actuator.velocity());
             self.restoring_force = self.specimen.move_to(position);
             self.bent = position;
         }
+        self.relaxing.follow(travel, Went { moved, force: self.restoring_force });
     }
 
     /// `seconds` pass with the reference at rest.
@@ -147,8 +148,7 @@ impl VirtualRig {
     }
 
     fn reading(&mut self) -> Reading {
-        let relaxing: f64 = self.branches.iter().map(MaxwellBranch::force).sum();
-        let force = self.damping.felt(self.restoring_force, self.actuator.velocity()) + relaxing;
+        let force = self.damping.felt(self.restoring_force, self.actuator.velocity()) + self.relaxing.force();
         Reading {
             time: self.time,
             displacement: vec![self.sign * to_quantum(self.bent, self.link.resolution)],
@@ -201,15 +201,15 @@ impl Rig for VirtualRig {
             lagging: self.actuator.lagging(),
             lag: self.actuator.lag(),
             miss: (target - aim).abs(),
-            stiffness: self.specimen.initial_stiffness() + self.branches.iter().map(MaxwellBranch::stiffness).sum::<f64>(),
+            stiffness: self.specimen.initial_stiffness() + self.relaxing.stiffness(),
             damping: self.viscous,
             drift: self.link.drift,
             rate: self.damping.rate.map(|rate| (self.restoring_force, rate)),
         };
         let arrived = self.time;
-        if let Some(wait) = settling_time(&shared(&self.settle, &unsettled, &self.branches), &unsettled) {
+        if let Some(wait) = settling_time(&shared(&self.settle, &unsettled, !self.relaxing.is_none()), &unsettled) {
             self.rest(wait);
-            if let Some(more) = relaxing_time(&self.settle, &unsettled, &self.branches, wait) {
+            if let Some(more) = relaxing_time(&self.settle, &unsettled, &dying(&[&self.relaxing]), wait) {
                 self.rest(more);
                 return Ok(());
             }

@@ -3,12 +3,14 @@
 //! what follows from them knows what they share.
 
 use super::inputs::Inputs;
+use super::rounding_doubts;
 use crate::formula::{Formula, ProcedureId, ResultValue};
 use crate::mechanics::backbone::SHARED;
 use crate::mechanics::multilinear_fit::{CurveShares, MultilinearFit};
 use crate::plan::{Calibration, Plan, ProcedureKind};
 use crate::quantity::Dimension;
 use crate::record::{BilinearFit, History, NamedResult};
+use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Source, combined, share};
 
 /// Results of a fit that lie on one line, slope first.
@@ -18,7 +20,13 @@ const LINES: [(&str, &str); 2] = [("stiffness", "intercept_force"), ("damping", 
 const SHIFTED: [&str; 3] = ["intercept_force", "yield_force", "break_forces"];
 
 /// Says of every identified result what its uncertainty is made of.
-pub(super) fn attribute(kind: &ProcedureKind, history: &History, plan: &Plan, inputs: &Inputs<'_>, results: &mut [NamedResult]) {
+pub(super) fn attribute(
+    kind: &ProcedureKind,
+    history: &History,
+    plan: &Plan,
+    (inputs, declared): (&Inputs<'_>, DeclaredNoise),
+    results: &mut [NamedResult],
+) {
     let calibration = &plan.rig.calibration_of(0);
     let (line, bilinear, curve) = match history {
         History::Ramp(ramp) => (ramp.fit, ramp.bilinear.as_ref(), ramp.multilinear.as_deref()),
@@ -41,6 +49,7 @@ pub(super) fn attribute(kind: &ProcedureKind, history: &History, plan: &Plan, in
     if let Some(fit) = curve {
         of_lists(procedure, fit, calibration, results);
     }
+    rounding_doubts::widen(kind, history, plan, (procedure, declared), results);
     if let (ProcedureKind::DampingSweep(sweep), History::Sweep(_)) = (kind, history) {
         let specimen = plan.specimens.get(sweep.specimen);
         let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);

@@ -2,7 +2,7 @@
 //! state of a frame. Out: numbers of each axis. It drives nothing.
 
 use super::{AxisReport, StepReport};
-use crate::mechanics::frame::FrameState;
+use crate::mechanics::frame::{FrameState, SymmetricBand};
 use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::rig::Reading;
 
@@ -10,9 +10,18 @@ use crate::rig::Reading;
 pub(super) struct Monitors(Vec<Monitor>);
 
 impl Monitors {
-    pub(super) fn new(commanded: &[f64], reading: &Reading) -> Self {
-        let axes = commanded.iter().zip(reading.displacement.iter().zip(&reading.force));
-        Self(axes.map(|(commanded, (measured, force))| Monitor::new(*commanded, *measured, *force)).collect())
+    /// `operator` is the K of a correction r − K(d_m − d_c), where there is one.
+    pub(super) fn new(commanded: &[f64], reading: &Reading, operator: Option<&SymmetricBand>) -> Self {
+        let mut taken = reading.force.clone();
+        if let Some(operator) = operator {
+            let off: Vec<f64> = reading.displacement.iter().zip(commanded).map(|(measured, asked)| measured - asked).collect();
+            operator.mul_add(-1.0, &off, &mut taken);
+        }
+        let axes = commanded.iter().zip(reading.displacement.iter().zip(reading.force.iter().zip(&taken)));
+        let monitor = |(commanded, (measured, (force, taken))): (&f64, (&f64, (&f64, &f64)))| {
+            Monitor::new_as(*commanded, *measured, *force, *taken)
+        };
+        Self(axes.map(monitor).collect())
     }
 
     /// What each axis has come to; `taken` is what the recursion takes for the forces at the commands, N.

@@ -21,7 +21,8 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
     let start = session.commanded();
     let (measured, restoring_force) = session.read()?;
     let mut solver = ImpactSolver::new(&input, start, restoring_force);
-    let mut monitor = Monitor::new(start, measured, restoring_force);
+    let taken = solver.taken_at(start, measured, restoring_force);
+    let mut monitor = Monitor::new_as(start, measured, restoring_force, taken);
     strike.take(&ImpactState { measured_displacement: measured, ..*solver.state() }, monitor.tracking(), session);
     let mut gliding = Gliding::from_rest(&[start], time_scale, input.time_step);
     let mut stiffer = strike.stiffer(&plan.stepping, (measured, restoring_force), session);

@@ -47,7 +47,7 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     let lag = link.map_or(0.0, |link| link.lag);
     let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag, exact: link.is_some() };
     let stop = sweep.run(plan, inputs, session).err();
-    let pairs: Vec<(f64, f64)> = sweep.strokes.iter().flat_map(|stroke| sweep.pairs(stroke)).collect();
+    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = sweep.strokes.iter().flat_map(|stroke| sweep.pairs(stroke)).unzip();
     let fit = fit_of(&pairs);
     if fit.is_none() && stop.is_none() {
         let text =
@@ -58,7 +58,9 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
         session.event(EventKind::Remark, text);
     }
     let results = sweep.results(fit.as_ref(), whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
-    Performed { history: History::Sweep(SweepHistory { steps: sweep.steps, pairs, fit }), results, stop }
+    let stiffness = sweep.stiffness.map(|stiffness| stiffness.value);
+    let history = SweepHistory { steps: sweep.steps, pairs, middles, stiffness, fit };
+    Performed { history: History::Sweep(history), results, stop }
 }
 
 fn steady_from(seconds: f64, lag: f64) -> f64 {
@@ -192,9 +194,8 @@ impl Sweep {
         traversed.fault.map_or(Ok(began..self.steps.len()), |fault| Err(fault.into()))
     }
 
-    /// Velocity, and half the difference of `F_d` between the way out and the way back at one place, over what is steady
-    /// on both.
-    fn pairs(&self, stroke: &Stroke) -> Vec<(f64, f64)> {
+    /// Pairs of readings over what is steady on both ways.
+    fn pairs(&self, stroke: &Stroke) -> Vec<Pair> {
         let (out, back) = (&self.steps[stroke.out.clone()], &self.steps[stroke.back.clone()]);
         if stroke.on_grid { paired_by_time(out, back) } else { paired_by_place(out, back) }
     }
@@ -241,15 +242,22 @@ impl Sweep {
     }
 }
 
+/// Velocity and half the difference of `F_d` between the way out and the way back at one place; that place, and the mean force.
+type Pair = ((f64, f64), [f64; 2]);
+
 /// Pairs of readings at the same place by their times: the last reading of a way is where the next one starts, and has no
 /// partner.
-fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<(f64, f64)> {
+fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<Pair> {
     let steady = out.iter().zip(back.iter().rev().skip(1)).filter(|(out, back)| out.steady && back.steady);
-    steady.map(|(out, back)| (out.velocity, 0.5 * (out.damping_force - back.damping_force))).collect()
+    let pair = |(out, back): (&SweepStep, &SweepStep)| {
+        let middle = [0.5 * (out.displacement + back.displacement), 0.5 * (out.restoring_force + back.restoring_force)];
+        ((out.velocity, 0.5 * (out.damping_force - back.damping_force)), middle)
+    };
+    steady.map(pair).collect()
 }
 
 /// Pairs at the places where the sparser way was read; there the other one lies between two of its readings.
-fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<(f64, f64)> {
+fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<Pair> {
     let steady = |way: &[SweepStep]| {
         let mut way: Vec<SweepStep> = way.iter().filter(|step| step.steady).copied().collect();
         way.sort_by(|one, other| one.displacement.total_cmp(&other.displacement));
@@ -259,7 +267,9 @@ fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<(f64, f64)> {
     let (sparse, dense) = if out.len() <= back.len() { (out, back) } else { (back, out) };
     let pair = |step: &SweepStep| {
         let there = interpolated(&dense, step.displacement)?;
-        Some((step.velocity, 0.5 * (step.damping_force - there)))
+        // At one place the elastic force is the same.
+        let middle = step.restoring_force - 0.5 * (step.damping_force - there);
+        Some(((step.velocity, 0.5 * (step.damping_force - there)), [step.displacement, middle]))
     };
     sparse.iter().filter_map(pair).collect()
 }

@@ -10,9 +10,9 @@ use super::gate;
 use super::request::{Parting, Request};
 use super::session::Session;
 use super::stop::Stop;
-use super::{AxisReport, Observer, StepReport};
-use crate::plan::Plan;
-use crate::record::{Event, EventKind, Outcome, Record};
+use super::{AxisReport, Observer, StepReport, zero};
+use crate::plan::{DriftCheck, Plan, ZeroAfter};
+use crate::record::{Drift, Event, EventKind, Outcome, Record};
 use crate::rig::{Guard, Rig, RigFault};
 
 /// What a session asked of the specimen, SI.
@@ -104,20 +104,60 @@ pub fn drive(
     };
     let link = plan.rig.link.as_real();
     if let Some(link) = link.filter(|_| driver == Driver::Client)
-        && let Err(stop) = gate::pass(plan, link, "as its client says, within the plan's limits", &mut session)
+        && let Err(stop) = gate::pass(plan, link, afterwards(plan), &mut session)
     {
         session.end(&stop);
         return ended(session.finish(), stop.outcome());
     }
+    // By hand there may be no specimen yet, and a place to go back to neither.
+    let check = plan.rig.drift.filter(|_| driver == Driver::Client);
+    let home = session.guard.commanded().to_vec();
+    let mut drift = match check.map(|check| zero::before(check, &mut session)).transpose() {
+        Ok(drift) => drift,
+        Err(stop) => {
+            session.end(&stop);
+            return ended(session.finish(), stop.outcome());
+        }
+    };
     let (guard, observer, events) = session.parts();
     let beat = link.map(|link| Duration::from_secs_f64((link.watchdog / 8.0).max(0.0)));
     let mut specimen = Specimen::new(guard, observer, beat);
     client(&mut specimen);
-    let (outcome, steps) = (specimen.outcome(), std::mem::take(&mut specimen.steps));
+    let (mut outcome, steps) = (specimen.outcome(), std::mem::take(&mut specimen.steps));
     events.append(&mut specimen.events);
     drop(specimen);
+    if let Some(drift) = &mut drift {
+        drift.held = session.guard.take_held();
+        if outcome == Outcome::Completed
+            && let Err(stop) = once_more(drift, &home, &mut session)
+        {
+            session.event(stop.event_kind(), stop.to_string());
+            outcome = stop.outcome();
+        }
+    }
     session.guard.hold();
-    DrivenRecord { steps, ..ended(session.finish(), outcome) }
+    let DrivenRecord { record, .. } = ended(session.finish(), outcome);
+    DrivenRecord { steps, record: Record { drift, ..record } }
+}
+
+/// The zeros after the last client, as after a test. Whoever ended the serving wants the rig held where it is: then nothing moves,
+/// and they are not read.
+fn once_more(drift: &mut Drift, home: &[f64], session: &mut Session<'_>) -> Result<(), Stop> {
+    if session.stop_if_requested().is_err() {
+        session.event(EventKind::Note, "the zeros are not read again: stopped on request".to_owned());
+        return Ok(());
+    }
+    zero::after(drift, home, session)
+}
+
+/// What a real rig does once it has proved itself.
+fn afterwards(plan: &Plan) -> &'static str {
+    match plan.rig.drift {
+        Some(DriftCheck { after: ZeroAfter::Start, .. }) => {
+            "as its client says, within the plan's limits, and after the last client back to where it began"
+        }
+        _ => "as its client says, within the plan's limits",
+    }
 }
 
 impl<'session, 'rig> Specimen<'session, 'rig> {

@@ -4,6 +4,7 @@
 use super::Performed;
 use super::blow::{Blown, Struck};
 use super::inputs::Inputs;
+use super::rest_doubts::RestDoubts;
 use super::results::{measured, result};
 use super::session::Session;
 use super::stop::Stop;
@@ -13,7 +14,7 @@ use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
-use crate::uncertainty::{Contribution, combined, share};
+use crate::uncertainty::{Contribution, Source, combined, share};
 use crate::verdict::{Verdict, assess_condition};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
@@ -33,6 +34,7 @@ fn run(
     // As the plan gives them: a square of a root is not always what the root was taken of.
     let energies = plan.energies.as_ref().map(|energies| inputs.list("energies", energies)).transpose()?;
     let home = session.guard.commanded().to_vec();
+    let doubts = RestDoubts::new(whole, inputs, session);
     let mut done = 0;
     for (index, velocity) in velocities.iter().copied().enumerate() {
         let given = energies.as_ref().and_then(|energies| energies.get(index).copied());
@@ -49,7 +51,7 @@ fn run(
         if let Some(stop) = stop {
             return Err(stop);
         }
-        let rest = bring(plan.between, &home, &struck, &mut done, session)?;
+        let rest = bring(plan.between, &home, (&struck, &doubts.of_blow(index)), &mut done, session)?;
         if let Some(blow) = history.blows.last_mut() {
             blow.rest = Some(rest);
         }
@@ -68,10 +70,18 @@ fn run(
 }
 
 /// To where the next blow begins.
-fn bring(between: Between, home: &[f64], struck: &Struck<'_>, done: &mut u64, session: &mut Session<'_>) -> Result<Rest, Stop> {
+fn bring(
+    between: Between,
+    home: &[f64],
+    (struck, doubts): (&Struck<'_>, &RestDoubts<'_>),
+    done: &mut u64,
+    session: &mut Session<'_>,
+) -> Result<Rest, Stop> {
     if between == Between::Unload {
         let mut steps = Vec::new();
-        let rest = to_rest(struck.unloading(), None, None, *done, session, &mut steps)?;
+        let unloading = struck.unloading();
+        let mut rest = to_rest(unloading.clone(), None, None, *done, session, &mut steps)?;
+        doubts.unloaded(&mut rest, &unloading, &steps);
         // The first is where it began.
         *done += steps.len() as u64 - 1;
         return Ok(rest);
@@ -85,7 +95,9 @@ fn bring(between: Between, home: &[f64], struck: &Struck<'_>, done: &mut u64, se
         let time = session.guard.time();
         session.measured_all(*done, time, &reading)?;
     }
-    Ok(Rest { displacement: reading.displacement, force: reading.force })
+    let mut rest = Rest { displacement: reading.displacement, force: reading.force, ..Rest::default() };
+    doubts.brought(&mut rest);
+    Ok(rest)
 }
 
 /// Moves from one blow to the next, at most.
@@ -119,6 +131,10 @@ impl Results for OfBlow<'_> {
         }
         self.before.contributions(reference)
     }
+
+    fn degrees(&self, source: Source) -> f64 {
+        self.before.degrees(source)
+    }
 }
 
 /// The largest of a result of length over all blows, as uncertain as that of its blow.
@@ -151,57 +167,99 @@ fn told(name: &'static str, dimension: Dimension, value: Option<f64>, contributi
 /// In the order of the reference.
 fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let blows = &history.blows;
-    let of = |name: &str| blows.iter().map(|blow| blow.number(name).unwrap_or(f64::NAN)).collect::<Vec<_>>();
-    let list =
-        |name, dimension, values| NamedResult { name, value: ResultValue::List(values), dimension, contributions: Vec::new() };
     // Each as uncertain as that of its blow.
     let known = |name, dimension, of_blow: &str| {
-        let parts = blows
-            .iter()
-            .enumerate()
-            .flat_map(|(entry, blow)| contributions(blow, of_blow).into_iter().map(move |part| Contribution { entry, ..part }));
-        NamedResult { contributions: parts.collect(), ..list(name, dimension, of(of_blow)) }
+        list(name, dimension, of(blows, of_blow), by_blow(blows, |blow| contributions(blow, of_blow)))
     };
+    let unknown = |name, dimension, of_blow: &str| list(name, dimension, of(blows, of_blow), Vec::new());
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
     let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;
-    let passed = blows.iter().rev().find(|blow| blow.held == Some(true)).map(|blow| blow.energy);
-    let failed = blows.iter().find(|blow| blow.held == Some(false)).map(|blow| blow.energy);
+    let energy = |name, blow: Option<&Blow>| {
+        let parts = blow.map_or_else(Vec::new, |blow| contributions(blow, "striker_energy"));
+        told(name, Dimension::ENERGY, blow.map(|blow| blow.energy), parts)
+    };
+    let passed = blows.iter().rev().find(|blow| blow.held == Some(true));
+    let failed = blows.iter().find(|blow| blow.held == Some(false));
     let some = |values: Vec<f64>| values.into_iter().filter(|value| value.is_finite());
     let place = |blow: &Blow| blow.rest_of_struck().map(|(displacement, _)| displacement);
-    let rest = blows.last().and_then(place);
+    let doubts_of_place = |blow: &Blow| blow.doubts_of_rest().map_or_else(Vec::new, |[place, _]| place);
+    let last = blows.last();
+    let absorbed = some(of(blows, "absorbed_energy")).reduce(|sum, energy| sum + energy);
     let rests = blows.iter().map(|blow| place(blow).unwrap_or(f64::NAN)).collect();
-    let absorbed = some(of("absorbed_energy")).reduce(|sum, energy| sum + energy);
     let mut results = vec![
         result("blows", Dimension::NUMBER, Some(count(None))),
         result("passed", Dimension::NUMBER, Some(count(Some(true)))),
-        result("last_passed_energy", Dimension::ENERGY, passed),
-        result("first_failed_energy", Dimension::ENERGY, failed),
+        energy("last_passed_energy", passed),
+        energy("first_failed_energy", failed),
         largest(blows, "max_displacement"),
-        result("residual_displacement", Dimension::LENGTH, rest),
+        told("residual_displacement", Dimension::LENGTH, last.and_then(place), last.map_or_else(Vec::new, doubts_of_place)),
         sum(blows, "absorbed_energy", absorbed),
-        list("velocities", Dimension::VELOCITY, blows.iter().map(|blow| blow.velocity).collect()),
-        list("blow_energies", Dimension::ENERGY, blows.iter().map(|blow| blow.energy).collect()),
+        list("velocities", Dimension::VELOCITY, blows.iter().map(|blow| blow.velocity).collect(), by_blow(blows, of_velocity)),
+        list(
+            "blow_energies",
+            Dimension::ENERGY,
+            blows.iter().map(|blow| blow.energy).collect(),
+            by_blow(blows, |blow| contributions(blow, "striker_energy")),
+        ),
         known("max_displacements", Dimension::LENGTH, "max_displacement"),
-        list("residual_displacements", Dimension::LENGTH, rests),
+        list("residual_displacements", Dimension::LENGTH, rests, by_blow(blows, doubts_of_place)),
         known("absorbed_energies", Dimension::ENERGY, "absorbed_energy"),
         known("impulses", Dimension::IMPULSE, "impulse"),
-        list("energy_errors", Dimension::NUMBER, of("energy_error")),
+        unknown("energy_errors", Dimension::NUMBER, "energy_error"),
     ];
     if blows.iter().any(|blow| blow.storey().is_some()) {
-        let rest = blows.last().and_then(|blow| blow.rest.as_ref());
+        let rest = last.and_then(|blow| blow.rest.as_ref());
+        let (drift, doubts) = rest.map(|rest| (rest.drift(), rest.doubts_of_drifts())).unwrap_or_default();
         results.extend([
-            list("max_drift", Dimension::LENGTH, over_blows(blows, "max_drift", f64::max)),
-            list("residual_drift", Dimension::LENGTH, rest.map(Rest::drift).unwrap_or_default()),
-            list("storey_energy", Dimension::ENERGY, over_blows(blows, "storey_energy", |sum, next| sum + next)),
+            largest_of_storeys(blows, "max_drift"),
+            list("residual_drift", Dimension::LENGTH, drift, doubts),
+            sum_of_storeys(blows, "storey_energy"),
         ]);
     }
     results
 }
 
-/// A list that every blow has an entry of for each storey, taken together storey by storey.
-fn over_blows(blows: &[Blow], name: &str, together: fn(f64, f64) -> f64) -> Vec<f64> {
+const fn list(name: &'static str, dimension: Dimension, values: Vec<f64>, contributions: Vec<Contribution>) -> NamedResult {
+    NamedResult { name, value: ResultValue::List(values), dimension, contributions }
+}
+
+/// A number of every blow; NaN where a blow does not have it.
+fn of(blows: &[Blow], name: &str) -> Vec<f64> {
+    blows.iter().map(|blow| blow.number(name).unwrap_or(f64::NAN)).collect()
+}
+
+/// What is uncertain of a list with an entry for each blow.
+fn by_blow(blows: &[Blow], of_blow: impl Fn(&Blow) -> Vec<Contribution>) -> Vec<Contribution> {
+    let of_entry = |(entry, blow)| of_blow(blow).into_iter().map(move |part| Contribution { entry, ..part });
+    blows.iter().enumerate().flat_map(of_entry).collect()
+}
+
+/// E = ½ Ms V0²: what the velocity alone does to the energy is 2E/V0 times what it does to itself.
+fn of_velocity(blow: &Blow) -> Vec<Contribution> {
+    let parts = contributions(blow, "striker_energy").into_iter();
+    let of_speed = parts.filter(|part| matches!(part.source, Source::StrikerVelocity(_)));
+    of_speed.map(|part| Contribution { amount: part.amount * 0.5 * blow.velocity / blow.energy, ..part }).collect()
+}
+
+/// The largest of each storey over all blows, as uncertain as that of its blow.
+fn largest_of_storeys(blows: &[Blow], name: &'static str) -> NamedResult {
+    let lists: Vec<(&[f64], &Blow)> = blows.iter().filter_map(|blow| Some((blow.list(name)?, blow))).collect();
+    let storeys = lists.first().map_or(0, |(values, _)| values.len());
+    let (mut values, mut parts) = (Vec::new(), Vec::new());
+    for storey in 0..storeys {
+        let largest = lists.iter().reduce(|most, next| if next.0[storey] > most.0[storey] { next } else { most });
+        let Some((found, blow)) = largest else { continue };
+        values.push(found[storey]);
+        parts.extend(contributions(blow, name).into_iter().filter(|part| part.entry == storey));
+    }
+    list(name, Dimension::LENGTH, values, parts)
+}
+
+/// The sum of each storey over all blows: what they share of their sources adds up before it is squared.
+fn sum_of_storeys(blows: &[Blow], name: &'static str) -> NamedResult {
     let lists = blows.iter().filter_map(|blow| blow.list(name));
-    let all =
-        lists.map(<[f64]>::to_vec).reduce(|all, next| all.iter().zip(next).map(|(all, next)| together(*all, next)).collect());
-    all.unwrap_or_default()
+    let sum = lists.map(<[f64]>::to_vec).reduce(|sum, next| sum.iter().zip(next).map(|(sum, next)| sum + next).collect());
+    let mut parts: Vec<Contribution> = Vec::new();
+    blows.iter().flat_map(|blow| contributions(blow, name)).for_each(|part| share(&mut parts, part));
+    list(name, Dimension::ENERGY, sum.unwrap_or_default(), parts)
 }

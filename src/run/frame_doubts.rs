@@ -97,6 +97,8 @@ impl<'run> FrameDoubts<'run> {
                 (Source::StoreyStiffness { specimen, storey }, it.stiffness_uncertainty),
             ]
         });
+        let [mass, stiffness] = self.frame.map_or([0.0; 2], |frame| frame.matrix_uncertainty);
+        let matrices = [(Source::MassMatrix(specimen), mass), (Source::StiffnessMatrix(specimen), stiffness)];
         let procedure = self.procedure;
         let modes = (0..ratios.len()).map(|mode| (Source::DampingRatio { procedure, mode }, self.damping_uncertainty));
         let axes = (0..self.floors()).flat_map(|axis| {
@@ -107,7 +109,7 @@ impl<'run> FrameDoubts<'run> {
                 (Source::ForceZero(axis), calibration.zero()),
             ]
         });
-        let all = storeys.chain(modes).chain(axes).chain(stated.iter().copied());
+        let all = storeys.chain(matrices).chain(modes).chain(axes).chain(stated.iter().copied());
         sources.extend(all.filter(|(_, uncertainty)| *uncertainty > 0.0).map(|(source, _)| source));
         sources.sort_unstable();
         sources.dedup();
@@ -187,6 +189,17 @@ impl<'run> FrameDoubts<'run> {
     /// The frame with its storeys as they are moved.
     pub fn moved_frame(&self, shifts: Shifts<'_>) -> Result<Frame, Stop> {
         let frame = self.frame.ok_or_else(no_frame)?;
+        let mut factors = [1.0; 2];
+        for (source, by) in shifts {
+            match *source {
+                Source::MassMatrix(specimen) if specimen == self.specimen => factors[0] += by * frame.matrix_uncertainty[0],
+                Source::StiffnessMatrix(specimen) if specimen == self.specimen => factors[1] += by * frame.matrix_uncertainty[1],
+                _ => {}
+            }
+        }
+        if frame.storeys.is_empty() {
+            return Ok(frame.scaled(factors));
+        }
         Ok(frame.with(|storeys| {
             for (source, by) in shifts {
                 match *source {

@@ -11,16 +11,16 @@ use crate::plan::{
 use crate::record::Record;
 use crate::uncertainty::{Contribution, Source, combined};
 
-fn constant(value: f64) -> Formula {
+pub(super) fn constant(value: f64) -> Formula {
     Formula::Constant(value)
 }
 
-fn storey(mass: f64, stiffness: f64) -> Storey {
+pub(super) fn storey(mass: f64, stiffness: f64) -> Storey {
     Storey::new(mass, stiffness, Behaviour::Elastic { stiffness })
 }
 
 /// A frame on ground that begins to move at once, with these accelerations 10 ms apart.
-fn shaken(storeys: Vec<Storey>, accelerations: Vec<f64>, time_step: f64) -> Plan {
+pub(super) fn shaken(storeys: Vec<Storey>, accelerations: Vec<f64>, time_step: f64) -> Plan {
     let shake = Shake {
         specimen: 0,
         ground: 0,
@@ -64,7 +64,7 @@ fn shake(plan: &mut Plan) -> &mut Shake {
 }
 
 /// A number of a result with its contributions.
-fn entry(record: &Record, name: &str, entry: usize) -> (f64, Vec<Contribution>) {
+pub(super) fn entry(record: &Record, name: &str, entry: usize) -> (f64, Vec<Contribution>) {
     let result = record.procedures[0].result(name).unwrap();
     let value = match &result.value {
         ResultValue::List(values) => values[entry],
@@ -73,7 +73,7 @@ fn entry(record: &Record, name: &str, entry: usize) -> (f64, Vec<Contribution>) 
     (value, result.contributions.iter().filter(|part| part.entry == entry).copied().collect())
 }
 
-fn from(parts: &[Contribution], source: Source) -> f64 {
+pub(super) fn from(parts: &[Contribution], source: Source) -> f64 {
     parts.iter().filter(|part| part.source == source).map(|part| part.amount).sum()
 }
 

@@ -32,7 +32,7 @@ fn storey(index: usize, hardening: f64) -> Storey {
 }
 
 /// Three storeys that each yield at a drift of 10 mm.
-fn three(hardening: f64) -> Plan {
+pub(super) fn three(hardening: f64) -> Plan {
     let mut plan = elastic_plan(1.0, vec![rest(None)]);
     plan.specimens[0].frame = Some(Frame::of_storeys((0..3).map(|index| storey(index, hardening)).collect()));
     plan.specimens[0].behaviour = None;
@@ -74,7 +74,7 @@ fn unloaded(plan: &Plan, drifts: [f64; 3], within: Option<f64>) -> (Rest, Vec<Un
     (rest, steps)
 }
 
-fn close(found: &[f64], wanted: &[f64], within: f64) {
+pub(super) fn close(found: &[f64], wanted: &[f64], within: f64) {
     assert!(found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() <= within), "{found:?}, not {wanted:?}");
 }
 

@@ -105,7 +105,8 @@ pub(super) fn run<S: Stepped>(
     let start = Start { commanded, reading, noise: session.guard.declared_noise() };
     let mut stepped = begin(&start)?;
     let Start { commanded, reading, noise } = start;
-    let mut monitors = Monitors::new(&commanded, &reading);
+    let operator = plan.i_modification.then_some(&frame.properties.matrices.stiffness);
+    let mut monitors = Monitors::new(&commanded, &reading, operator);
     let mut stiffer = StifferStoreys::new(&frame.properties.matrices, plan, frame.time_step, noise, &reading);
     let mut gliding = match plan.mode {
         Mode::Continuous { time_scale } => Some(Gliding::from_rest(&commanded, time_scale, frame.time_step)),

@@ -1,11 +1,13 @@
 //! Holds that are watched: readings while a force relaxes, and what they tell. In: a pause and how many readings. Out: the hold;
 //! of all holds the fit, its results and what a person should know. It fits nothing itself.
 
-use super::results::measured;
+use super::results::{measured, result};
 use super::session::{Session, first};
 use super::stop::Stop;
+use crate::mechanics::reached_fit::{ReachedFit, fit_reached};
 use crate::mechanics::relaxation::{Hold, RelaxationFit, Unrelaxed, fit_relaxation};
-use crate::plan::WatchedHold;
+use crate::mechanics::relaxation_law::RelaxationLaw;
+use crate::plan::WatchedModel;
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::NamedResult;
@@ -31,29 +33,88 @@ pub(super) fn watched(
     Ok((taken, last))
 }
 
-/// What the holds of a ramp tell, and remarks.
-pub(super) fn fitted(
-    holds: &[Hold],
-    start: Option<f64>,
-    asked: WatchedHold,
-    accuracy: Option<f64>,
-) -> (Option<RelaxationFit>, Vec<String>) {
-    match fit_relaxation(holds, start.unwrap_or(0.0), asked.model) {
-        Ok(fit) => {
-            let remarks = remarks(&fit, holds, accuracy);
-            (Some(fit), remarks)
-        }
-        Err(reason) => {
-            let text = match reason {
-                Unrelaxed::TooFew => "no relaxation fitted: the holds have fewer readings than there are numbers to find",
-                Unrelaxed::Steady => "no relaxation: by BIC the forces of the holds are as well told without one",
-                Unrelaxed::OutOfReach => {
-                    "no relaxation fitted: the forces change, but slower than the holds, or faster than their readings, can tell"
+/// What the holds of a ramp tell.
+#[derive(Default)]
+pub(super) struct Told {
+    pub relaxation: Option<RelaxationFit>,
+    pub reached: Option<ReachedFit>,
+    pub results: Vec<NamedResult>,
+    pub remarks: Vec<String>,
+}
+
+/// `start`: displacement (m) and force (N) before the first move; `noise`: what the rig declares of its cell, N.
+pub(super) fn told(holds: &[Hold], start: (f64, f64), asked: Option<WatchedModel>, noise: Option<f64>) -> Told {
+    let mut told = Told::default();
+    let mut accuracy = noise;
+    match asked {
+        Some(WatchedModel::Decay { model, accuracy: asked }) => {
+            accuracy = asked.or(noise);
+            match fit_relaxation(holds, start.0, model) {
+                Ok(fit) => {
+                    told.remarks = remarks(&fit, holds, accuracy);
+                    told.relaxation = Some(fit);
                 }
-            };
-            (None, vec![text.to_owned()])
+                Err(reason) => told.remarks.push(unrelaxed(reason).to_owned()),
+            }
+        }
+        Some(WatchedModel::Reached { law, rate }) => match fit_reached(holds, start.1, law, rate) {
+            Ok(fit) => {
+                told.remarks = reached_remarks(&fit, holds, rate, noise);
+                told.reached = Some(fit);
+            }
+            Err(reason) => told.remarks.push(unrelaxed(reason).to_owned()),
+        },
+        None => {}
+    }
+    told.results = results(told.relaxation.as_ref(), told.reached.as_ref(), accuracy).into();
+    if matches!(asked, Some(WatchedModel::Reached { .. })) {
+        told.results.extend(of_the_law(told.reached.as_ref()));
+    }
+    told
+}
+
+const fn unrelaxed(reason: Unrelaxed) -> &'static str {
+    match reason {
+        Unrelaxed::TooFew => "no relaxation fitted: the holds have fewer readings than there are numbers to find",
+        Unrelaxed::Steady => "no relaxation: by BIC the forces of the holds are as well told without one",
+        Unrelaxed::OutOfReach => {
+            "no relaxation fitted: the forces change, but slower than the holds, or faster than their readings, can tell"
         }
     }
+}
+
+/// Readings about a law farther than this many times the cell's noise are not told by it.
+const FAR: f64 = 2.0;
+/// Differences of BIC below this are not strong (Kass & Raftery, *Bayes factors*, J. Amer. Stat. Assoc. 90 (1995) 773–795).
+const STRONG: f64 = 6.0;
+
+fn reached_remarks(fit: &ReachedFit, holds: &[Hold], rate: f64, noise: Option<f64>) -> Vec<String> {
+    let mut told = Vec::new();
+    let best = fit.best();
+    if fit.margin().is_some_and(|margin| margin.abs() < STRONG) {
+        told.push(
+            "the holds hardly tell whether the force relaxes exponentially or with the logarithm of time: longer pauses, or more readings, would"
+                .to_owned(),
+        );
+    }
+    if let Some(noise) = noise.filter(|noise| best.scatter > FAR * noise) {
+        told.push(format!(
+            "the readings of the holds scatter by {} about the law, the cell by {}: they do not relax by it alone",
+            readable(best.scatter, Dimension::FORCE),
+            readable(noise, Dimension::FORCE),
+        ));
+    }
+    if best.rate.0 > rate {
+        let longest = holds.iter().filter_map(|hold| hold.readings.last()).map(|(time, _)| *time).fold(0.0, f64::max);
+        told.push(format!(
+            "at the end of the pause of {} the force was still falling by {}, faster than the {} asked for: {} would do",
+            readable(longest, Dimension::TIME),
+            readable(best.rate.0, Dimension::FORCE_RATE),
+            readable(rate, Dimension::FORCE_RATE),
+            readable(best.needed_pause.0, Dimension::TIME),
+        ));
+    }
+    told
 }
 
 fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<String> {
@@ -76,15 +137,34 @@ fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<St
     told
 }
 
+const fn told_with((value, error): (f64, f64)) -> (f64, Option<f64>) {
+    (value, Some(error))
+}
+
 /// In the order of the reference.
-pub(super) fn results(fit: Option<&RelaxationFit>, accuracy: Option<f64>) -> [NamedResult; 5] {
-    let told = |(value, error): (f64, f64)| (value, Some(error));
-    let of = |name, dimension, value: Option<(f64, f64)>| measured(name, dimension, value.map(told));
+fn results(fit: Option<&RelaxationFit>, reached: Option<&ReachedFit>, accuracy: Option<f64>) -> [NamedResult; 5] {
+    let of = |name, dimension, value: Option<(f64, f64)>| measured(name, dimension, value.map(told_with));
+    let reached = reached.map(ReachedFit::best);
+    let decays = reached.filter(|fit| fit.law == RelaxationLaw::Exponential);
+    let needed = fit.zip(accuracy).map(|(fit, accuracy)| fit.needed_pause(accuracy));
     [
-        of("time_constant", Dimension::TIME, fit.map(|fit| fit.time_constant)),
+        of("time_constant", Dimension::TIME, fit.map(|fit| fit.time_constant).or(decays.map(|fit| fit.time))),
         of("relaxed_stiffness", Dimension::STIFFNESS, fit.and_then(|fit| fit.relaxed_stiffness)),
         of("branch_stiffness", Dimension::STIFFNESS, fit.and_then(|fit| fit.branch_stiffness)),
-        of("remaining_relaxation", Dimension::FORCE, fit.map(|fit| fit.remaining)),
-        of("needed_pause", Dimension::TIME, fit.zip(accuracy).map(|(fit, accuracy)| fit.needed_pause(accuracy))),
+        of("remaining_relaxation", Dimension::FORCE, fit.map(|fit| fit.remaining).or(decays.and_then(|fit| fit.remaining))),
+        of("needed_pause", Dimension::TIME, needed.or(reached.map(|fit| fit.needed_pause))),
+    ]
+}
+
+/// What only a law of the reached force has.
+fn of_the_law(fit: Option<&ReachedFit>) -> [NamedResult; 4] {
+    let of = |name, dimension, value: Option<(f64, f64)>| measured(name, dimension, value.map(told_with));
+    let best = fit.map(ReachedFit::best);
+    let by_logarithm = best.filter(|fit| fit.law == RelaxationLaw::Logarithmic);
+    [
+        of("relaxation_share", Dimension::NUMBER, best.map(|fit| fit.share)),
+        of("reference_time", Dimension::TIME, by_logarithm.map(|fit| fit.time)),
+        of("relaxation_rate", Dimension::FORCE_RATE, best.map(|fit| fit.rate)),
+        result("bic_margin", Dimension::NUMBER, fit.and_then(ReachedFit::margin)),
     ]
 }

@@ -161,7 +161,7 @@ const SECONDS_PER_METRE: Dimension = Dimension {
     time: crate::quantity::Exponent::whole(1),
 };
 
-/// Share of the striker's energy that the scheme may make or lose before a reader is told: an unstable run is off by far more.
+/// Share of the input energy that the scheme may make or lose before a reader is told: an unstable run is off by far more.
 const UNBALANCED: f64 = 0.1;
 
 /// What a reader of the results must know of how the run ended.
@@ -175,7 +175,7 @@ pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Sessio
     }
     if summary.energy_error.abs() > UNBALANCED {
         let off = significant(100.0 * summary.energy_error, 3);
-        let text = format!("the energy balance is off by {off} % of the striker's energy: a shorter time step is needed");
+        let text = format!("the energy balance is off by {off} % of the energy put in: a shorter time step is needed");
         session.event(EventKind::Remark, text);
     }
     if summary.last_blow_cut {

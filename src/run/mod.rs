@@ -3,6 +3,8 @@
 mod attribution;
 mod axes;
 mod blow;
+#[cfg(test)]
+mod contacts_tests;
 mod continuous;
 #[cfg(test)]
 mod continuous_tests;
@@ -12,6 +14,8 @@ mod cycle_doubts;
 #[cfg(test)]
 mod cycle_tests;
 mod damping_sweep;
+#[cfg(test)]
+mod degrees_tests;
 pub mod driven;
 mod escalate;
 #[cfg(test)]
@@ -35,6 +39,8 @@ mod impact;
 mod impact_tests;
 mod inputs;
 mod inspect;
+#[cfg(test)]
+mod matrix_doubts_tests;
 mod move_to;
 pub mod need;
 #[cfg(test)]
@@ -46,9 +52,15 @@ mod propagation;
 mod propagation_tests;
 pub mod rehearsal;
 mod request;
+mod rest_doubts;
+#[cfg(test)]
+mod rest_doubts_tests;
 mod results;
 #[cfg(test)]
 mod rig_fault_tests;
+mod rounding_doubts;
+#[cfg(test)]
+mod rounding_doubts_tests;
 mod samples;
 #[cfg(test)]
 mod sequence_tests;
@@ -262,7 +274,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
-        attribution::attribute(&procedure.kind, &history, plan, &inputs, &mut results);
+        attribution::attribute(&procedure.kind, &history, plan, (&inputs, session.guard.declared_noise()), &mut results);
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),
@@ -313,7 +325,7 @@ fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session:
         ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
         ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
         ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
-        ProcedureKind::Unload(unload) => unload::perform(unload, inputs, session),
+        ProcedureKind::Unload(unload) => unload::perform(unload, plan, inputs, session),
         ProcedureKind::FrameUnload(unload) => unload::perform_frame(unload, plan, inputs, session),
         ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
         ProcedureKind::Inspect { note } => inspect::perform(note, session),

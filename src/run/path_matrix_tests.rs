@@ -39,6 +39,7 @@ fn specimens(force: f64, displacement: f64) -> Vec<(&'static str, Behaviour)> {
                 force_factor: 0.4,
                 displacement_factor: 0.5,
                 unloading_exponent: 0.0,
+                capping: None,
                 deterioration: None,
             }),
         ),

@@ -5,6 +5,7 @@
 
 use super::impact::Setting;
 use super::inputs::Inputs;
+use super::rounding_doubts::Quanta;
 use super::study::{CLOSE, Effort, Study, Taken, Tick, Unknown, give, over_rules};
 use crate::formula::{Formula, ProcedureId, Results};
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath, UNSEEN};
@@ -188,7 +189,14 @@ pub(super) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
 /// Standard deviations of one reading of the axis at this place, N and m: noise, and rounding to a quantum q, which is even
 /// over it: q/√12.
 pub(super) fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) -> (f64, f64) {
-    let (noise, resolution, quantum) = match &plan.rig.link {
+    let Quanta { noise, force, displacement } = quanta(plan, declared, axis);
+    let rounding = 12.0_f64.sqrt();
+    (noise.hypot(force / rounding), displacement / rounding)
+}
+
+/// What the rig declares of a reading of the axis at this place.
+pub(super) fn quanta(plan: &Plan, declared: DeclaredNoise, axis: usize) -> Quanta {
+    let (noise, displacement, force) = match &plan.rig.link {
         Link::Virtual(VirtualLink { foretold: Some(errors), .. }) => (errors.noise, errors.resolution, errors.force_resolution),
         Link::Virtual(link) => (declared.force, declared.resolution, link.force_resolution),
         Link::Real(link) => {
@@ -196,8 +204,7 @@ pub(super) fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) 
             (noise, resolution, plan.rig.calibration.newtons_per_count.unwrap_or(0.0).abs())
         }
     };
-    let rounding = 12.0_f64.sqrt();
-    (noise.hypot(quantum / rounding), resolution / rounding)
+    Quanta { noise, force, displacement }
 }
 
 /// A stop is told at the end of its step, up to Δt late; a peak at the nearer end, up to Δt/2 off.

@@ -185,7 +185,8 @@ impl<'run> Session<'run> {
         }
     }
 
-    fn stop_if_requested(&mut self) -> Result<(), Stop> {
+    /// Holds where a person wants the end.
+    pub(super) fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
             return Err(Stop::Person { reason: "stopped on request".to_owned() });

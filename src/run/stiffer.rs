@@ -17,6 +17,10 @@ use crate::rig::{DeclaredNoise, Reading};
 /// `K_I` by so many of its standard deviations: fewer, and the noise of many steps becomes a stiffness.
 const SURE: f64 = 5.0;
 
+/// A response that alternates is judged where every other place is farther out by more than this share of a step: less, and what
+/// a specimen creeps or relaxes by at one place becomes a stiffness. Past its limit by a hundredth, explicit Newmark grows by more.
+const GROWN: f64 = 0.05;
+
 /// What a step of one spring, or of one storey, is judged by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Judged {
@@ -37,8 +41,12 @@ pub(super) struct Judged {
 pub(super) struct Stiffer {
     judged: Judged,
     last: (f64, f64),
+    /// The reading before it.
+    before: (f64, f64),
     /// m, the last step's; 0 before the first.
     moved: f64,
+    /// Whether the last step turned.
+    turned: bool,
     way: OnTheWay,
     said: bool,
 }
@@ -46,7 +54,7 @@ pub(super) struct Stiffer {
 impl Stiffer {
     /// `first` is what was read before the first step, m and N.
     pub(super) fn new(judged: Judged, first: (f64, f64)) -> Self {
-        Self { judged, last: first, moved: 0.0, way: OnTheWay::default(), said: false }
+        Self { judged, last: first, before: first, moved: 0.0, turned: false, way: OnTheWay::default(), said: false }
     }
 
     /// Takes a reading, m and N; says once that the specimen is stiffer than the step is stable for. `what` names it.
@@ -106,16 +114,22 @@ impl Stiffer {
 
 impl Stiffer {
     /// Stiffness of the last step with its standard deviation, N/m; None where it moved too little to tell, or turned: friction
-    /// turns with it.
+    /// turns with it. Of a response that turns at every step, as an unstable one does, the last reading but one is as far from
+    /// friction: both came the same way, if what is between them has grown enough to tell.
     fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {
         let noise = self.judged.noise;
-        let (moved, gained) = (reading.0 - self.last.0, reading.1 - self.last.1);
-        self.last = reading;
+        let moved = reading.0 - self.last.0;
+        let first = self.moved == 0.0;
         let turned = moved * self.moved <= 0.0;
-        self.moved = moved;
-        let measured = gained / moved;
-        let spread = std::f64::consts::SQRT_2 * noise.0.hypot(measured * noise.1) / moved.abs();
-        (!turned && measured.is_finite() && moved.abs() > SURE * noise.1).then_some((measured, spread))
+        let alternates = turned && self.turned && !first;
+        let from = if alternates { self.before } else { self.last };
+        let way = reading.0 - from.0;
+        // It goes on beyond where it turned last but one: both turned, and each step is longer than the one before.
+        let tells = if alternates { way * moved > 0.0 && way.abs() > GROWN * moved.abs() } else { !turned };
+        let measured = (reading.1 - from.1) / way;
+        (self.before, self.last, self.moved, self.turned) = (self.last, reading, moved, turned && !first);
+        let spread = std::f64::consts::SQRT_2 * noise.0.hypot(measured * noise.1) / way.abs();
+        (tells && measured.is_finite() && way.abs() > SURE * noise.1).then_some((measured, spread))
     }
 }
 
@@ -200,6 +214,32 @@ mod tests {
         let text = stiffer.judge((0.003, 2.2), "the specimen").expect("a remark");
         assert!(text.starts_with("W718") && text.contains("900.0 N/m") && text.contains("up to 94.28 ms"), "{text}");
         assert_eq!(stiffer.judge((0.004, 3.2), "the specimen"), None, "once");
+    }
+
+    /// It turns at every step from the first: 900 N/m and friction of 0.1 N, each place −1.3 times the one before. Friction is in
+    /// no two readings that came the same way; a response that alternates without growing tells nothing.
+    #[test]
+    fn a_response_that_turns_at_every_step_is_judged_by_every_other_reading() {
+        let of = |integrator: Integrator, growth: f64, stiffness: f64| {
+            let mut stiffer = Stiffer::new(Judged { integrator, ..judged((0.0, 0.0)) }, (0.0, 0.0));
+            let mut place = 0.001;
+            let told = (0..12).filter_map(|_| {
+                let text = stiffer.judge((place, stiffness * place + 0.1 * place.signum()), "the specimen");
+                place *= -growth;
+                text
+            });
+            told.collect::<Vec<String>>()
+        };
+        let splitting = Integrator::AlphaOs { alpha: 0.0 };
+        let told = of(splitting, 1.3, 900.0);
+        assert!(told.len() == 1 && told[0].contains("900.0 N/m measured against K_I = 300.0 N/m"), "{told:?}");
+        let told = of(Integrator::Explicit, 1.3, 900.0);
+        assert!(told.len() == 1 && told[0].contains("reached 900.0 N/m") && told[0].contains("94.28 ms"), "{told:?}");
+        for (integrator, growth, stiffness) in
+            [(splitting, 1.3, 300.0), (Integrator::Explicit, 1.3, 790.0), (splitting, 1.01, 900.0), (splitting, 0.9, 900.0)]
+        {
+            assert_eq!(of(integrator, growth, stiffness), Vec::<String>::new(), "{integrator:?}, {growth}, {stiffness} N/m");
+        }
     }
 
     /// 0.1 N and 1 µm over 1 mm: a secant of 360 N/m has a deviation of 142 N/m; five of them are not 60.

@@ -89,3 +89,25 @@ fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
     let told = of(CONTINUOUS, 450.0, VirtualLink::default());
     assert!(told[0].contains(", 450.0 N/m measured") && told[0].contains("up to 0.1155 s"), "{told:?}");
 }
+
+/// 300 N/m on 1 kg taken for 100 N/m, in steps that are stable for that: explicit Newmark past 2/√300 s = 0.1155 s, and α-OS past
+/// 2/√200 s = 0.1414 s, turn at every step.
+#[test]
+fn a_response_that_turns_at_every_step_is_told() {
+    for (integrator, told_of) in [
+        (Integrator::Explicit, "stable up to 0.1155 s"),
+        (Integrator::AlphaOs { alpha: 0.0 }, "stable up to 0.1414 s only, which it is beyond"),
+    ] {
+        let of = |stated: f64| {
+            let blow = impact(Constant(stated));
+            let stepping = Stepping { integrator, time_step: Constant(0.15), ..blow.stepping };
+            let blow = Impact { stepping, until: Until::Duration, duration: Constant(3.0), ..blow };
+            let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+            plan.strikers[0].mass = 0.5;
+            remarks(plan, VirtualLink::default())
+        };
+        let told = of(100.0);
+        assert_eq!(told.len(), 1, "{integrator:?}: {told:?}");
+        assert!(told[0].contains(told_of) && told[0].contains("300.0 N/m"), "{}", told[0]);
+    }
+}

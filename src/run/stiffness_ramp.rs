@@ -23,18 +23,17 @@ pub(super) fn perform(plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &m
         session.event(EventKind::Remark, text.clone());
     }
     let noise = session.guard.declared_noise().force;
-    let accuracy = plan.relaxation.and_then(|asked| asked.accuracy.or((noise > 0.0).then_some(noise)));
-    let start = ramp.start.map(|(displacement, _)| displacement);
-    let (relaxation, remarks) =
-        plan.relaxation.map(|asked| hold::fitted(&ramp.holds, start, asked, accuracy)).unwrap_or_default();
-    for text in remarks.into_iter().filter(|_| stop.is_none()) {
+    let noise = (noise > 0.0).then_some(noise);
+    let told = hold::told(&ramp.holds, ramp.start.unwrap_or_default(), plan.relaxation.map(|asked| asked.model), noise);
+    for text in told.remarks.into_iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text);
     }
     let mut results = ramp.results(&fits);
-    results.extend(hold::results(relaxation.as_ref(), accuracy));
+    results.extend(told.results);
     let Fits { line: fit, bilinear, multilinear, .. } = fits;
-    let (multilinear, relaxation) = (multilinear.map(Box::new), relaxation.map(Box::new));
-    let history = RampHistory { steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation };
+    let (multilinear, relaxation, reached) =
+        (multilinear.map(Box::new), told.relaxation.map(Box::new), told.reached.map(Box::new));
+    let history = RampHistory { steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
     Performed { history: History::Ramp(history), results, stop }
 }
 

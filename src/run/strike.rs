@@ -9,7 +9,7 @@ use super::stiffer::{Judged, Stiffer};
 use super::stop::Stop;
 use super::triggers::Triggers;
 use super::watch::Watch;
-use crate::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
+use crate::mechanics::impact::{ImpactSolver, ImpactState};
 use crate::mechanics::monitor::{Monitor, Tracking};
 use crate::mechanics::summary::SummaryBuilder;
 use crate::plan::{Impact, Mode, Stepping};
@@ -47,7 +47,7 @@ impl Strike {
         let start = session.commanded();
         let (measured, restoring_force) = session.read()?;
         let mut solver = ImpactSolver::new(&input, start, restoring_force);
-        let mut monitor = Monitor::new(start, measured, restoring_force);
+        let mut monitor = Monitor::new_as(start, measured, restoring_force, solver.taken_at(start, measured, restoring_force));
         let first = ImpactState { measured_displacement: measured, ..*solver.state() };
         self.take(&first, monitor.tracking(), session);
         let mut stiffer = self.stiffer(&plan.stepping, (measured, restoring_force), session);
@@ -90,8 +90,8 @@ impl Strike {
     /// A step has ended: it is kept, judged and told.
     pub(super) fn step(&mut self, state: &ImpactState, tracking: Tracking, session: &mut Session<'_>) -> Result<(), Stop> {
         self.take(state, tracking, session);
-        let error = error_fraction(state, &self.setting.input);
-        let share = tracking.share_of(self.setting.input.striker_energy());
+        let error = error_fraction(state);
+        let share = tracking.share_of(state.input);
         self.watch.judge(share, session);
         session.guard.check_energy_error(error)?;
         session.guard.check_tracking(share, tracking.nrms_error)?;
@@ -140,6 +140,6 @@ fn room_for(steps: u64) -> Vec<ImpactStep> {
 }
 
 /// Energy error over the input; of no input, any error is infinite.
-fn error_fraction(state: &ImpactState, input: &ImpactInput) -> f64 {
-    if state.energies.error == 0.0 { 0.0 } else { state.energies.error / input.striker_energy() }
+fn error_fraction(state: &ImpactState) -> f64 {
+    if state.energies.error == 0.0 { 0.0 } else { state.energies.error / state.input }
 }

@@ -110,7 +110,7 @@ impl Stepped for Struck<'_> {
             storey_energy: self.summary.storey_energy().to_vec(),
             tracking: axes.to_vec(),
         });
-        Balance { error: floor.energies.error, input: self.setting.body.striker_energy() }
+        Balance { error: floor.energies.error, input: floor.input }
     }
 
     fn is_struck(&self) -> bool {

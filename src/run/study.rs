@@ -14,11 +14,10 @@ use super::stop::Stop;
 use crate::formula::{ProcedureId, ResultValue};
 use crate::mechanics::recorded_path::Rule;
 use crate::record::NamedResult;
+pub use crate::uncertainty::MOST_DRAWS;
 use crate::uncertainty::{Contribution, Source, combined};
 
-/// Draws of the readings' errors at most: the standard uncertainty they give is known to 1/√(2·64), 9 %.
-pub const MOST_DRAWS: u16 = 64;
-/// And at least.
+/// Draws of the readings' errors at least.
 const FEWEST_DRAWS: u16 = 8;
 /// And at least where inputs are drawn with them.
 const FEWEST_DRAWS_OF_INPUTS: u16 = 16;

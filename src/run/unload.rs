@@ -4,7 +4,8 @@
 
 use super::Performed;
 use super::inputs::Inputs;
-use super::results::result;
+use super::rest_doubts::RestDoubts;
+use super::results::{measured, result};
 use super::session::Session;
 use super::stop::Stop;
 use crate::formula::{Formula, ResultValue};
@@ -15,26 +16,23 @@ use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
 use crate::rig::Reading;
+use crate::uncertainty::{Contribution, combined};
 
 /// Targets on the way, at most: a specimen that bends as it is expected to needs one or two.
 pub(super) const MOST_TARGETS: u64 = 50;
 /// Of the force at the start: as near to none as is asked for where nothing else bounds it.
 const SMALL: f64 = 1e-3;
 /// Noise of the cell in a reading that is not to be mistaken for load, standard deviations.
-const NOISE: f64 = 3.0;
+pub(super) const NOISE: f64 = 3.0;
 /// Of a place, in units of its last digit: what adding the drifts of storeys up leaves.
 const ROUNDING: f64 = 8.0;
 
-pub(super) fn perform(plan: &Unload, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+pub(super) fn perform(plan: &Unload, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut steps = Vec::new();
     let outcome = inputs.positive("stiffness", &plan.stiffness, Dimension::STIFFNESS).and_then(|stiffness| {
-        asked((plan.within.as_ref(), plan.speed.as_ref()), Unloading::of_one(stiffness), inputs, session, &mut steps)
+        asked((plan.within.as_ref(), plan.speed.as_ref()), &Unloading::of_one(stiffness), whole, inputs, session, &mut steps)
     });
-    let rest = outcome.as_ref().ok().map(|rest| rest.of(0));
-    let results = vec![
-        result("residual_displacement", Dimension::LENGTH, rest.map(|(displacement, _)| displacement)),
-        result("residual_force", Dimension::FORCE, rest.map(|(_, force)| force)),
-    ];
+    let results = of_farthest(outcome.as_ref().ok());
     // The start is no move.
     let moved = steps.iter().skip(1).map(of_one).collect();
     Performed { history: History::Move(moved), results, stop: outcome.err() }
@@ -60,8 +58,8 @@ pub(super) fn perform_frame(plan: &FrameUnload, whole: &Plan, inputs: &mut Input
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
     let known = frame.map_or_else(|| Err(no_frame()), of_frame);
-    let outcome =
-        known.and_then(|unloading| asked((plan.within.as_ref(), plan.speed.as_ref()), unloading, inputs, session, &mut steps));
+    let outcome = known
+        .and_then(|unloading| asked((plan.within.as_ref(), plan.speed.as_ref()), &unloading, whole, inputs, session, &mut steps));
     let results = frame_results(outcome.as_ref().ok());
     Performed { history: History::FrameUnload(steps), results, stop: outcome.err() }
 }
@@ -78,33 +76,56 @@ pub(super) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
     Unloading::of(&properties.matrices.stiffness).map_err(|reason| unfit(format!("a stiffness that resists: {reason}")))
 }
 
+/// Where the floor rests that rests farthest out, and what the one still carries that carries most.
+fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
+    let told = |name, dimension, found: Option<(f64, Vec<Contribution>)>| {
+        let (value, contributions) = found.unzip();
+        let contributions = contributions.unwrap_or_default();
+        let result = measured(name, dimension, value.map(|value| (value, combined(&contributions))));
+        NamedResult { contributions, ..result }
+    };
+    let place = rest.map(|rest| {
+        let [floor, _] = rest.floors_of_largest();
+        let [parts, _] = rest.doubts_of(floor);
+        (rest.largest().0, parts)
+    });
+    let force = rest.map(|rest| {
+        let [_, floor] = rest.floors_of_largest();
+        let [_, parts] = rest.doubts_of(floor);
+        (rest.largest().1, parts)
+    });
+    vec![told("residual_displacement", Dimension::LENGTH, place), told("residual_force", Dimension::FORCE, force)]
+}
+
 /// In the order of the reference.
 fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
-    let list = |name, dimension, values: Option<Vec<f64>>| match values {
-        Some(values) => NamedResult { name, dimension, value: ResultValue::List(values), contributions: Vec::new() },
+    let list = |name, dimension, known: Option<(Vec<f64>, Vec<Contribution>)>| match known {
+        Some((values, contributions)) => NamedResult { name, dimension, value: ResultValue::List(values), contributions },
         None => result(name, dimension, None),
     };
-    let largest = rest.map(Rest::largest);
-    vec![
-        result("residual_displacement", Dimension::LENGTH, largest.map(|(displacement, _)| displacement)),
-        result("residual_force", Dimension::FORCE, largest.map(|(_, force)| force)),
-        list("floor_displacement", Dimension::LENGTH, rest.map(|rest| rest.displacement.clone())),
-        list("residual_drift", Dimension::LENGTH, rest.map(Rest::drift)),
-        list("residual_shear", Dimension::FORCE, rest.map(Rest::shear)),
-    ]
+    let mut results = of_farthest(rest);
+    results.extend([
+        list("floor_displacement", Dimension::LENGTH, rest.map(|rest| (rest.displacement.clone(), rest.doubts_of_places()))),
+        list("residual_drift", Dimension::LENGTH, rest.map(|rest| (rest.drift(), rest.doubts_of_drifts()))),
+        list("residual_shear", Dimension::FORCE, rest.map(|rest| (rest.shear(), rest.doubts_of_shears()))),
+    ]);
+    results
 }
 
 /// Takes the load off as a block asks for it.
 fn asked(
     (within, speed): (Option<&Formula>, Option<&Formula>),
-    unloading: Unloading,
+    unloading: &Unloading,
+    whole: &Plan,
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
     let within = within.map(|within| inputs.positive("within", within, Dimension::FORCE)).transpose()?;
     let speed = inputs.speed(speed)?;
-    to_rest(unloading, within, speed, 0, session, steps)
+    let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
+    RestDoubts::new(whole, inputs, session).unloaded(&mut rest, unloading, steps);
+    Ok(rest)
 }
 
 /// Takes the load off; `before` steps of the procedure are done already. The first of `steps` is where it began.
@@ -175,7 +196,7 @@ fn loaded(reading: &Reading) -> Loaded<'_> {
 }
 
 fn rest(reading: Reading) -> Rest {
-    Rest { displacement: reading.displacement, force: reading.force }
+    Rest { displacement: reading.displacement, force: reading.force, ..Rest::default() }
 }
 
 /// Largest size.

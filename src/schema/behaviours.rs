@@ -103,8 +103,23 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
                 .within(0.0, 1.0),
             Field::quantity("energy_capacity", Dimension::NUMBER, "γ: energy that takes all its strength, over F_y x_y")
                 .above_zero()
-                .or_said("no deterioration"),
-            Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of the strength lost at each reversal")
+                .or_said("its strength is kept"),
+            Field::quantity("unloading_capacity", Dimension::NUMBER, "γ of the unloading stiffness")
+                .above_zero()
+                .or_said("it is kept"),
+            Field::quantity("reloading_capacity", Dimension::NUMBER, "γ of the peak that it reloads to, which moves out")
+                .above_zero()
+                .or_said("it is kept"),
+            Field::quantity("capping_displacement", Dimension::LENGTH, "x_c from which on its strength falls")
+                .above_zero()
+                .or_said("it never falls"),
+            Field::quantity("capping_slope", Dimension::NUMBER, "how steeply it falls there, over the initial stiffness")
+                .or(0.1, "")
+                .above_zero_up_to(10.0),
+            Field::quantity("capping_capacity", Dimension::NUMBER, "γ of the falling line, which moves in")
+                .above_zero()
+                .or_said("it is kept"),
+            Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of what is lost in each mode")
                 .or(1.0, "")
                 .within(0.5, 4.0),
             Field::quantity("residual_strength", Dimension::NUMBER, "strength that is never lost, over the first one")
@@ -182,13 +197,28 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
     Variant::with(
         "maxwell",
         &[
-            Field::inner("of", "what stands beside it; may be another `maxwell`").required("of: elastic(stiffness: 300 kN/m)"),
+            Field::inner("of", "what stands beside it; may be another `maxwell`, or a `logarithmic`")
+                .required("of: elastic(stiffness: 300 kN/m)"),
             STIFFNESS,
             Field::quantity("time_constant", Dimension::TIME, "τ in which its force falls to 1/e at rest")
                 .required("time_constant: 2 s")
                 .above_zero(),
         ],
         "a spring and a dashpot one behind the other, beside the rest: force that relaxes; stands outermost",
+    ),
+    Variant::with(
+        "logarithmic",
+        &[
+            Field::inner("of", "what relaxes").required("of: bilinear(stiffness: 300 kN/m, yield_force: 6 kN)"),
+            Field::quantity("share", Dimension::NUMBER, "a: of the reached force, lost each time that 1 + t/t₀ has grown e-fold")
+                .required("share: 1 %")
+                .above_zero_up_to(1.0),
+            Field::quantity("reference_time", Dimension::TIME, "t₀ of ln(1 + t/t₀)").required("reference_time: 1 s").above_zero(),
+            Field::quantity("longest", Dimension::TIME, "time after which nothing more is lost")
+                .above_zero()
+                .or_said("a million times the `reference_time`"),
+        ],
+        "the reached force falls by a ln(1 + t/t₀) of itself, each step's by its own time; stands outermost, or in a `maxwell`",
     ),
     Variant::with(
         "beam",

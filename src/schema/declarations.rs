@@ -1,7 +1,7 @@
 //! What is tested and what strikes it: `specimen` and `striker`.
 
 use super::behaviours::BEHAVIOURS;
-use super::frames::{MASS_MATRIX, STIFFNESS_MATRIX, STOREYS};
+use super::frames::{MASS_MATRIX, MASS_MATRIX_UNCERTAINTY, STIFFNESS_MATRIX, STIFFNESS_MATRIX_UNCERTAINTY, STOREYS};
 use super::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind};
 use crate::quantity::Dimension;
 
@@ -30,6 +30,8 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
         STOREYS,
         MASS_MATRIX,
         STIFFNESS_MATRIX,
+        MASS_MATRIX_UNCERTAINTY,
+        STIFFNESS_MATRIX_UNCERTAINTY,
     ],
     exports: &[
         ResultKind::new("mass", Dimension::MASS, "equivalent mass; of storeys, all floors together"),

@@ -40,6 +40,19 @@ pub(super) const MASS_MATRIX: Field =
 
 pub(super) const STIFFNESS_MATRIX: Field = Field::text("stiffness_matrix", "file of K in N/m, a row a line; with `mass_matrix`");
 
+pub(super) const MASS_MATRIX_UNCERTAINTY: Field = Field::quantity(
+    "mass_matrix_uncertainty",
+    Dimension::NUMBER,
+    "standard uncertainty of M, of it: one factor on all its entries, which keep their ratios",
+)
+.or(0.0, "%")
+.within(0.0, 0.2);
+
+pub(super) const STIFFNESS_MATRIX_UNCERTAINTY: Field =
+    Field::quantity("stiffness_matrix_uncertainty", Dimension::NUMBER, "standard uncertainty of K, of it, in the same way")
+        .or(0.0, "%")
+        .within(0.0, 0.2);
+
 pub(super) const DAMPING_UNCERTAINTY: Field = Field::quantity(
     "damping_ratio_uncertainty",
     Dimension::NUMBER,

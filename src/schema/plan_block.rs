@@ -40,7 +40,7 @@ pub(super) const PLAN: BlockKind = BlockKind {
                 Variant::word("simple", "the value decides, whatever its uncertainty"),
                 Variant::word(
                     "guarded",
-                    "a value passes or fails only if it is further from its limit than its expanded uncertainty U = 2u, and is inconclusive else",
+                    "a value passes or fails only if it is further from its limit than its expanded uncertainty U = k·u, and is inconclusive else",
                 ),
             ],
             "how a value is held against a limit",

@@ -10,10 +10,19 @@ pub(super) const SPECIMEN: Field =
 const SPEED: Field = Field::quantity("speed", Dimension::VELOCITY, "actuator speed").above_zero().or_said("the rig's own");
 
 const WATCHED: &[Field] = &[
-    Field::count("readings", 3.0, 10_000.0, "in each pause, closer at first").or(20.0, ""),
+    READINGS,
     Field::quantity("accuracy", Dimension::FORCE, "to which the force is to be known: how long a pause must be")
         .above_zero()
         .or_said("the declared noise of the load cell"),
+];
+
+const READINGS: Field = Field::count("readings", 3.0, 10_000.0, "in each pause, closer at first").or(20.0, "");
+
+const SLOW_ENOUGH: &[Field] = &[
+    READINGS,
+    Field::quantity("rate", Dimension::FORCE_RATE, "how fast a pause may still lose force at its end: how long it must be")
+        .required("rate: 1 N/s")
+        .above_zero(),
 ];
 
 pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
@@ -47,6 +56,16 @@ pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
                     "standard_linear_solid",
                     WATCHED,
                     "a spring beside a spring and a dashpot, through all moves and pauses; a move is taken as even",
+                ),
+                Variant::with(
+                    "logarithmic",
+                    SLOW_ENOUGH,
+                    "R falls by a ln(1 + t/t₀) of the reached force, through all moves and pauses; a move is taken as even",
+                ),
+                Variant::with(
+                    "either",
+                    SLOW_ENOUGH,
+                    "that, or by g (1 − e^(−t/τ)) of the reached force: the law that the readings prefer by BIC",
                 ),
             ],
             "what is fitted to the force while it is held, in the pauses of the first repeat",

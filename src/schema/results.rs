@@ -40,7 +40,23 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     ResultKind::measured("relaxed_stiffness", Dimension::STIFFNESS, "slope of the forces when all has relaxed"),
     ResultKind::measured("branch_stiffness", Dimension::STIFFNESS, "what relaxes of a standard linear solid"),
     ResultKind::measured("remaining_relaxation", Dimension::FORCE, "largest force that a pause left to relax"),
-    ResultKind::measured("needed_pause", Dimension::TIME, "pause that leaves no more to relax than the accuracy asked for"),
+    ResultKind::measured(
+        "needed_pause",
+        Dimension::TIME,
+        "pause that leaves no more to relax than the accuracy asked for, or ends at the rate asked for",
+    ),
+    ResultKind::measured(
+        "relaxation_share",
+        Dimension::NUMBER,
+        "a or g: what the law takes of a reached force, with a law of it",
+    ),
+    ResultKind::measured("reference_time", Dimension::TIME, "t₀ of the logarithm of time"),
+    ResultKind::measured("relaxation_rate", Dimension::FORCE_RATE, "how fast the worst pause was losing force at its end"),
+    ResultKind::new(
+        "bic_margin",
+        Dimension::NUMBER,
+        "BIC of the exponential less that of the logarithm, with `either`: above zero it is the logarithm",
+    ),
 ];
 
 pub(super) const DAMPING_SWEEP: &[ResultKind] = &[
@@ -63,7 +79,7 @@ pub(super) const IMPACT: &[ResultKind] = &[
         "largest mean contact force of a step; grows as 1/Δt under `rigid`",
     ),
     ResultKind::measured("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
-    ResultKind::count("contacts", "number of blows"),
+    ResultKind::count("contacts", "number of blows: contacts that began, also those inside a step"),
     ResultKind::measured("restitution", Dimension::NUMBER, "separation over closing speed of the first blow"),
     ResultKind::measured("indentation", Dimension::LENGTH, "permanent indentation of the contact surface"),
     ResultKind::measured("indentation_energy", Dimension::ENERGY, "limit force times indentation"),

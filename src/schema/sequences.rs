@@ -26,19 +26,19 @@ pub(super) const UNLOAD: BlockKind = BlockKind {
     ],
     exports: &[],
     results: &[
-        ResultKind::new(
+        ResultKind::measured(
             "residual_displacement",
             Dimension::LENGTH,
             "where the specimen rests; of a frame, the floor that rests farthest out",
         ),
-        ResultKind::new(
+        ResultKind::measured(
             "residual_force",
             Dimension::FORCE,
             "what it still carries there; of a frame, the floor that carries most",
         ),
-        ResultKind::list("floor_displacement", Dimension::LENGTH, "where each floor rests").of_storey(),
-        ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift there").of_storey(),
-        ResultKind::list("residual_shear", Dimension::FORCE, "what each storey still carries there").of_storey(),
+        ResultKind::measured_list("floor_displacement", Dimension::LENGTH, "where each floor rests").of_storey(),
+        ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift there").of_storey(),
+        ResultKind::measured_list("residual_shear", Dimension::FORCE, "what each storey still carries there").of_storey(),
     ],
     example: "unload rest { }",
     doc: "Takes the load off: moves to where the restoring force is none, of a frame all floors together",
@@ -86,19 +86,23 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
     results: &[
         ResultKind::count("blows", "number of blows, the one that failed among them"),
         ResultKind::count("passed", "number of blows after which the condition held"),
-        ResultKind::new("last_passed_energy", Dimension::ENERGY, "energy of the last blow after which it held"),
-        ResultKind::new("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
+        ResultKind::measured("last_passed_energy", Dimension::ENERGY, "energy of the last blow after which it held"),
+        ResultKind::measured("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
         ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
-        ResultKind::new("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),
+        ResultKind::measured("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),
         ResultKind::measured(
             "absorbed_energy",
             Dimension::ENERGY,
             "sum over the blows of what each absorbed up to its largest displacement",
         ),
-        ResultKind::list("velocities", Dimension::VELOCITY, "velocity of the striker in each blow"),
-        ResultKind::list("blow_energies", Dimension::ENERGY, "energy of the striker in each blow"),
+        ResultKind::measured_list("velocities", Dimension::VELOCITY, "velocity of the striker in each blow"),
+        ResultKind::measured_list("blow_energies", Dimension::ENERGY, "energy of the striker in each blow"),
         ResultKind::measured_list("max_displacements", Dimension::LENGTH, "largest displacement of each blow"),
-        ResultKind::list("residual_displacements", Dimension::LENGTH, "where the specimen was brought to after each blow"),
+        ResultKind::measured_list(
+            "residual_displacements",
+            Dimension::LENGTH,
+            "where the specimen was brought to after each blow",
+        ),
         ResultKind::measured_list(
             "absorbed_energies",
             Dimension::ENERGY,
@@ -106,11 +110,20 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ),
         ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each blow"),
         ResultKind::list("energy_errors", Dimension::NUMBER, "what the energy balance of each blow misses, over its input"),
-        ResultKind::list("max_drift", Dimension::LENGTH, "largest size of each storey's drift over all blows").of_storey(),
-        ResultKind::list("residual_drift", Dimension::LENGTH, "each storey's drift where it was brought to after the last blow")
+        ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift over all blows")
             .of_storey(),
-        ResultKind::list("storey_energy", Dimension::ENERGY, "what each storey took in all blows, its shear over its drift")
-            .of_storey(),
+        ResultKind::measured_list(
+            "residual_drift",
+            Dimension::LENGTH,
+            "each storey's drift where it was brought to after the last blow",
+        )
+        .of_storey(),
+        ResultKind::measured_list(
+            "storey_energy",
+            Dimension::ENERGY,
+            "what each storey took in all blows, its shear over its drift",
+        )
+        .of_storey(),
     ],
     example: "escalate rising {\n  striker  = pendulum\n  speeds   = [0.5, 1, 1.5] m/s\n  while    = max_displacement < 20 mm\n  duration = 50 ms\n}",
     doc: "Blows of rising energy on one specimen, or on one storey of a frame, until a condition on the last blow no longer holds or the list ends",

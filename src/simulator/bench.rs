@@ -195,13 +195,13 @@ impl Bench {
             ram.advance(seconds);
         }
         let moved: Vec<f64> = self.rams.iter().zip(before).map(|(ram, before)| ram.settings.sign * (ram.at - before)).collect();
-        self.structure.relax(&moved, going, seconds);
         if moved.iter().any(|moved| *moved != 0.0) {
             let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.at).collect();
             let forces = self.structure.bend(&places);
             let felt = self.rams.iter_mut().zip(forces).map(|(ram, force)| ram.faults.specimen_force(ram.at, force));
             self.restoring_force = felt.collect();
         }
+        self.structure.relax(&moved, going, seconds);
     }
 
     /// Sets off to `target` (m) at `speed` (m/s).

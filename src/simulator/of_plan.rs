@@ -127,8 +127,8 @@ fn firmware(plan: &Plan, link: &RealLink, behind: &Behind<'_>, bench: &Bench, bo
     match &device.dialect {
         Dialect::Native => {
             let of_axis = |axis| at_rig(plan.rig.sign_of(axis), plan.rig.limits_of(axis, &plan.limits).force);
-            let force_limits = (0..bench.rams()).map(of_axis).collect();
-            let settings = NativeSettings { serial_number, force_limits, watchdog: link.watchdog, boot };
+            let force_limits = rams.iter().copied().map(of_axis).collect();
+            let settings = NativeSettings { serial_number, rams: Some(rams), force_limits, watchdog: link.watchdog, boot };
             Box::new(Native::new(settings, bench))
         }
         Dialect::Grbl => Box::new(Grbl::new(SIMULATED)),

@@ -3,7 +3,9 @@
 
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{drifts, floor_forces};
-use crate::mechanics::maxwell::{MaxwellBranch, Travel};
+use crate::mechanics::logarithmic::Went;
+use crate::mechanics::maxwell::Travel;
+use crate::mechanics::relaxing::Relaxing;
 use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::{Behaviour, Frame, Storey};
 
@@ -12,13 +14,14 @@ pub(super) enum Structure {
     One {
         specimen: Box<SpecimenModel>,
         damping: CellDamping,
-        branches: Vec<MaxwellBranch>,
+        relaxing: Box<Relaxing>,
+        force: f64,
     },
     /// Each storey resists its drift, and has what damps it beside.
     Storeys {
         models: Vec<SpecimenModel>,
         dampers: Vec<CellDamping>,
-        branches: Vec<Vec<MaxwellBranch>>,
+        relaxing: Vec<Relaxing>,
         shear: Vec<f64>,
     },
     /// R = K X, row by row.
@@ -30,7 +33,7 @@ impl Structure {
     pub(super) fn of_one(behaviour: &Behaviour, damping: f64) -> Self {
         let specimen = Box::new(SpecimenModel::new(behaviour));
         let damping = CellDamping::new(damping, 0.0).with_rate_of(behaviour);
-        Self::One { specimen, damping, branches: MaxwellBranch::all_of(behaviour) }
+        Self::One { specimen, damping, relaxing: Box::new(Relaxing::of(behaviour)), force: 0.0 }
     }
 
     pub(super) fn of_frame(frame: &Frame) -> Self {
@@ -41,7 +44,7 @@ impl Structure {
         Self::Storeys {
             models: frame.storeys.iter().map(|storey| SpecimenModel::new(&storey.behaviour)).collect(),
             dampers: frame.storeys.iter().map(damper).collect(),
-            branches: frame.storeys.iter().map(|storey| MaxwellBranch::all_of(&storey.behaviour)).collect(),
+            relaxing: frame.storeys.iter().map(|storey| Relaxing::of(&storey.behaviour)).collect(),
             shear: vec![0.0; frame.storeys.len()],
         }
     }
@@ -49,7 +52,11 @@ impl Structure {
     /// Restoring forces (N) with the rams at these places (m).
     pub(super) fn bend(&mut self, places: &[f64]) -> Vec<f64> {
         match self {
-            Self::One { specimen, .. } => places.iter().map(|place| specimen.move_to(*place)).collect(),
+            Self::One { specimen, force, .. } => {
+                let forces: Vec<f64> = places.iter().map(|place| specimen.move_to(*place)).collect();
+                *force = forces.last().copied().unwrap_or(*force);
+                forces
+            }
             Self::Storeys { models, shear, .. } => {
                 let (mut drift, mut forces) = (vec![0.0; places.len()], vec![0.0; places.len()]);
                 drifts(places, &mut drift);
@@ -63,35 +70,35 @@ impl Structure {
         }
     }
 
-    /// What relaxes follows rams that moved by so much (m), evenly for `going` of the `seconds` and at rest for the others.
+    /// What relaxes follows rams that moved by so much (m), evenly for `going` of the `seconds` and at rest for the others; they have bent
+    /// the structure already.
     pub(super) fn relax(&mut self, moved: &[f64], going: f64, seconds: f64) {
         let mut apart = vec![0.0; moved.len()];
         drifts(moved, &mut apart);
-        let branches = match self {
-            Self::One { branches, .. } => std::slice::from_mut(branches),
-            Self::Storeys { branches, .. } => branches,
+        let (relaxing, forces) = match self {
+            Self::One { relaxing, force, .. } => (std::slice::from_mut(&mut **relaxing), std::slice::from_ref(&*force)),
+            Self::Storeys { relaxing, shear, .. } => (relaxing.as_mut_slice(), shear.as_slice()),
             Self::Matrix(_) => return,
         };
-        for (branches, moved) in branches.iter_mut().zip(apart) {
-            for branch in branches {
-                branch.follow(&Travel::even(if moved == 0.0 { 0.0 } else { moved / going }, going));
-                branch.follow(&Travel::rest(seconds - going));
-            }
+        for ((relaxing, moved), force) in relaxing.iter_mut().zip(apart).zip(forces) {
+            let velocity = if moved == 0.0 { 0.0 } else { moved / going };
+            relaxing.follow(&Travel::even(velocity, going), Went { moved, force: *force });
+            relaxing.follow(&Travel::rest(seconds - going), Went { moved: 0.0, force: *force });
         }
     }
 
     /// What the cells feel of `forces` (N) while the rams go at these velocities (m/s).
     pub(super) fn felt(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
         match self {
-            Self::One { damping, branches, .. } => {
-                let relaxing: f64 = branches.iter().map(MaxwellBranch::force).sum();
+            Self::One { damping, relaxing, .. } => {
+                let relaxing = relaxing.force();
                 forces.iter().zip(velocities).map(|(force, v)| damping.felt(*force, *v) + relaxing).collect()
             }
-            Self::Storeys { dampers, branches, shear, .. } => {
+            Self::Storeys { dampers, relaxing, shear, .. } => {
                 let mut apart = vec![0.0; velocities.len()];
                 drifts(velocities, &mut apart);
                 // What a fault took of the specimen's force is not felt again: only what is beside it is added.
-                let relaxing = branches.iter().map(|storey| storey.iter().map(MaxwellBranch::force).sum::<f64>());
+                let relaxing = relaxing.iter().map(Relaxing::force);
                 let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
                 let beside = storeys.map(|(((damper, shear), v), relaxing)| damper.felt(*shear, v) - shear + relaxing);
                 let mut more = vec![0.0; velocities.len()];

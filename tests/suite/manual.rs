@@ -78,7 +78,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
         let (body, _) = shown[1..].rsplit_once('*').expect("a frame has its checksum");
         let words: Vec<&str> = body.split(' ').collect();
         let sequence: u32 = words[1].parse().expect("a sequence number");
-        let (bounds, targets, ends);
+        let (bounds, targets, rate, ends);
         let request = match (words[0], &words[2..]) {
             ("HELLO", []) => Request::Hello,
             ("LIM", [axes @ .., speed]) => {
@@ -93,8 +93,10 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
                 Request::Limits(&bounds)
             }
             ("MOVE", [id, places @ .., speed]) => {
-                targets = places.iter().map(|place| metres(place)).collect::<Vec<f64>>();
-                Request::Move { id: id.parse().expect("a number"), targets: &targets, speed: metres(speed) }
+                let places: Vec<f64> = places.iter().map(|place| metres(place)).collect();
+                targets = native::lengths(&places).expect("they can be said");
+                rate = native::length(metres(speed)).expect("it can be said");
+                Request::Move { id: id.parse().expect("a number"), targets: &targets, speed: &rate }
             }
             ("GLIDE", [id, words @ .., time]) => {
                 let end = |pair: &[&str]| End { place: metres(pair[0]), velocity: metres(pair[1]) };
@@ -126,27 +128,28 @@ fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
     assert_eq!(replies.len() * 2, frames.len(), "each request has its reply");
     for (line, reply) in replies {
         let reply = reply.unwrap_or_else(|broken| panic!("{line}: {broken:?}"));
-        assert_eq!(reply.boot, "7F3A");
-        match (reply.kind, reply.words.len()) {
+        assert_eq!(reply.boot(), "7F3A");
+        let said = reply.words();
+        match (reply.kind, said.len()) {
             (Kind::Data, words) => {
-                let data = native::data(&reply.words).unwrap_or_else(|| panic!("{line} is no reading"));
+                let data = native::data(&said).unwrap_or_else(|| panic!("{line} is no reading"));
                 assert_eq!(data.axes.len(), (words - 2) / 4);
             }
             (Kind::Ack, 10 | 15) => {
-                let hello = native::hello(&reply.words).expect("who the rig is");
+                let hello = native::hello(&said).expect("who the rig is");
                 let highs: Vec<(f64, f64)> =
                     hello.bounds.axes.iter().map(|axis| (axis.displacement.high, axis.force.high)).collect();
                 assert_eq!(hello.bounds.top_speed, 0.12);
                 let last = hello.last.map(|last| (last.id, last.targets));
-                if reply.words.len() == 10 {
+                if said.len() == 10 {
                     assert_eq!((highs, last), (vec![(0.025, 12e3)], Some((16, vec![1e-3]))));
                 } else {
                     assert_eq!((highs, last), (vec![(0.03, 8e3), (0.06, 5e3)], Some((21, vec![1.25e-3, -2.5e-3]))));
                 }
             }
-            (Kind::Ack, 2) if native::left(&reply.words).is_some() => assert!(line.contains("MOVING"), "{line}"),
-            (Kind::Ack, _) => assert!(native::state(&reply.words[0]).is_some(), "{line}"),
-            (Kind::Err, _) => assert!(!native::refusal(&reply.words).contains("does not know"), "{line}"),
+            (Kind::Ack, 2) if native::left(&said).is_some() => assert!(line.contains("MOVING"), "{line}"),
+            (Kind::Ack, _) => assert!(native::state(said[0]).is_some(), "{line}"),
+            (Kind::Err, _) => assert!(!native::refusal(&said).contains("does not know"), "{line}"),
         }
     }
 }
@@ -162,7 +165,7 @@ fn every_refusal_on_the_page_is_one_the_driver_knows() {
         .collect();
     assert_eq!(codes.len(), 12);
     for code in codes {
-        let told = native::refusal(std::slice::from_ref(&code));
+        let told = native::refusal(&[code.as_str()]);
         assert!(!told.contains("for a reason psd does not know"), "{code}: {told}");
     }
     assert!(page.contains("`123456789` gives 29B1") && native::checksum(b"123456789") == 0x29b1);

@@ -288,6 +288,7 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
         multilinear: None,
         holds: Vec::new(),
         relaxation: None,
+        reached: None,
     });
     finished.record.outcome = Outcome::Aborted { reason: "force 12.1 kN is outside its limit".into() };
     finished.assessment.verdict = Verdict::Aborted;

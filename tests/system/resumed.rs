@@ -3,10 +3,11 @@
 //! it was.
 
 use std::fs;
+use std::io::Write as _;
 
 use rustix::process::Signal;
 
-use crate::stage::{Ended, Stage, code, finish, signal, start, wait};
+use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
 use crate::terminal::Terminal;
 
 /// A stepper frame with an indicator beside it.
@@ -81,13 +82,11 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
 
 /// Stopped at rest and at zero, where a console that was switched off and on again stands too.
 fn stopped_at_zero() -> Stage {
-    let stage = Stage::of(
-        |plan| {
-            plan.replace("dialect: native, reply_timeout: 2 s", "dialect: instron, reply_timeout: 1 s")
-                .replace("0.8 mm step", "0.3 mm step")
-        },
-        "",
-    );
+    let console = |plan: &str| {
+        let plan = plan.replace("dialect: native, reply_timeout: 2 s", "dialect: instron, reply_timeout: 1 s");
+        plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um").replace("0.8 mm step", "0.3 mm step")
+    };
+    let stage = Stage::of(console, "");
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
     terminal.answer("go on?", "n\n");
     let code = code(&mut terminal.child);

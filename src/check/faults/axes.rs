@@ -45,7 +45,7 @@ pub fn channels(channels: usize, axes: usize, dialect: &Dialect, at: Span) -> Di
     let has = if channels == 1 { "one channel".to_owned() } else { format!("{channels} channels") };
     let help = match dialect {
         Dialect::Scpi { .. } => "write the force of a unit of each channel, the lowest axis first: `scpi([2.5 kN, 1.2 kN])`",
-        Dialect::Native => "make it the `load_cell` of the rig, for all axes; a single axis wants a device of one channel",
+        Dialect::Native => "weigh the axes with several devices: an axis may name a `load_cell` of its own",
         _ => "give each axis a `load_cell` of its own, on its own port; or use a device of several channels: `scpi` or `native`",
     };
     let text = format!("a load cell that speaks `{}` has {has} here, and cannot weigh {}", dialect.name(), axes_of(axes));

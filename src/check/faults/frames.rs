@@ -49,6 +49,21 @@ pub fn storey_stiffness_twice(number: usize, span: Span) -> Diagnostic {
         .help("keep `stiffness`, of the whole storey, or `column_stiffness`, of one of its two columns")
 }
 
+/// A stiffness (N/m, by the name of its field) beside a behaviour that begins with another (N/m).
+pub fn storey_bends_otherwise(
+    number: usize,
+    (field, stated, said): (&str, f64, Span),
+    (initial, bends): (f64, Span),
+) -> Diagnostic {
+    let (stated, initial) = (shown(stated, Dimension::STIFFNESS), shown(initial, Dimension::STIFFNESS));
+    Diagnostic::new(Code::StoreyBendsOtherwise, format!("storey {number} is said to have {stated}, and its behaviour begins with {initial}"))
+        .at(said, format!("the run integrates with {stated}"))
+        .at(bends, format!("and a virtual rig bends {initial}"))
+        .help(format!(
+            "remove `{field}`, so that the behaviour says it; or state how well it is known: `stiffness_uncertainty` of a third of what they are apart by, or more"
+        ))
+}
+
 pub fn too_many_storeys(found: usize, most: usize, span: Span) -> Diagnostic {
     Diagnostic::new(Code::TooMany, format!("a frame has at most {most} storeys, this one {found}"))
         .at(span, "too many")
@@ -66,6 +81,12 @@ pub fn matrix_alone(given: &Ident, missing: &str) -> Diagnostic {
     Diagnostic::new(Code::SpecimenTwice, format!("`{}` stands without `{missing}`", given.node))
         .at(given.span, "half a structure")
         .help(format!("add a line `{missing} = \"{}.csv\"`", &missing[..1]))
+}
+
+pub fn matrix_uncertainty_alone(given: &Ident, matrix: &str) -> Diagnostic {
+    Diagnostic::new(Code::SpecimenTwice, format!("`{}` stands without `{matrix}`", given.node))
+        .at(given.span, "uncertain of what?")
+        .help(format!("remove it: it is the uncertainty of a frame's `{matrix}`, read from a file"))
 }
 
 pub fn no_storeys(specimen: &str, span: Span, declared: Span) -> Diagnostic {

@@ -1,4 +1,4 @@
-//! Faults of specimens: E630 to E634, E649, E650, and W715.
+//! Faults of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W726.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -32,6 +32,40 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
         .at(most, "bounds a choice")
         .at(breaks, "that is made here")
         .help("remove `most`, or remove `breaks` and let the criterion choose")
+}
+
+/// A backbone that falls before it yields.
+pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagnostic {
+    let [displacement, yielded] = [displacement, yielded].map(|place| shown(place, Dimension::LENGTH));
+    Diagnostic::new(Code::CornersDoNotFit, format!("a strength capped at {displacement} falls before it is reached"))
+        .at(span, format!("it yields at {yielded}"))
+        .help(format!("a `capping_displacement` beyond {yielded}"))
+}
+
+/// `lost`: the share of a force that is gone after long.
+pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnostic {
+    let longest = shown(longest, Dimension::TIME);
+    let percent = |number: f64| crate::quantity::display::significant(100.0 * number, 3);
+    Diagnostic::new(Code::OutOfRange, "a force that relaxes cannot lose more than itself")
+        .at(span, format!("loses {} % of it until {longest}", percent(lost)))
+        .help(format!("a `share` below {} %, or a shorter `longest`", percent(0.99 * share / lost)))
+}
+
+/// The law ends before it has begun.
+pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagnostic {
+    let times = [longest, reference_time].map(|time| shown(time, Dimension::TIME));
+    Diagnostic::new(Code::OutOfRange, format!("relaxation that ends after {} is none with the logarithm of time", times[0]))
+        .at(span, format!("its `reference_time` is {}", times[1]))
+        .help(format!("a `longest` of {} or more", shown(10.0 * reference_time, Dimension::TIME)))
+}
+
+/// The readings of a pause span so much of time: last over first.
+pub fn few_decades(readings: u32, span: Span) -> Diagnostic {
+    let spanned = u64::from(readings) * u64::from(readings);
+    let message = format!("{readings} readings in a pause tell no law of relaxation from another");
+    Diagnostic::new(Code::FewDecades, message)
+        .at(span, format!("the last reading comes at {spanned} times the time of the first"))
+        .help("take ten `readings` or more: they then span two decades of time")
 }
 
 pub fn relaxation_without_hold(relaxation: Span) -> Diagnostic {
@@ -74,6 +108,7 @@ pub fn felt_inside(variant: &str, span: Span) -> Diagnostic {
     let message = format!("`{variant}` acts on the load cell, and there is one: it cannot stand inside another behaviour");
     let help = match variant {
         "rate" => "write it around the whole: `rate(of: series(…), reference_velocity: …)`",
+        "logarithmic" => "write it around the whole: `logarithmic(of: series(…), share: …, reference_time: …)`",
         _ => "write it around the whole: `maxwell(of: series(…), stiffness: …, time_constant: …)`",
     };
     Diagnostic::new(Code::UnfitInside, message).at(span, "inside").help(help)

@@ -2,10 +2,13 @@
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::mechanics::student::coverage;
 use crate::plan::Interval;
+use crate::quantity::display::significant;
 use crate::quantity::{Dimension, display};
 use crate::schema::{Field, Range};
 use crate::source::Span;
+use crate::uncertainty::FEW;
 
 fn allowed(range: Range, dimension: Dimension) -> String {
     let number = |value: f64| ((value * 1e4).round() / 1e4).to_string();
@@ -46,6 +49,17 @@ pub fn uncertainty_unused(specimen: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UncertaintyUnused, format!("the uncertainty of the mass of `{specimen}` reaches no result"))
         .at(span, "no impact takes the mass of this specimen")
         .help("leave `mass` out of the impact, so that it is the specimen's with its uncertainty; or remove `mass_uncertainty`")
+}
+
+pub fn few_degrees_of_freedom(ramp: &str, points: usize, degrees: usize, displacements: Span, required: Span) -> Diagnostic {
+    #[expect(clippy::cast_precision_loss, reason = "a few")]
+    let factor = significant(coverage(degrees as f64), 3);
+    let freedom = if degrees == 1 { "1 degree of freedom".to_owned() } else { format!("{degrees} degrees of freedom") };
+    let text = format!("{points} steps leave the fit of `{ramp}` {freedom}: U is {factor} times its standard error");
+    Diagnostic::new(Code::FewDegreesOfFreedom, text)
+        .at(displacements, format!("{points} steps tell a scatter badly"))
+        .at(required, "decided by what is fitted to them")
+        .help(format!("take {} or more", points + usize::from(FEW) - degrees))
 }
 
 pub fn zero(field: &str, span: Span) -> Diagnostic {

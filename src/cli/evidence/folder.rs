@@ -56,7 +56,14 @@ impl Folder {
     /// Reads the whole folder.
     pub fn read(run: &Path) -> Result<Self, Failure> {
         let mut folder = Self::default();
-        folder.walk(run, "", 0)?;
+        folder.walk(run, is_read, ("", 0))?;
+        Ok(folder)
+    }
+
+    /// The same of names and digests alone.
+    pub fn digests(run: &Path) -> Result<Self, Failure> {
+        let mut folder = Self::default();
+        folder.walk(run, |_| false, ("", 0))?;
         Ok(folder)
     }
 
@@ -89,7 +96,7 @@ impl Folder {
         named.map(|(name, held)| (name.as_str(), held.bytes.as_deref().unwrap_or_default()))
     }
 
-    fn walk(&mut self, folder: &Path, prefix: &str, depth: usize) -> Result<(), Failure> {
+    fn walk(&mut self, folder: &Path, is_read: fn(&str) -> bool, (prefix, depth): (&str, usize)) -> Result<(), Failure> {
         let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
         for entry in std::fs::read_dir(folder).map_err(failed)? {
             let entry = entry.map_err(failed)?;
@@ -102,13 +109,13 @@ impl Folder {
             let kind = entry.file_type().map_err(failed)?;
             if kind.is_dir() && depth < DEEPEST {
                 let before = self.files.len() + self.odd.len();
-                self.walk(&path, &format!("{name}/"), depth + 1)?;
+                self.walk(&path, is_read, (&format!("{name}/"), depth + 1))?;
                 if self.files.len() + self.odd.len() == before {
                     self.odd.push((name, "is an empty folder".to_owned()));
                 }
                 continue;
             }
-            match held(&path, &name) {
+            match held(&path, &name, is_read(&name)) {
                 Ok(held) => drop(self.files.insert(name, held)),
                 Err(reason) => self.odd.push((name, reason)),
             }
@@ -118,7 +125,7 @@ impl Folder {
 }
 
 /// One file: a regular one, through no link.
-fn held(path: &PathBuf, name: &str) -> Result<Held, String> {
+fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
     let said = |error: std::io::Error| plain(&error);
     let metadata = path.symlink_metadata().map_err(said)?;
     if metadata.is_symlink() {
@@ -134,7 +141,7 @@ fn held(path: &PathBuf, name: &str) -> Result<Held, String> {
     let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
     let file = OpenOptions::new().read(true).custom_flags(flags.cast_signed()).open(path).map_err(said)?;
     let mut file = file.take(LISTED_BYTES);
-    if is_read(name) {
+    if is_read {
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(said)?;
         return Ok(Held::of(name, bytes));
@@ -204,5 +211,7 @@ mod tests {
         assert_eq!(listed, ["before-resume-1/tables/k.csv", "journal.psdj", "journal.psdj.torn-1", "own"]);
         assert_eq!(folder.reserve_is_ours(), Some(false));
         assert_eq!((folder.bytes(JOURNAL), folder.bytes("own")), (Some(b"abc".as_slice()), None));
+        let alone = Folder::digests(&run).unwrap();
+        assert_eq!((alone.kept(), alone.bytes(JOURNAL)), (folder.kept(), None));
     }
 }

@@ -8,8 +8,7 @@ use super::standing;
 use crate::cli::conclude::made_of;
 use crate::cli::provenance::BUILD;
 use crate::cli::record_file::{self, JOURNAL, ReadRecord};
-use crate::digest::sha256;
-use crate::output::{OutputError, OutputFile, Provenance};
+use crate::output::{Listed, Nowhere, OutputError, Provenance, Shelf};
 use crate::plan::Plan;
 use crate::record::journal::EntryKind;
 use crate::record::{Outcome, Record};
@@ -45,9 +44,9 @@ impl PlayedBack {
         Ok(Self { plan, provenance, record, assessment, mismatch, steps })
     }
 
-    /// Every file of the results; not the manifest.
-    pub fn results(&self) -> Result<Vec<OutputFile>, OutputError> {
-        made_of(&self.plan, &self.record, &self.assessment, &self.provenance, self.steps.as_deref())
+    /// Puts every file of the results on a shelf; not the manifest.
+    pub fn results(&self, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+        made_of(&self.plan, &self.record, &self.assessment, &self.provenance, self.steps.as_deref(), shelf)
     }
 }
 
@@ -68,7 +67,7 @@ pub struct Report {
     /// Who signs it, as the plan says.
     pub roles: Vec<String>,
     /// Path and SHA-256 of every file of the results, in hex; not the manifest.
-    pub files: Vec<(String, String)>,
+    pub files: Vec<Listed>,
     /// Which program made the run, where it was another.
     pub other_build: Option<String>,
     /// The record came to its end.
@@ -136,8 +135,8 @@ impl Rebuilt {
     }
 
     fn with_results(mut findings: Vec<Finding>, played: &PlayedBack, other_build: Option<String>, ended: bool) -> Self {
-        let files = match played.results() {
-            Ok(files) => files.into_iter().map(|file| (file.path, sha256(&file.bytes))).collect(),
+        let files = match played.results(&mut Nowhere) {
+            Ok(files) => files,
             Err(error) => {
                 findings.push(Finding::wrong("results", error.to_string()));
                 return Self { findings, report: None };

@@ -3,8 +3,9 @@
 
 use crate::cli::provenance::{BUILD, recorded_id};
 use crate::cli::record_file::{ReadRecord, plan_of};
-use crate::plan::{Dialect, Plan};
+use crate::plan::Plan;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
+use crate::rig::real::ReadBack;
 use crate::run::tape::{Header, Played, agrees};
 
 /// Holds a record against itself.
@@ -49,8 +50,8 @@ fn begins(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), Str
 }
 
 fn lacks_introduction(played: &Played, plan: &Plan) -> bool {
-    let native = plan.rig.link.as_real().is_some_and(|link| link.actuator.dialect == Dialect::Native);
-    native && played.rig.as_ref().is_some_and(|rig| rig.said.is_empty())
+    let replies = plan.rig.link.as_real().map_or(0, |link| ReadBack::of(&plan.rig, link).introductions());
+    played.rig.as_ref().is_some_and(|rig| rig.said.len() < replies)
 }
 
 /// What is told of a record that stands, and makes it no worse.

@@ -16,7 +16,7 @@ use super::signature::{self, Statement};
 use crate::cli::Exit;
 use crate::cli::provenance::{BUILD, TOOLCHAIN};
 use crate::cli::record_file::{self, JOURNAL};
-use crate::output::manifest_with;
+use crate::output::{OutputFile, manifest_with};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 
 /// A few steps, and every kind of file.
@@ -283,7 +283,8 @@ fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_repo
     let own = folder(run());
     let journal = of_another_build(&run()[JOURNAL]);
     let read = record_file::from_bytes(JOURNAL.as_ref(), &journal).unwrap();
-    let files = PlayedBack::of(read, None).unwrap().results().unwrap();
+    let mut files: Vec<OutputFile> = Vec::new();
+    PlayedBack::of(read, None).unwrap().results(&mut files).unwrap();
     let page = files.iter().find(|file| file.path == "certificate.html").unwrap();
     let page = String::from_utf8(page.bytes.clone()).unwrap();
     assert!(page.contains(&"0".repeat(64)) && page.contains("riscv64, another compiler"));

@@ -5,7 +5,7 @@ use std::sync::mpsc::Receiver;
 
 use super::typed::{number, places};
 use crate::cli::args::JogArguments;
-use crate::cli::conclude::write_results;
+use crate::cli::conclude::write_made;
 use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
@@ -111,7 +111,7 @@ fn on_a_real_rig(
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = real_rig::wall_clock();
     let (recorded, steps) = tape::record_driven(plan, rig, &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
-    write_results(folder.path(), &[output::driven(&steps)?], &Folder::read(folder.path())?.kept())?;
+    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, None, shelf))?;
     tell(&format!("  on record: {}\n", folder.path().display()));
     if let Some(fault) = &recorded.fault {
         tell(&format!("  the record could not be kept to its end: {fault}\n"));

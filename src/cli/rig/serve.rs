@@ -5,7 +5,7 @@
 use std::net::{SocketAddr, TcpListener};
 
 use crate::cli::args::{ServeArguments, ServedProtocol};
-use crate::cli::conclude::write_results;
+use crate::cli::conclude::write_made;
 use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
@@ -132,8 +132,12 @@ fn on_record(
         served = serve::serve(&door.listener, protocol, specimen, arguments.once, &wanted, &mut tell_event);
     });
     watcher.finish();
-    let table = output::driven(&steps)?;
-    write_results(folder.path(), &[table], &Folder::read(folder.path())?.kept())?;
+    let drift = recorded.record.drift.as_ref();
+    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, drift, shelf))?;
+    for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
+        let note = settings.paint_note("  note:");
+        tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));
+    }
     tell(&format!("  {}\n", folder.path().display()));
     served.map_err(|error| listening(arguments, &error))?;
     told?;

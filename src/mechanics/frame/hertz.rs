@@ -5,7 +5,7 @@
 use super::passage::{Passage, Passed, Start, Striker};
 use super::schemes::Course;
 use crate::mechanics::contact::StepState;
-use crate::mechanics::law::HertzContact;
+use crate::mechanics::law::{Closing, HertzContact};
 
 /// The step from `from`, whose end goes into `to`.
 pub(super) fn pass(
@@ -41,6 +41,7 @@ fn apart(passage: &mut Passage, striker: Striker, start: &Start, from: &Course, 
         contact_loss: 0.0,
         damping_work: passage.damped(&mean, time_step),
         indentation_work: 0.0,
+        contacts: 0,
     })
 }
 
@@ -67,8 +68,10 @@ fn follow(law: &HertzContact, passage: &mut Passage, striker: Striker, start: &S
         contact_loss: 0.0,
         damping_work: 0.0,
         indentation_work: 0.0,
+        contacts: 0,
     };
     let (mut impulse, mut limited, mut done) = (0.0, false, 0.0);
+    let mut closing = Closing::new(start.striker_displacement - now.displacement[struck] - start.indentation);
     while done < parts {
         let middle = (done + 0.5) / parts;
         done += 1.0;
@@ -99,7 +102,9 @@ fn follow(law: &HertzContact, passage: &mut Passage, striker: Striker, start: &S
         if over {
             passed.indentation = passed.indentation.max(law.dent(passed.striker_displacement - now.displacement[struck]));
         }
+        closing.take(force, passed.striker_displacement - now.displacement[struck] - passed.indentation);
     }
+    passed.contacts = closing.contacts;
     let depth = passed.striker_displacement - now.displacement[struck] - passed.indentation;
     let force = law.instant(depth, passed.striker_velocity - now.velocity[struck]);
     std::mem::swap(&mut now, to);

@@ -15,7 +15,7 @@ use super::schemes::Course;
 use super::solver::{FrameError, FrameInput, FrameSolver, FrameState};
 use crate::mechanics::contact::{ContactLaw, StepState};
 use crate::mechanics::energy::Energies;
-use crate::mechanics::law::{Bodies, HertzContact};
+use crate::mechanics::law::{Bodies, HertzContact, begun};
 use crate::plan::{Integrator, Until};
 
 /// All a frame's impact starts from.
@@ -62,6 +62,10 @@ pub struct StrikerState {
     pub state: StepState,
     /// `striker + structure + restoring + damping + contact_loss + error` is ½MsV0² and the work of the weight and the loads.
     pub energies: Energies,
+    /// Energy put into the test so far, J, as [`crate::mechanics::impact::ImpactState`] has it.
+    pub input: f64,
+    /// Blows so far: contacts that began.
+    pub contacts: u64,
 }
 
 /// The impact on a rig: `predict`, command, read, `complete`.
@@ -72,6 +76,8 @@ pub struct FrameImpactSolver {
     striker: Striker,
     time_step: f64,
     input_energy: f64,
+    /// With what a frame that is loaded at the start gives back, J.
+    first_input: f64,
     now: StrikerState,
     state: StepState,
     /// The step under way, of a law that finds its own way through it.
@@ -111,6 +117,13 @@ impl Reach {
         let mass = BandFactor::new(&input.matrices.mass).map_err(FrameError::Mass)?;
         let (compliance, mobility) = (unit(&stiffness), unit(&mass));
         Ok(Self { stiffness, mass: input.matrices.mass.clone(), compliance, mobility })
+    }
+
+    /// ½RᵀK⁻¹R: what a frame under these forces (N) gives back elastically, J.
+    fn stored(&self, force: &[f64]) -> f64 {
+        let mut bent = force.to_vec();
+        self.stiffness.solve_in_place(&mut bent);
+        0.5 * bent.iter().zip(force).map(|(bent, force)| bent * force).sum::<f64>()
     }
 
     /// Largest speed (m/s) and least displacement (m) of the struck floor from here on, as far as the frame is elastic.
@@ -168,6 +181,7 @@ impl FrameImpactSolver {
             ContactLaw::Restitution { coefficient } => Law::Restitution(Restitution { coefficient, joined: false }),
         };
         let input_energy = 0.5 * input.striker_mass * input.striker_velocity * input.striker_velocity;
+        let first_input = input_energy + reach.stored(input.frame.initial_restoring_force);
         let now = StrikerState {
             displacement: input.frame.initial_displacement[input.struck] - input.gap,
             velocity: input.striker_velocity,
@@ -175,6 +189,8 @@ impl FrameImpactSolver {
             indentation: 0.0,
             state: StepState::Free,
             energies: Energies { striker: input_energy, ..Energies::default() },
+            input: first_input,
+            contacts: 0,
         };
         Ok(Self {
             frame,
@@ -182,6 +198,7 @@ impl FrameImpactSolver {
             striker: Striker { struck: input.struck, mass: input.striker_mass, gravity: input.gravity },
             time_step: input.frame.time_step,
             input_energy,
+            first_input,
             now,
             state: StepState::Free,
             passed: None,
@@ -294,6 +311,7 @@ impl FrameImpactSolver {
             contact_loss: force * striker_moved - 0.5 * (self.now.contact_force + force) * way,
             damping_work: 0.0,
             indentation_work: if limited { force * (indentation - start.indentation) } else { 0.0 },
+            contacts: begun(self.now.state != StepState::Free, self.state),
         }
     }
 
@@ -321,6 +339,8 @@ impl FrameImpactSolver {
             indentation: passed.indentation,
             state: passed.state,
             energies,
+            input: self.now.input.max(self.first_input + energies.weight),
+            contacts: self.now.contacts + u64::from(passed.contacts),
         };
     }
 

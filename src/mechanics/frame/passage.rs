@@ -43,6 +43,8 @@ pub(super) struct Passed {
     pub damping_work: f64,
     /// `F_lim` Δδp, J.
     pub indentation_work: f64,
+    /// Contacts that began.
+    pub contacts: u32,
 }
 
 /// A frame between two instants of a step.

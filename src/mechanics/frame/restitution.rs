@@ -130,6 +130,7 @@ impl Restitution {
             contact_loss: way.loss,
             damping_work: way.damping_work,
             indentation_work: 0.0,
+            contacts: bounces,
         };
         *to = way.structure;
         passed

@@ -88,6 +88,11 @@ impl Unloading {
 
     /// Takes what a move showed; gives the secant of each storey, N/m, where it drifted, and none where there are no storeys.
     pub fn learn(&mut self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
+        self.learn_where(from, to, &|_, _, _| true)
+    }
+
+    /// The same, where `sure` of a storey, from 0, the stiffness that is expected of it (N/m) and its change of drift (m).
+    pub fn learn_where(&mut self, from: Loaded<'_>, to: Loaded<'_>, sure: &dyn Fn(usize, f64, f64) -> bool) -> Vec<Option<f64>> {
         let nothing = vec![0.0; from.force.len()];
         let (mut moved, mut changed) = (nothing.clone(), nothing.clone());
         let less = |to: &[f64], from: &[f64]| -> Vec<f64> { to.iter().zip(from).map(|(to, from)| to - from).collect() };
@@ -96,8 +101,8 @@ impl Unloading {
         let Slopes::Storeys { expected, shown } = &mut self.slopes else { return vec![None; nothing.len()] };
         let secants = moved.iter().zip(&changed).map(|(moved, changed)| (*moved != 0.0).then(|| changed / moved));
         let secants: Vec<Option<f64>> = secants.collect();
-        for ((shown, expected), secant) in shown.iter_mut().zip(expected).zip(&secants) {
-            if let Some(secant) = secant {
+        for (storey, ((shown, expected), secant)) in shown.iter_mut().zip(expected).zip(&secants).enumerate() {
+            if let Some(secant) = secant.filter(|_| sure(storey, *expected, moved[storey])) {
                 *shown = secant.clamp(*expected / BELIEVED, BELIEVED * *expected);
             }
         }

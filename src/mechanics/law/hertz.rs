@@ -12,6 +12,28 @@ const MOST_PARTS: f64 = 1e6;
 /// Gauss–Legendre on [0, 1], three points: (place, weight).
 const GAUSS: [(f64, f64); 3] = [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
+/// Counts how often two surfaces close, part by part.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closing {
+    touching: bool,
+    pub contacts: u32,
+}
+
+impl Closing {
+    /// From an overlap, m.
+    pub const fn new(depth: f64) -> Self {
+        Self { touching: depth > 0.0, contacts: 0 }
+    }
+
+    /// Takes a part with its mean force (N) and the overlap at its end (m).
+    pub fn take(&mut self, force: f64, depth: f64) {
+        let closed = force > 0.0 || depth > 0.0;
+        self.contacts += u32::from(closed && !self.touching);
+        // One that opened again inside the part is over.
+        self.touching = depth > 0.0;
+    }
+}
+
 /// A blow that takes time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzContact {
@@ -119,6 +141,7 @@ impl HertzContact {
         let mut indentation = start.indentation;
         let (mut impulse, mut contact_loss, mut damping_work, mut limited) = (0.0, 0.0, 0.0, false);
         let mut done = 0.0;
+        let mut closing = Closing::new(xs - structure.displacement - indentation);
         while done < parts {
             done += 1.0;
             let depth = xs - structure.displacement - indentation;
@@ -141,6 +164,7 @@ impl HertzContact {
             if over {
                 indentation = indentation.max(self.dent(xs - structure.displacement));
             }
+            closing.take(force, xs - structure.displacement - indentation);
         }
         let depth = xs - structure.displacement - indentation;
         let rate = vs - structure.velocity;
@@ -161,6 +185,7 @@ impl HertzContact {
             contact_loss,
             damping_work,
             indentation_work: if limited { self.force_limit * (indentation - start.indentation) } else { 0.0 },
+            contacts: closing.contacts,
         }
     }
 
@@ -188,6 +213,7 @@ impl HertzContact {
             contact_loss: 0.0,
             damping_work: 0.5 * bodies.damping * (from.velocity + to.velocity) * moved,
             indentation_work: 0.0,
+            contacts: 0,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! The paper's contact: rigid, or rigid–perfectly plastic with a limit force (Melo et al. 2006, eq. 4, Fig. 7). Its
 //! contact force grows as 1/Δt; as Δt → 0 it is a collision with e = Ms/(Ms + 2M), or a plastic one under a limit.
 
-use super::{Advance, Bodies, Law, Start};
+use super::{Advance, Bodies, Law, Start, begun};
 use crate::mechanics::contact::StepState;
 
 /// Rigid contact, cut at a limit force.
@@ -74,6 +74,7 @@ impl Law for ImpulseContact {
             contact_loss: force * striker_moved - 0.5 * (start.contact_force + force) * moved,
             damping_work: 0.5 * damping * (from.velocity + structure.velocity) * moved,
             indentation_work: if state == StepState::Limit { force * (indentation - start.indentation) } else { 0.0 },
+            contacts: begun(start.touching, state),
         }
     }
 }

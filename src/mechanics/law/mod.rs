@@ -4,6 +4,7 @@ mod hertz;
 mod impulse;
 mod restitution;
 
+pub(crate) use hertz::Closing;
 pub use hertz::HertzContact;
 pub use impulse::ImpulseContact;
 pub use restitution::RestitutionContact;
@@ -35,6 +36,8 @@ pub struct Start {
     pub striker_velocity: f64,
     /// F of the step before, N.
     pub contact_force: f64,
+    /// Whether the step before was one in contact.
+    pub touching: bool,
     /// `K_t`, N/m
     pub tangent_stiffness: f64,
     /// δp, m
@@ -58,6 +61,15 @@ pub struct Advance {
     pub damping_work: f64,
     /// `F_lim` Δδp, J.
     pub indentation_work: f64,
+    /// Contacts that began in this step: of a law that acts step by step the first step in contact after one apart, of one that
+    /// follows the contact inside a step every time that it closes.
+    pub contacts: u32,
+}
+
+/// Of a law that acts step by step: whether a contact begins with a step in this state.
+#[must_use]
+pub(crate) fn begun(was_touching: bool, state: StepState) -> u32 {
+    u32::from(!was_touching && state != StepState::Free)
 }
 
 /// A contact law's step.

@@ -193,6 +193,7 @@ impl Law for RestitutionContact {
             contact_loss: course.loss,
             damping_work: course.damping_work,
             indentation_work: 0.0,
+            contacts: bounces,
         }
     }
 }

@@ -5,9 +5,12 @@ mod bilinear;
 mod bolted;
 mod bouc_wen;
 mod degrading;
+mod deterioration;
 mod fracture;
 mod multilinear;
 mod pinching;
+#[cfg(test)]
+mod pinching_tests;
 mod series;
 mod table;
 #[cfg(test)]
@@ -90,7 +93,7 @@ impl SpecimenModel {
             Behaviour::Fracture { of, at } => Self::Fracture(Box::new(Fracture::new(Self::new(of), *at))),
             Behaviour::Series(parts) => Series::of(parts.iter().map(Self::new)),
             Behaviour::Parallel(parts) => Self::Parallel(parts.iter().map(Self::new).collect()),
-            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } => Self::new(of),
+            Behaviour::Rate { of, .. } | Behaviour::Maxwell { of, .. } | Behaviour::Logarithmic { of, .. } => Self::new(of),
         }
     }
 }

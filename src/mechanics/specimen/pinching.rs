@@ -2,20 +2,19 @@
 //! straight, and a move is cut at their ends.
 
 use super::RestoringForce;
-use crate::plan::{Deterioration, Pinching};
+use super::deterioration::Wear;
+use crate::plan::{Capping, Pinching};
 
 /// After Ibarra, Medina & Krawinkler, *Hysteretic models that incorporate strength and stiffness deterioration*, Earthquake
-/// Engng Struct. Dyn. 34 (2005) 1489–1511, of its modes of deterioration that of the basic strength; the break point and the order of
-/// the deterioration as `IMKPinching` of OpenSees has them:
-/// - the backbone is bilinear: K to F_y, then hardening;
+/// Engng Struct. Dyn. 34 (2005) 1489–1511; the break point and the order of the deterioration as `IMKPinching` of OpenSees has them:
+/// - the backbone is K to F_y, then hardening, and, where it is capped, from `x_c` on a line that falls, down to the residual strength;
 /// - unloading has the stiffness K (x_y/x_p)^a, x_p the peak displacement that way (Takeda, Sozen & Nielsen 1970), but at
 ///   least that of the peak's chord, F_p/x_p; a return before the force is gone goes back up the same line;
 /// - from no force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with U_p the
 ///   permanent displacement of the peak that way, and on to the peak; where u₀ is past the break point, straight to the peak;
 /// - from the peak on it is the backbone;
-/// - each time the force is gone, an excursion has taken `E_i` (it stores nothing then). The strength of the way it goes on is
-///   multiplied by 1 − β, β = (`E_i`/(γ F_y x_y − ΣE_j))^c with all excursions so far in the sum, yield force and hardening alike, down
-///   to the residual. Nothing is lost while it is elastic, for then `E_i` is 0.
+/// - it wears by the energy of its excursions ([`Wear`]): basic strength, post-capping strength, unloading stiffness, and the peak that it
+///   reloads to. Nothing is lost while it is elastic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinchedHysteresis {
     plan: Pinching,
@@ -25,10 +24,7 @@ pub struct PinchedHysteresis {
     force: f64,
     /// Where the force was last 0, m.
     zero: f64,
-    /// Strength over the first one, forwards and backwards.
-    strength: [f64; 2],
-    /// Taken in all excursions that ended, and in the one that has not, J.
-    energy: [f64; 2],
+    pub(super) wear: Wear,
     /// Where an unloading began that has not come to no force yet: displacement (m), force (N).
     turn: Option<[f64; 2]>,
 }
@@ -43,29 +39,44 @@ impl PinchedHysteresis {
             displacement: 0.0,
             force: 0.0,
             zero: 0.0,
-            strength: [1.0; 2],
-            energy: [0.0; 2],
+            wear: Wear::new(plan.deterioration, plan.yield_force, plan.stiffness),
             turn: None,
         }
     }
 
     /// Force of the backbone that way at `displacement` past yield, N.
     fn backbone(&self, way: f64, displacement: f64) -> f64 {
-        let strength = self.strength[usize::from(way < 0.0)];
+        let strength = self.wear.strength[usize::from(way < 0.0)];
         let yield_force = strength * self.plan.yield_force;
         let past = displacement - yield_force / self.plan.stiffness;
-        yield_force + strength * self.plan.hardening * self.plan.stiffness * past
+        let hardened = yield_force + strength * self.plan.hardening * self.plan.stiffness * past;
+        match self.plan.capping {
+            None => hardened,
+            Some(capping) => {
+                let capped = self.cap(way, capping) - capping.slope * self.plan.stiffness * displacement;
+                hardened.min(capped).max(capping.residual * self.plan.yield_force)
+            }
+        }
     }
 
-    /// An excursion has ended, and the next one goes this way: its strength falls.
-    fn deteriorate(&mut self, way: f64) {
-        let Some(Deterioration { capacity, exponent, residual }) = self.plan.deterioration else { return };
-        let taken = self.energy[1].max(0.0);
-        self.energy = [self.energy[0] + taken, 0.0];
-        let left = capacity * self.plan.yield_force * self.plan.yield_force / self.plan.stiffness - self.energy[0];
-        let share = if left > taken { (taken / left).powf(exponent) } else { 1.0 };
-        let strength = &mut self.strength[usize::from(way < 0.0)];
-        *strength = (*strength * (1.0 - share)).max(residual);
+    /// Force where the post-capping line meets no displacement, N.
+    fn cap(&self, way: f64, capping: Capping) -> f64 {
+        let Capping { displacement, slope, .. } = capping;
+        let Pinching { stiffness, yield_force, hardening, .. } = self.plan;
+        let top = yield_force + hardening * stiffness * (displacement - yield_force / stiffness);
+        self.wear.capping[usize::from(way < 0.0)] * (top + slope * stiffness * displacement)
+    }
+
+    /// Where the backbone that way begins to fall, and where it stops to, m.
+    fn corners(&self, way: f64) -> [f64; 2] {
+        let Some(capping) = self.plan.capping else { return [f64::INFINITY; 2] };
+        let Pinching { stiffness, yield_force, hardening, .. } = self.plan;
+        let strength = self.wear.strength[usize::from(way < 0.0)];
+        let (cap, falls) = (self.cap(way, capping), capping.slope * stiffness);
+        let hardens = strength * hardening * stiffness;
+        let at_none = strength * yield_force * (1.0 - strength * hardening);
+        let begins = (cap - at_none) / (hardens + falls);
+        [begins, (cap - capping.residual * yield_force) / falls]
     }
 
     /// Stiffness at which a force that way unloads, N/m.
@@ -73,8 +84,10 @@ impl PinchedHysteresis {
         let peak = self.peak(way);
         let ductility = peak * self.plan.stiffness / self.plan.yield_force;
         // Never softer than the way there, from where the force was gone: what was taken is not given back twice.
-        let from = if self.plan.deterioration.is_some() { (self.zero * way).clamp(0.0, 0.999 * peak) } else { 0.0 };
-        (self.plan.stiffness * ductility.powf(-self.plan.unloading_exponent)).max(self.backbone(way, peak) / (peak - from))
+        let falls = self.wear.wears() || self.plan.capping.is_some();
+        let from = if falls { (self.zero * way).clamp(0.0, 0.999 * peak) } else { 0.0 };
+        let worn = self.wear.unloading * self.plan.stiffness * ductility.powf(-self.plan.unloading_exponent);
+        worn.max(self.backbone(way, peak) / (peak - from))
     }
 
     const fn peak(&self, way: f64) -> f64 {
@@ -105,7 +118,7 @@ impl PinchedHysteresis {
 
     /// Goes straight to a place (m) and the force there (N).
     fn pass(&mut self, displacement: f64, force: f64) {
-        self.energy[1] += 0.5 * (self.force + force) * (displacement - self.displacement);
+        self.wear.work(0.5 * (self.force + force) * (displacement - self.displacement));
         (self.displacement, self.force) = (displacement, force);
     }
 
@@ -114,6 +127,7 @@ impl PinchedHysteresis {
         if self.force * way < 0.0 {
             if self.turn.is_none() {
                 self.turn = Some([self.displacement, self.force]);
+                self.wear.turned(0.5 * self.force * self.force / self.unloading(-way));
             }
             let end = self.displacement * way - self.force * way / self.unloading(-way);
             if self.along(way, [end, 0.0], to) {
@@ -121,7 +135,8 @@ impl PinchedHysteresis {
             }
             self.zero = self.displacement;
             self.turn = None;
-            self.deteriorate(way);
+            let side = usize::from(way < 0.0);
+            self.peaks[side] *= self.wear.ended(side);
         }
         if let Some([at, force]) = self.turn {
             if self.along(way, [at * way, force * way], to) {
@@ -141,11 +156,21 @@ impl PinchedHysteresis {
                 return;
             }
         }
+        for corner in self.corners(way) {
+            if self.peak(way) < corner && corner < to {
+                self.beyond(way, corner);
+            }
+        }
         if to > self.peak(way) {
-            self.peaks[usize::from(way < 0.0)] = to;
-            self.pass(way * to, way * self.backbone(way, to));
+            self.beyond(way, to);
         }
         self.displacement = way * to;
+    }
+
+    /// On along the backbone, which is straight until there (m along the way).
+    fn beyond(&mut self, way: f64, to: f64) {
+        self.peaks[usize::from(way < 0.0)] = to;
+        self.pass(way * to, way * self.backbone(way, to));
     }
 }
 
@@ -177,6 +202,7 @@ mod tests {
         force_factor: 0.4,
         displacement_factor: 0.5,
         unloading_exponent: 0.0,
+        capping: None,
         deterioration: None,
     };
 
@@ -232,57 +258,5 @@ mod tests {
         let energy = energy_along(&mut model, -amplitude, &[amplitude, -amplitude], 1e-6);
         let half = 0.5 * 4.0 * middle + 0.5 * 5.0 * (middle + 1000.0) - 0.5 * 1000.0;
         assert!((energy / (2e-3 * half) - 1.0).abs() < 1e-6, "{energy} J is not {} J", 2e-3 * half);
-    }
-
-    const TIRES: Pinching = Pinching {
-        displacement_factor: 1.0,
-        deterioration: Some(Deterioration { capacity: 40.0, exponent: 1.0, residual: 0.1 }),
-        ..PLAN
-    };
-
-    /// Perfectly plastic to 5 mm and back to no force: 1000·(5 − 1) mN·m = 4 J of γ F_y x_y = 40 J. β = 4/(40 − 4): backwards it
-    /// yields at 8/9 of 1 kN. There to −3 mm from −1 mm, and so on.
-    #[test]
-    fn strength_is_lost_by_the_energy_of_each_excursion() {
-        let mut model = PinchedHysteresis::new(TIRES);
-        model.move_to(0.005);
-        assert!((model.move_to(0.004)).abs() < 1e-9);
-        let weaker = 1000.0 * (1.0 - 4.0 / 36.0);
-        // Break point at no displacement: 0.4 of it times 4/5 of the way.
-        assert!((model.move_to(0.0) + 0.4 * weaker * 4.0 / 5.0).abs() < 1e-9);
-        assert!((model.move_to(-0.001) + weaker).abs() < 1e-9 && (model.move_to(-0.003) + weaker).abs() < 1e-9);
-        let at_break = 0.32 * weaker;
-        let taken = 1e-3 * (0.5 * 4.0 * at_break + 0.5 * (at_break + weaker) + 2.0 * weaker) - 0.5 * weaker * weaker / 1e6;
-        model.move_to(-0.003 + weaker / 1e6);
-        model.move_to(0.005);
-        let forwards = 1000.0 * (1.0 - taken / (40.0 - 4.0 - taken));
-        assert!((model.move_to(0.006) - forwards).abs() < 1e-9, "{} N is not {forwards} N", model.force);
-    }
-
-    /// Elastic cycles take nothing and lose nothing; plastic ones lose strength at every reversal, never gain it, never below the
-    /// residual; and what it took is what ∫R dX says, by trapezia so fine that nothing is left of their error.
-    #[test]
-    fn deterioration_is_monotone_and_its_energy_is_the_work_done() {
-        let mut model = PinchedHysteresis::new(TIRES);
-        for _ in 0..5 {
-            model.move_to(0.0009);
-            model.move_to(-0.0009);
-        }
-        assert_eq!(model.strength, [1.0; 2]);
-        model.move_to(0.0);
-        let (mut work, mut strength) = (0.0, model.strength);
-        for cycle in 1..=30 {
-            let amplitude = 1e-3 * (2.0 + 0.1 * f64::from(cycle));
-            work += energy_along(&mut model, 0.0, &[amplitude, -amplitude, 0.0], 1e-5);
-            assert!(
-                model.strength.iter().zip(strength).all(|(now, before)| *now <= before && *now >= 0.1),
-                "{:?}",
-                model.strength
-            );
-            strength = model.strength;
-        }
-        assert_eq!(strength, [0.1; 2], "worn out");
-        let counted = model.energy[0] + model.energy[1];
-        assert!((counted / work - 1.0).abs() < 1e-4, "{counted} J are counted, {work} J were done");
     }
 }

@@ -2,7 +2,7 @@
 //! run. Out: blocks, and the plan's files to go with them.
 
 use super::super::document::{Attachment, Block, Column, Style, Table, Text};
-use super::super::{OutputFile, RealRun, Run, number, plan_files};
+use super::super::{Listed, RealRun, Run, number, plan_files};
 use super::{pairs, particulars};
 use crate::digest::sha256;
 use crate::inert;
@@ -10,7 +10,7 @@ use crate::mechanics::self_test;
 use crate::plan::PlanFile;
 
 /// Plan, provenance, statements, signatures.
-pub(super) fn all(run: &Run<'_>, tables: &[OutputFile], body: &mut Vec<Block>) {
+pub(super) fn all(run: &Run<'_>, tables: &[Listed], body: &mut Vec<Block>) {
     body.push(Block::section("Plan as run"));
     for (file, kept) in run.plan.files.iter().zip(plan_files(run.plan)) {
         body.push(Block::part(file.name.as_str()));
@@ -106,9 +106,10 @@ fn id_or_unknown(digits: &str) -> Text {
 }
 
 /// Digests of what went in and of the numbers that came out: with this paper alone the files can be proven.
-fn files(run: &Run<'_>, tables: &[OutputFile]) -> Block {
-    let row = |file: &OutputFile| vec![Text::from(file.path.as_str()), Text::new().id(sha256(&file.bytes))];
-    let rows = plan_files(run.plan).iter().chain(tables).map(row).collect();
+fn files(run: &Run<'_>, tables: &[Listed]) -> Block {
+    let row = |(path, digest): (String, String)| vec![Text::from(path), Text::new().id(digest)];
+    let plan = plan_files(run.plan).into_iter().map(|file| (file.path, sha256(&file.bytes)));
+    let rows = plan.chain(tables.iter().cloned()).map(row).collect();
     Block::Table(Table { columns: vec![Column::words("File in the folder of the run", 1), Column::short("SHA-256")], rows })
 }
 

@@ -3,14 +3,13 @@
 
 use super::super::budget::{Budget, From, Line, budgets};
 use super::super::document::{Block, Column, Table, Text};
-use super::super::{Run, number};
+use super::super::{Run, expansion, number};
 use super::{results::percent, words};
 use crate::formula::{ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::{minus, significant, typeset, unit};
 use crate::record::ProcedureRecord;
 use crate::run::MOST_DRAWS;
-use crate::verdict::COVERAGE;
 
 /// Told where no requirement reads a result of the procedure.
 const UNASKED: [&str; 3] = ["max_displacement", "absorbed_energy", "max_base_shear"];
@@ -62,7 +61,7 @@ fn one(budget: &Budget<'_>) -> Block {
 }
 
 fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
-    let Budget { result, value, uncertainty, lines, .. } = budget;
+    let Budget { result, value, uncertainty, known, lines, .. } = budget;
     let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
     let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
     let mut rows: Vec<Vec<Text>> = told
@@ -80,9 +79,12 @@ fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
         let share = percent((together / uncertainty).powi(2));
         rows.push(vec![names, "".into(), "—".into(), amount(together), share.into()]);
     }
-    let parts = number::parts(*value, Some(*uncertainty), result.dimension);
+    let parts = number::parts(*value, Some(*known), result.dimension);
     let expanded = parts.expanded.unwrap_or_default();
-    let whole = format!("combined: {} ± {expanded}\u{a0}{}, U = {COVERAGE:.0}\u{a0}u", parts.value, parts.unit);
+    let factor = expansion::factor(*known);
+    let of_degrees =
+        if expansion::is_more(*known) { format!(", ν = {}", expansion::degrees_text(*known)) } else { String::new() };
+    let whole = format!("combined: {} ± {expanded}\u{a0}{}, U = {factor}\u{a0}u{of_degrees}", parts.value, parts.unit);
     rows.push(vec![whole.into(), "".into(), "".into(), amount(*uncertainty), "100\u{a0}%".into()]);
     rows
 }
@@ -122,11 +124,17 @@ fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
 fn note(budgets: &[Budget<'_>]) -> String {
     let told: Vec<&Line> =
         budgets.iter().flat_map(|budget| budget.lines.iter().filter(|line| budget.share(line) >= SMALL)).collect();
+    let more = budgets.iter().any(|budget| expansion::is_more(budget.known));
+    let factor = if more { "k by Student's t" } else { "k = 2" };
     let mut text = format!(
-        "Linearised, k = {COVERAGE:.0}: each input in turn was moved by ± its standard uncertainty and the run integrated again along \
+        "Linearised, {factor}: each input in turn was moved by ± its standard uncertainty and the run integrated again along \
          its own recorded force–displacement path; half the difference of the results is the contribution, the root sum of squares is u \
          (JCGM 100:2008). The scheme of integration, the contact law and the slowness of the test are not among the inputs."
     );
+    if more {
+        text += " U = k·u holds 95.45\u{a0}% of the cases: k is Student's t of ν effective degrees of freedom, ν = u⁴/Σ uᵢ⁴/νᵢ (Welch and \
+                 Satterthwaite; JCGM 100:2008, G.4), of a fit its readings less its numbers, of draws their number, of all else infinite.";
+    }
     if budgets.iter().any(|budget| budget.lines.iter().any(|line| line.draws.is_some())) {
         text += " Errors of the readings were drawn, and what they do is sampled.";
     }

@@ -2,7 +2,7 @@
 //! before any of it is believed. In: a run. Out: blocks.
 
 use super::super::document::{Block, Column, Style, Table, Text, Verdict as Stated};
-use super::super::{Run, amendment, deviations, number, summary};
+use super::super::{Run, amendment, deviations, expansion, number, summary};
 use crate::plan::DecisionRule;
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
@@ -95,18 +95,24 @@ fn rule(run: &Run<'_>) -> String {
         DecisionRule::Simple => {
             "Decision rule: simple acceptance (ILAC-G8:09/2019). The value alone is held against the limit, whatever its \
              uncertainty: for a value at its limit a wrong decision is as likely as a right one."
+                .to_owned()
         }
-        DecisionRule::Guarded => {
-            "Decision rule: guarded (after ILAC-G8:09/2019), guard band w = U = 2u of the distance between value and limit. A value \
+        DecisionRule::Guarded => format!(
+            "Decision rule: guarded (after ILAC-G8:09/2019), guard band w = {} of the distance between value and limit. A value \
              passes if it keeps the limit by at least w, fails if it misses it by more than w, and is inconclusive between: a wrong \
              pass or fail has a probability below 2.5\u{a0}%. A value of which no uncertainty is known is held against the limit as \
-             it is."
-        }
+             it is.",
+            expansion::equation(run.assessment)
+        ),
     };
-    format!(
-        "{rule} U = 2u is the expanded uncertainty (k = 2) where a measured result carries one. Margin is the distance inside the \
-         limit; a negative margin is the distance by which it is missed."
-    )
+    let expanded = match expansion::largest(run.assessment) {
+        Some(factor) => format!(
+            "U = k·u is the expanded uncertainty where a measured result carries one: it holds 95.45\u{a0}% of the cases, with k from \
+             Student's t of the effective degrees of freedom (JCGM 100:2008, G.4), here up to {factor}."
+        ),
+        None => "U = 2u is the expanded uncertainty (k = 2) where a measured result carries one.".to_owned(),
+    };
+    format!("{rule} {expanded} Margin is the distance inside the limit; a negative margin is the distance by which it is missed.")
 }
 
 fn rows(requirement: &RequirementOutcome, rule: DecisionRule) -> Vec<Vec<Text>> {

@@ -22,11 +22,11 @@ mod storey;
 
 use super::document::{Block, Document, Figure, Text};
 use super::figures::Drawn;
-use super::{OutputFile, Run};
+use super::{Listed, Run};
 use crate::inert;
 
 /// The whole report; `tables` are the files whose digests it prints.
-pub(super) fn document(run: &Run<'_>, figures: &[Drawn], tables: &[OutputFile]) -> Document {
+pub(super) fn document(run: &Run<'_>, figures: &[Drawn], tables: &[Listed]) -> Document {
     let mut body = Vec::new();
     head::amendments(run, &mut body);
     if head::deviations_come_first(run) {

@@ -2,12 +2,13 @@
 //! contact and its energy balance. In: a run. Out: blocks, a procedure at a time.
 
 use super::super::document::{Block, Column, Table, Text};
-use super::super::{Run, number};
+use super::super::{Run, expansion, number};
 use super::{blows, budget, contact_log, curve, cycles, frames, method, storey, words};
-use crate::formula::ResultValue;
-use crate::plan::{Contact, Impact, ProcedureKind, RelaxationModel};
+use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use crate::plan::{Contact, Impact, ProcedureKind, RelaxationLaw, RelaxationModel};
 use crate::quantity::Dimension;
-use crate::record::{History, Hold, ImpactHistory, LineFit, NamedResult, ProcedureRecord, RelaxationFit};
+use crate::record::{History, Hold, ImpactHistory, LineFit, NamedResult, ProcedureRecord, ReachedFit, RelaxationFit};
+use crate::uncertainty::{Known, known};
 
 /// Every procedure that was run, in order.
 pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
@@ -19,7 +20,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
         let state = if procedure.complete { "" } else { " · not complete" };
         body.push(Block::part(Text::from(procedure.name.as_str()).soft(format!(" · {}{state}", procedure.kind))));
         inputs(procedure, body);
-        results(procedure, body);
+        results(run, index, procedure, body);
         match &procedure.history {
             History::Ramp(history) => {
                 if let Some(fit) = &history.multilinear {
@@ -28,6 +29,9 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
                 }
                 if let Some(fit) = &history.relaxation {
                     body.push(relaxed(fit, &history.holds));
+                }
+                if let Some(fit) = &history.reached {
+                    body.push(relaxed_by_a_law(fit, &history.holds));
                 }
                 if let Some(fit) = history.fit {
                     body.push(fitted("R = K·X + R₀", ("K", Dimension::STIFFNESS), ("R₀", Dimension::FORCE), fit));
@@ -71,7 +75,7 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
 }
 
 /// Lists whose numbers stand in a table of their own are not printed twice, and what the run did not give is named below.
-fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
+fn results(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let tabled = match &procedure.history {
         History::Ramp(history) => history.multilinear.is_some(),
         History::Cycle(_) | History::Escalate(_) | History::Shake(_) | History::StoreyImpact(_) | History::FrameUnload(_) => true,
@@ -83,7 +87,7 @@ fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
         ResultValue::List(values) => !values.is_empty(),
     });
     if !found.is_empty() {
-        body.push(table(&found));
+        body.push(table(run, index, &found));
     }
     if !none.is_empty() {
         let named = none.iter().enumerate().fold(Text::from("None in this run: "), |text, (index, result)| {
@@ -93,19 +97,38 @@ fn results(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     }
 }
 
-fn table(results: &[&NamedResult]) -> Block {
-    let columns = vec![
+fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
+    let known = |result: &NamedResult| {
+        let reference = ResultReference { procedure: ProcedureId(index), name: result.name, part: Part::Value };
+        known(&result.contributions_of(reference), run.record)
+    };
+    let all: Vec<Option<Known>> = results.iter().map(|result| known(result)).collect();
+    // A column of twos says nothing.
+    let factors = all.iter().flatten().any(|known| expansion::is_more(*known));
+    let mut columns = vec![
         Column::words("Result", 1),
         Column::numbers("Value"),
         Column::numbers("u"),
-        Column::numbers("U (k = 2)"),
+        Column::numbers(if factors { "U = k·u" } else { "U (k = 2)" }),
         Column::short("Unit"),
         Column::short("In the plan"),
     ];
-    Block::Table(Table { columns, rows: results.iter().map(|result| row(result)).collect() })
+    if factors {
+        columns.insert(3, Column::numbers("k (ν)"));
+    }
+    let rows = results.iter().zip(&all).map(|(result, known)| {
+        let mut row = row(result, *known);
+        if factors {
+            let text = known.filter(|known| known.standard > 0.0 && matches!(result.value, ResultValue::Number { .. }));
+            let text = text.map(|known| format!("{} ({})", expansion::factor(known), expansion::degrees_text(known)));
+            row.insert(3, text.map_or_else(|| "—".into(), Text::from));
+        }
+        row
+    });
+    Block::Table(Table { columns, rows: rows.collect() })
 }
 
-fn row(result: &NamedResult) -> Vec<Text> {
+fn row(result: &NamedResult, known: Option<Known>) -> Vec<Text> {
     let dash = || Text::from("—");
     let [value, standard, expanded, unit] = match &result.value {
         // A goodness of fit is told by how many nines it has.
@@ -113,7 +136,8 @@ fn row(result: &NamedResult) -> Vec<Text> {
             [format!("{value:.6}").into(), dash(), dash(), dash()]
         }
         ResultValue::Number { value: Some(value), uncertainty } => {
-            let parts = number::parts(*value, *uncertainty, result.dimension);
+            let known = uncertainty.map(|standard| Known { standard, ..known.unwrap_or(Known::surely(standard)) });
+            let parts = number::parts(*value, known, result.dimension);
             let unit = if parts.unit.is_empty() { dash() } else { parts.unit.into() };
             [parts.value.into(), parts.standard.map_or_else(dash, Text::from), parts.expanded.map_or_else(dash, Text::from), unit]
         }
@@ -159,6 +183,32 @@ fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
         with(fit.time_constant, Dimension::TIME),
         number::text(fit.scatter, Dimension::FORCE),
         with(fit.remaining, Dimension::FORCE),
+    ))
+}
+
+/// The law by which the reached force relaxes, why that one, and how fast the pauses were still losing.
+fn relaxed_by_a_law(fit: &ReachedFit, holds: &[Hold]) -> Block {
+    let with = |(value, error): (f64, f64), dimension| number::with_uncertainty(value, Some(error), dimension);
+    let best = fit.best();
+    let (law, share) = match best.law {
+        RelaxationLaw::Exponential => ("R̂ − R grows by g (1 − e^(−t/τ))", "g"),
+        RelaxationLaw::Logarithmic => ("R̂ − R grows by a ln(1 + t/t₀)", "a"),
+    };
+    let chosen = fit.margin().map_or_else(String::new, |margin| {
+        let other = if margin > 0.0 { "an exponential" } else { "the logarithm of time" };
+        format!(" BIC, corrected for few readings, prefers it to {other} by {:.1}.", margin.abs())
+    });
+    let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
+    Block::note(format!(
+        "Relaxation by least squares over {readings} readings in {} pauses, each step by its own time: {law} of each increment of the \
+         reached force R̂, {share} = {}, {} = {} (± standard error); the readings scatter by {} about it.{chosen} The worst pause ended \
+         while the force fell by {}.",
+        holds.len(),
+        with(best.share, Dimension::NUMBER),
+        best.law.time_name(),
+        with(best.time, Dimension::TIME),
+        number::text(best.scatter, Dimension::FORCE),
+        with(best.rate, Dimension::FORCE_RATE),
     ))
 }
 

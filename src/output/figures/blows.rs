@@ -2,6 +2,7 @@
 //! energy. In: the history. Out: [`Chart`]s in SI.
 
 use super::chart::{Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
+use super::points::Points;
 use super::shake;
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
@@ -29,7 +30,7 @@ pub(super) fn blows(history: &EscalateHistory) -> Chart {
     let peaks = history.blows.iter().filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
     let rests = history.blows.iter().filter_map(|blow| Some((blow.energy, blow.rest_of_struck()?.0))).collect();
     let failed = history.blows.iter().filter(|blow| blow.held == Some(false));
-    let failed: Vec<(f64, f64)> = failed.filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
+    let failed: Points = failed.filter_map(|blow| Some((blow.energy, largest(blow)?))).collect();
     let mut series = vec![
         Series {
             label: "largest displacement".to_owned(),
@@ -63,7 +64,7 @@ pub(super) fn drift(history: &EscalateHistory) -> Chart {
     let storeys = history.storeys().next().and_then(|blow| blow.floors.first()).map_or(0, |floors| floors.computed.len());
     let largest = |blow: &Blow, storey: usize| blow.list("max_drift")?.get(storey).copied();
     let stayed = |blow: &Blow, storey: usize| blow.rest.as_ref()?.drift().get(storey).copied();
-    let points = |of: &dyn Fn(&Blow, usize) -> Option<f64>, storey: usize| -> Vec<(f64, f64)> {
+    let points = |of: &dyn Fn(&Blow, usize) -> Option<f64>, storey: usize| -> Points {
         history.blows.iter().filter_map(|blow| Some((blow.energy, of(blow, storey)?))).collect()
     };
     let series = shake::shown(storeys).into_iter().enumerate().flat_map(|(curve, storey)| {

@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 
+use super::points::Points;
 use crate::quantity::Dimension;
 
 /// A picture of two quantities.
@@ -54,7 +55,7 @@ impl Quantity {
 /// A named set of points, SI.
 pub(super) struct Series {
     pub label: String,
-    pub points: Vec<(f64, f64)>,
+    pub points: Points,
     pub style: Style,
 }
 

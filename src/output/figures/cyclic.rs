@@ -1,6 +1,7 @@
 //! Charts of cycles: loops, backbone, energy and stiffness cycle by cycle. In: the history. Out: [`Chart`]s in SI.
 
 use super::chart::{Chart, DASHED, LONG, Marker, Quantity, SOLID, Series, Style, palette};
+use super::points::Points;
 use crate::quantity::Dimension;
 use crate::record::{CycleHistory, MultilinearFit, WholeCycle};
 
@@ -11,7 +12,7 @@ pub(super) fn loops(history: &CycleHistory) -> Chart {
     let all = history.steps.iter().map(point).collect();
     // Its own readings, and the one that it begins at.
     let before = history.steps.iter().rposition(|step| step.cycle < last);
-    let of_last = before.map_or_else(Vec::new, |from| history.steps[from..].iter().map(point).collect());
+    let of_last = before.map_or_else(Points::default, |from| history.steps[from..].iter().map(point).collect());
     let mut series = vec![Series {
         label: format!("{} cycles", history.cycles.len()),
         points: all,
@@ -32,7 +33,7 @@ pub(super) fn backbone(history: &CycleHistory) -> Chart {
     let envelope = |cycles: &mut Vec<&WholeCycle>| {
         let mut points: Vec<(f64, f64)> = cycles.iter().flat_map(|cycle| cycle.found.ends).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        points
+        Points::from(points)
     };
     let mut series = vec![Series {
         label: "first cycle of each amplitude".to_owned(),

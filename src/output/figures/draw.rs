@@ -339,7 +339,7 @@ mod tests {
             bands: Vec::new(),
             series: vec![Series {
                 label: String::new(),
-                points: vec![(0.0, 0.0), (1.0, 10.0)],
+                points: vec![(0.0, 0.0), (1.0, 10.0)].into(),
                 style: Style::line(palette::BLUE, 1.0, &[]),
             }],
             references: vec![Reference { label: String::new(), y: limit }],

@@ -3,19 +3,22 @@
 
 use super::super::number;
 use super::chart::{Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
+use super::points::Points;
 use crate::quantity::Dimension;
 use crate::record::{MultilinearFit, RampHistory, RampStep, SweepHistory, SweepStep};
 
 /// Measured points, the way back apart, and the line K·X + intercept.
 pub(super) fn force_displacement(history: &RampHistory) -> Chart {
-    let points =
-        |wanted: bool| -> Vec<(f64, f64)> { history.steps.iter().filter(|step| step.returning == wanted).map(point).collect() };
+    let points = |wanted: bool| -> Points { history.steps.iter().filter(|step| step.returning == wanted).map(point).collect() };
     let mut series = Vec::new();
     if let Some(fit) = history.fit {
         let stiffness = number::with_uncertainty(fit.slope, Some(fit.slope_error), Dimension::STIFFNESS);
         series.push(Series {
             label: format!("fit, K = {stiffness}"),
-            points: ends(history.steps.iter().map(|step| step.displacement)).map(|x| (x, fit.intercept + fit.slope * x)).to_vec(),
+            points: ends(history.steps.iter().map(|step| step.displacement))
+                .map(|x| (x, fit.intercept + fit.slope * x))
+                .into_iter()
+                .collect(),
             style: Style::line(palette::VERMILION, 1.8, SOLID),
         });
     }
@@ -25,7 +28,7 @@ pub(super) fn force_displacement(history: &RampHistory) -> Chart {
         let [low, high] = ends(history.steps.iter().filter(|step| !step.returning).map(|step| step.displacement));
         series.push(Series {
             label: format!("fit, K = {stiffness}, Fy = {force}"),
-            points: [low, fit.yield_displacement, high].map(|x| (x, fit.force(x))).to_vec(),
+            points: [low, fit.yield_displacement, high].map(|x| (x, fit.force(x))).into_iter().collect(),
             style: Style::line(palette::VERMILION, 1.8, SOLID),
         });
     }
@@ -87,14 +90,19 @@ pub(super) fn damping_fit(history: &SweepHistory) -> Chart {
         let fastest = means.iter().map(|mean| mean.velocity).fold(0.0, f64::max);
         series.push(Series {
             label: format!("fit, c = {c}, Fc = {friction}"),
-            points: [0.0, fastest].map(|velocity| (velocity, fit.intercept + fit.slope * velocity)).to_vec(),
+            points: [0.0, fastest].map(|velocity| (velocity, fit.intercept + fit.slope * velocity)).into_iter().collect(),
             style: Style::line(palette::VERMILION, 1.8, SOLID),
         });
     }
-    series.extend(means.iter().map(|mean| Series {
-        label: String::new(),
-        points: [mean.force - mean.standard_error, mean.force + mean.standard_error].map(|force| (mean.velocity, force)).to_vec(),
-        style: Style::line(palette::BLACK, 1.6, SOLID),
+    series.extend(means.iter().map(|mean| {
+        Series {
+            label: String::new(),
+            points: [mean.force - mean.standard_error, mean.force + mean.standard_error]
+                .map(|force| (mean.velocity, force))
+                .into_iter()
+                .collect(),
+            style: Style::line(palette::BLACK, 1.6, SOLID),
+        }
     }));
     series.push(Series {
         label: "half the difference of out and back, mean ± standard error".to_owned(),

@@ -11,6 +11,7 @@ mod draw;
 mod identification;
 mod impact;
 mod plain;
+mod points;
 mod raster;
 mod relaxation;
 mod shake;
@@ -23,7 +24,7 @@ use rayon::prelude::*;
 use super::{OutputError, Run};
 use crate::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
-use crate::record::{FloorStep, History, ProcedureRecord, ShakeHistory};
+use crate::record::{FloorStep, History, ProcedureRecord, RampHistory, ShakeHistory};
 use chart::Chart;
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
@@ -115,6 +116,10 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),
             format!("{name}: measured restoring force against displacement, with the least-squares fit."),
+        ),
+        (History::Ramp(RampHistory { reached: Some(fit), holds, .. }), FigureKind::Relaxation) => (
+            relaxation::lost(holds, fit),
+            format!("{name}: force lost in the pauses, by the laws of relaxation, against the time held."),
         ),
         (History::Ramp(history), FigureKind::Relaxation) => (
             relaxation::left(history, history.relaxation.as_ref()?),

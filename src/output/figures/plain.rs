@@ -66,7 +66,7 @@ impl Curves {
                 _ if curve.dots => Style::marker(colour, Marker::Disc(2.0)),
                 _ => Style::line(colour, width, dash),
             };
-            Series { label: curve.label.clone(), points: curve.points.clone(), style }
+            Series { label: curve.label.clone(), points: curve.points.clone().into(), style }
         };
         draw::png(&Chart {
             x: axis(&self.x, x_end),

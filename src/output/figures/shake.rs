@@ -2,6 +2,7 @@
 //! [`Chart`]s in SI. Floors and storeys are told apart by colour and dash, the lowest first.
 
 use super::chart::{Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, Reference, SOLID, Series, Style, palette};
+use super::points::{Gathering, Points};
 use crate::quantity::Dimension;
 use crate::record::{Floors, Modes, ShakeHistory, ShakeStep};
 
@@ -25,10 +26,10 @@ pub(super) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
 
 /// Storey shear against drift: the area of a loop is the energy it took.
 pub(super) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
-    let paths: Vec<(Vec<f64>, Vec<f64>)> = steps.iter().map(|step| (step.drift(), step.shear())).collect();
-    let curves = shown(floors(steps)).into_iter().enumerate().map(|(curve, storey)| Series {
+    let curves = each(steps, |step| step.drift().into_iter().zip(step.shear()).collect());
+    let curves = curves.into_iter().enumerate().map(|(curve, (storey, points))| Series {
         label: format!("storey {}", storey + 1),
-        points: paths.iter().map(|(drift, shear)| (drift[storey], shear[storey])).collect(),
+        points,
         style: style(curve, 1.4),
     });
     Chart {
@@ -128,15 +129,28 @@ pub(super) fn shown(floors: usize) -> Vec<usize> {
 }
 
 fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> Vec<f64>) -> Chart {
-    let values: Vec<(f64, Vec<f64>)> = steps.iter().map(|step| (step.time(), read(step))).collect();
-    let curves = shown(floors(steps)).into_iter().enumerate().map(|(curve, floor)| Series {
+    let curves = each(steps, |step| read(step).into_iter().map(|value| (step.time(), value)).collect());
+    let curves = curves.into_iter().enumerate().map(|(curve, (floor, points))| Series {
         label: format!("{what} {}", floor + 1),
-        points: values.iter().map(|(time, values)| (*time, values[floor])).collect(),
+        points,
         style: style(curve, 1.6),
     });
     let mut chart = over_time(y);
     chart.series = curves.collect();
     chart
+}
+
+/// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor.
+fn each<S: Floors>(steps: &[S], read: impl Fn(&S) -> Vec<(f64, f64)>) -> Vec<(usize, Points)> {
+    let mut curves: Vec<(usize, Gathering)> =
+        shown(floors(steps)).into_iter().map(|floor| (floor, Gathering::default())).collect();
+    for step in steps {
+        let points = read(step);
+        for (floor, curve) in &mut curves {
+            curve.push(points[*floor]);
+        }
+    }
+    curves.into_iter().map(|(floor, curve)| (floor, curve.points())).collect()
 }
 
 pub(super) fn style(curve: usize, width: f64) -> Style {

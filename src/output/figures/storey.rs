@@ -88,10 +88,10 @@ fn striker(history: &StoreyImpactHistory) -> Series {
     let around = 0.5 * (high - low);
     let near = |place: f64| place >= low - around && place <= high + around;
     let style = Style::line(palette::BLACK, 1.4, DASHED);
-    let mut striker = impact::series(&history.blow, "striker Xs", |step| step.striker_displacement, style);
-    let last = striker.points.iter().rposition(|(_, place)| near(*place));
-    striker.points.truncate(last.map_or(striker.points.len(), |last| last + 1));
-    striker
+    let steps = &history.blow.steps;
+    let shown = steps.iter().rposition(|step| near(step.striker_displacement)).map_or(steps.len(), |last| last + 1);
+    let points = steps.iter().take(shown).map(|step| (step.time, step.striker_displacement)).collect();
+    Series { label: "striker Xs".to_owned(), points, style }
 }
 
 /// The contact behind a chart over virtual time.

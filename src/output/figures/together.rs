@@ -3,6 +3,7 @@
 //! frame the top floor stands for its displacement and the lowest storey, which carries all the others, for its drift and shear.
 
 use super::chart::{Chart, Colour, DASH_DOT, DOTTED, LONG, Quantity, SOLID, SPARSE, Series, Style, palette};
+use super::points::Points;
 use crate::plan::{FigureKind, MOST_TOGETHER};
 use crate::quantity::Dimension;
 use crate::record::{Floors, History, ImpactHistory, ProcedureRecord, ShakeHistory, ShakeStep};
@@ -89,7 +90,7 @@ fn shown(kind: FigureKind, history: &History) -> Option<Shown> {
 }
 
 /// One procedure's curve.
-fn points(kind: FigureKind, history: &History) -> Option<Vec<(f64, f64)>> {
+fn points(kind: FigureKind, history: &History) -> Option<Points> {
     match history {
         History::Impact(history) => impact(kind, history),
         History::Shake(history) => shake(kind, history),
@@ -97,7 +98,7 @@ fn points(kind: FigureKind, history: &History) -> Option<Vec<(f64, f64)>> {
     }
 }
 
-fn impact(kind: FigureKind, ImpactHistory { steps, .. }: &ImpactHistory) -> Option<Vec<(f64, f64)>> {
+fn impact(kind: FigureKind, ImpactHistory { steps, .. }: &ImpactHistory) -> Option<Points> {
     Some(match kind {
         FigureKind::Displacement => steps.iter().map(|step| (step.time, step.computed)).collect(),
         FigureKind::Velocity => steps.iter().map(|step| (step.time, step.velocity)).collect(),
@@ -111,7 +112,7 @@ fn impact(kind: FigureKind, ImpactHistory { steps, .. }: &ImpactHistory) -> Opti
     })
 }
 
-fn shake(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option<Vec<(f64, f64)>> {
+fn shake(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option<Points> {
     let lowest = |values: Vec<f64>| values.first().copied().unwrap_or(0.0);
     let base_shear = |step: &ShakeStep| step.restoring_force.iter().sum();
     Some(match kind {

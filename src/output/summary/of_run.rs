@@ -1,17 +1,18 @@
 //! Fills a [`Summary`] from a run. Knows the record; the format itself is one file up.
 
 use super::super::budget::{Budget, Line, budgets};
-use super::super::{Amends, Change, Run, deviations, standing};
+use super::super::{Amends, Change, Run, deviations, expansion, standing};
 use super::{
     AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary,
     EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary,
     RequirementSummary, RigSummary, SCHEMA, Summary, Uncertainty, Value,
 };
-use crate::formula::{Estimate, ResultValue};
+use crate::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::si_unit;
 use crate::record::{EventKind, NamedResult, Outcome, ProcedureRecord};
 use crate::schema;
+use crate::uncertainty::{Known, known, known_entries};
 use crate::verdict::{Bound, ConditionOutcome, RequirementOutcome};
 
 impl Summary {
@@ -123,7 +124,7 @@ fn procedure(run: &Run<'_>, index: usize, procedure: &ProcedureRecord) -> Proced
         kind: procedure.kind,
         complete: procedure.complete,
         inputs: Ordered(procedure.inputs.iter().map(input).collect()),
-        results: Ordered(procedure.results.iter().map(|r| (r.name.to_owned(), result(procedure.kind, r))).collect()),
+        results: Ordered(procedure.results.iter().map(|r| (r.name.to_owned(), result(run, index, procedure.kind, r))).collect()),
         uncertainty_budgets: budgets(run, index, procedure).iter().map(budget).collect(),
     }
 }
@@ -137,6 +138,7 @@ fn budget(budget: &Budget<'_>) -> BudgetSummary {
         input_u: line.uncertainty.map(f64::abs).and_then(finite),
         sensitivity: line.sensitivity.and_then(finite),
         contribution: finite(line.contribution),
+        degrees_of_freedom: finite(line.degrees),
         smooth: line.smooth,
     };
     BudgetSummary {
@@ -144,15 +146,16 @@ fn budget(budget: &Budget<'_>) -> BudgetSummary {
         entry: budget.entry,
         unit: si_unit(budget.result.dimension),
         u: finite(budget.uncertainty),
+        degrees_of_freedom: expansion::degrees(budget.known),
         contributions: budget.lines.iter().map(contribution).collect(),
     }
 }
 
 /// A result; what counts something is a whole number.
-fn result(kind: &str, result: &NamedResult) -> Quantity {
+fn result(run: &Run<'_>, index: usize, kind: &str, result: &NamedResult) -> Quantity {
     let words: Vec<&str> = kind.split(' ').collect();
     let known = schema::block_of_words(&words).and_then(|block| block.result(result.name));
-    let quantity = quantity(&result.value, &result.entry_uncertainties(), result.dimension);
+    let quantity = expanded(quantity(&result.value, &result.entry_uncertainties(), result.dimension), run, index, result);
     match quantity.value {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number that a f64 holds")]
         Value::Number(Some(count)) if known.is_some_and(|known| known.count) && count >= 0.0 && count.fract() == 0.0 => {
@@ -160,6 +163,33 @@ fn result(kind: &str, result: &NamedResult) -> Quantity {
         }
         _ => quantity,
     }
+}
+
+/// Something of how well a number is known.
+type Read = fn(Known) -> f64;
+
+/// The same with what its uncertainty is worth.
+fn expanded(quantity: Quantity, run: &Run<'_>, index: usize, result: &NamedResult) -> Quantity {
+    let reference = ResultReference { procedure: ProcedureId(index), name: result.name, part: Part::Value };
+    let parts = result.contributions_of(reference);
+    let told = |all: &[Option<Known>], of: Read| {
+        let each = all.iter().map(|known| known.filter(|known| expansion::degrees(*known).is_some()).map(of));
+        let each: Vec<Option<f64>> = each.collect();
+        each.iter().any(Option::is_some).then_some(each)
+    };
+    let (degrees, k): (Read, Read) = (|known| known.degrees, Known::coverage);
+    let (degrees_of_freedom, k) = match &result.value {
+        ResultValue::Number { .. } => {
+            let one = [known(&parts, run.record)];
+            let number = |of| told(&one, of).map(|each| Uncertainty::Number(each[0]));
+            (number(degrees), number(k))
+        }
+        ResultValue::List(values) => {
+            let all = known_entries(&parts, values.len(), run.record);
+            (told(&all, degrees).map(Uncertainty::List), told(&all, k).map(Uncertainty::List))
+        }
+    };
+    Quantity { degrees_of_freedom, k, ..quantity }
 }
 
 /// `entries` are the uncertainties of a list, where any is known.
@@ -178,7 +208,7 @@ fn quantity(value: &ResultValue, entries: &[Option<f64>], dimension: Dimension) 
             (Value::List(values.iter().map(|value| finite(*value)).collect()), u)
         }
     };
-    Quantity { value, unit: si_unit(dimension), u }
+    Quantity { value, unit: si_unit(dimension), u, degrees_of_freedom: None, k: None }
 }
 
 fn requirement(requirement: &RequirementOutcome) -> RequirementSummary {
@@ -213,6 +243,7 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
         margin: outcome.margin.and_then(finite),
         unit: si_unit(outcome.dimension),
         u: outcome.uncertainty.and_then(finite),
+        k: outcome.known().filter(|known| expansion::degrees(*known).is_some()).map(Known::coverage),
         guard_band: outcome.guard_band.and_then(finite),
         reason: outcome.reason.clone(),
     }

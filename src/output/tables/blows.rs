@@ -35,9 +35,9 @@ pub(super) fn rows(history: &EscalateHistory) -> Vec<Column> {
     ]
 }
 
-/// What each storey went through in each blow, and what stayed; None where no frame was struck.
-pub(super) fn storeys(history: &EscalateHistory) -> Option<(usize, Vec<Column>)> {
-    let storeys = history.storeys().next()?.floors.first()?.computed.len();
+/// What each storey went through in each blow, and what stayed.
+pub(super) fn storeys(history: &EscalateHistory) -> Vec<Column> {
+    let storeys = history.storeys().next().and_then(|blow| blow.floors.first()).map_or(0, |floors| floors.computed.len());
     let rows: Vec<(u64, &Blow, usize)> =
         (1..).zip(&history.blows).flat_map(|(number, blow)| (0..storeys).map(move |storey| (number, blow, storey))).collect();
     let of = |name: &str, result: &str| {
@@ -48,7 +48,7 @@ pub(super) fn storeys(history: &EscalateHistory) -> Option<(usize, Vec<Column>)>
         let read = |(_, blow, storey): &(u64, &Blow, usize)| read(blow.rest.as_ref()?).get(*storey).copied();
         Column::new(name.into(), rows.iter().map(read).collect::<Vec<Option<f64>>>())
     };
-    let columns = vec![
+    vec![
         integers("blow", &rows, |(number, ..)| *number),
         integers("storey", &rows, |(.., storey)| *storey as u64 + 1),
         numbers("energy_j", &rows, |(_, blow, _)| blow.energy),
@@ -59,6 +59,5 @@ pub(super) fn storeys(history: &EscalateHistory) -> Option<(usize, Vec<Column>)>
         rest("rest_force_n", |rest| rest.force.clone()),
         rest("rest_drift_m", Rest::drift),
         rest("rest_shear_n", Rest::shear),
-    ];
-    Some((rows.len(), columns))
+    ]
 }

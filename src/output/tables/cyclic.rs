@@ -1,9 +1,9 @@
 //! Tables of cycles: one row a reading, and one row a whole cycle. In: the history. Out: columns.
 
-use polars::prelude::{Column, DataFrame, PolarsError};
+use polars::prelude::Column;
 
 use super::{integers, numbers};
-use crate::record::{CycleHistory, CycleStep, WholeCycle};
+use crate::record::{CycleStep, WholeCycle};
 
 pub(super) fn steps(steps: &[CycleStep]) -> Vec<Column> {
     let of = |name, read: fn(&CycleStep) -> f64| numbers(name, steps, read);
@@ -22,13 +22,12 @@ pub(super) fn steps(steps: &[CycleStep]) -> Vec<Column> {
 }
 
 /// One row a whole cycle.
-pub(super) fn cycles(history: &CycleHistory) -> Result<DataFrame, PolarsError> {
-    let cycles = &history.cycles;
+pub(super) fn cycles(cycles: &[WholeCycle]) -> Vec<Column> {
     let of = |name, read: fn(&WholeCycle) -> f64| numbers(name, cycles, read);
     let some = |name: &str, read: fn(&WholeCycle) -> Option<f64>| {
         Column::new(name.into(), cycles.iter().map(read).collect::<Vec<Option<f64>>>())
     };
-    let columns = vec![
+    vec![
         integers("cycle", cycles, |cycle| cycle.cycle),
         integers("repeat", cycles, |cycle| u64::from(cycle.repeat)),
         of("amplitude_m", |cycle| cycle.amplitude),
@@ -38,6 +37,5 @@ pub(super) fn cycles(history: &CycleHistory) -> Result<DataFrame, PolarsError> {
         some("secant_stiffness_n_per_m", |cycle| cycle.found.stiffness),
         of("max_force_n", |cycle| cycle.found.max_force),
         of("min_force_n", |cycle| cycle.found.min_force),
-    ];
-    DataFrame::new(cycles.len(), columns)
+    ]
 }

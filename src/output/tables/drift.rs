@@ -8,7 +8,7 @@ use crate::record::{Drift, Zero};
 /// A zero of an axis (from 1), and when it was read.
 type Row = (u64, &'static str, Zero);
 
-pub(super) fn rows(drift: &Drift) -> (usize, Vec<Column>) {
+pub(super) fn rows(drift: &Drift) -> Vec<Column> {
     let axes = (1..).zip(&drift.axes);
     let rows: Vec<Row> = axes
         .flat_map(|(number, axis)| {
@@ -17,7 +17,7 @@ pub(super) fn rows(drift: &Drift) -> (usize, Vec<Column>) {
         })
         .collect();
     let of = |name, read: fn(&Row) -> f64| numbers(name, &rows, read);
-    let columns = vec![
+    vec![
         integers("axis", &rows, |(axis, ..)| *axis),
         texts("test", &rows, |(_, when, _)| when),
         of("wall_time_s", |(.., zero)| zero.time),
@@ -25,6 +25,5 @@ pub(super) fn rows(drift: &Drift) -> (usize, Vec<Column>) {
         of("displacement_m", |(.., zero)| zero.displacement),
         of("force_slope_n_per_s", |(.., zero)| zero.force_slope),
         of("displacement_slope_m_per_s", |(.., zero)| zero.displacement_slope),
-    ];
-    (rows.len(), columns)
+    ]
 }

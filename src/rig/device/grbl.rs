@@ -67,9 +67,14 @@ impl GrblDevice {
 
     /// Sends a line that acts once however often it is heard, and collects what comes before its `ok`: settings, versions and
     /// messages are parts of the answer, all else is none of it.
-    fn command(&mut self, line: &[u8], mut each: impl FnMut(&Word), enough: impl Fn(&[Word]) -> bool) -> Result<(), DeviceFault> {
+    fn command(
+        &mut self,
+        line: &[u8],
+        mut each: impl FnMut(&Word, &[u8]),
+        enough: impl Fn(&[Word]) -> bool,
+    ) -> Result<(), DeviceFault> {
         let known = self.known;
-        let mut seen = Vec::new();
+        let (mut seen, mut lines) = (Vec::new(), Vec::new());
         self.talk.exchange(line, b"\n", |line| {
             let words = grbl::words(line);
             let is_part = !words.is_empty() && words.iter().all(Word::is_part);
@@ -78,10 +83,11 @@ impl GrblDevice {
                     return Answer::Fault(fault);
                 }
                 if word == Word::Ok && enough(&seen) {
-                    seen.iter().for_each(&mut each);
+                    seen.iter().zip(&lines).for_each(|(word, line): (&Word, &Vec<u8>)| each(word, line));
                     return Answer::Take(());
                 }
                 seen.push(word);
+                lines.push(line.to_vec());
             }
             if is_part { Answer::Part } else { Answer::Ignore }
         })
@@ -158,6 +164,32 @@ impl GrblDevice {
     }
 }
 
+/// Who a controller is that says its version in this line; the line before it, if there is one, is what it said of its start.
+pub(super) fn introduced(said: &[u8]) -> Option<DeviceIdentity> {
+    let words: Vec<Word> = said.split(|byte| *byte == b'\n').flat_map(grbl::words).collect();
+    let (firmware, serial) = words.iter().find_map(|word| match word {
+        Word::Version(version, text) => Some((version.clone(), text.clone())),
+        _ => None,
+    })?;
+    let boot = words.iter().any(|word| matches!(word, Word::Banner(_))).then(|| JUST_STARTED.to_owned());
+    let simulated = serial.starts_with(super::SIMULATED);
+    Some(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot, simulated, raw: vec![said.to_vec()] })
+}
+
+/// Where the axis is by the first status of a line.
+pub(super) fn decoded(line: Vec<u8>) -> Option<Sample> {
+    let status = grbl::words(&line).into_iter().find_map(|word| match word {
+        Word::Status(status) => Some(status),
+        _ => None,
+    })?;
+    Some(sample_of(status, line))
+}
+
+fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
+    let moving = Some(status.state.is_moving());
+    Sample { displacement: Some(status.position), moving, raw: vec![raw], ..Sample::default() }
+}
+
 /// The first word of a line that `pick` takes, with the line.
 fn find<T>(line: &[u8], known: bool, pick: impl Fn(&Word) -> Option<T>) -> Answer<(T, Vec<u8>)> {
     let words = grbl::words(line);
@@ -187,9 +219,11 @@ impl Device for GrblDevice {
         self.talk.drain()?;
         // What it says of its start is not asked for, and is no fault of the line.
         let of_the_start = |line: &[u8]| grbl::words(line).iter().all(|word| matches!(word, Word::Banner(_) | Word::Message));
-        let mut started = false;
+        let mut before = Vec::new();
         let accept = |line: &[u8]| {
-            started |= grbl::words(line).iter().any(|word| matches!(word, Word::Banner(_)));
+            if grbl::words(line).iter().any(|word| matches!(word, Word::Banner(_))) {
+                before = [line, b"\n"].concat();
+            }
             match find(line, false, |word| matches!(word, Word::Status(_)).then_some(())) {
                 Answer::Ignore if of_the_start(line) => Answer::Part,
                 answer => answer,
@@ -209,14 +243,14 @@ impl Device for GrblDevice {
             _ => return Err(DeviceFault::Unfit("it is moving already".to_owned())),
         }
         let mut who = None;
-        let keep = |word: &Word| {
-            if let Word::Version(version, text) = word {
-                who = Some((version.clone(), text.clone()));
+        let keep = |word: &Word, line: &[u8]| {
+            if let Word::Version(..) = word {
+                who = introduced(&[&before, line].concat());
             }
         };
         self.command(grbl::BUILD, keep, |seen| seen.iter().any(|word| matches!(word, Word::Version(..))))?;
         let mut settings = BTreeMap::new();
-        let keep = |word: &Word| {
+        let keep = |word: &Word, _: &[u8]| {
             if let Word::Setting(number, value) = word {
                 settings.extend(value.parse::<f64>().map(|value| (*number, value)));
             }
@@ -225,10 +259,7 @@ impl Device for GrblDevice {
         check(&settings)?;
         self.settings = settings;
         (self.known, self.unanswered, self.held) = (true, false, false);
-        let (firmware, serial) = who.unwrap_or_default();
-        let simulated = serial.starts_with(super::SIMULATED);
-        let boot = started.then(|| JUST_STARTED.to_owned());
-        Ok(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot, simulated, raw: Vec::new() })
+        who.ok_or_else(|| DeviceFault::Unfit("it does not say what version it is".to_owned()))
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
@@ -247,7 +278,7 @@ impl Device for GrblDevice {
         for frame in &going.frames {
             self.unanswered = true;
             self.talk.drain()?;
-            let answered = self.command(frame, |_| (), |_| true);
+            let answered = self.command(frame, |_, _| (), |_| true);
             self.unanswered = !matches!(answered, Ok(()) | Err(DeviceFault::Refused { .. } | DeviceFault::Rebooted { .. }));
             answered?;
         }
@@ -263,8 +294,7 @@ impl Device for GrblDevice {
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         let (status, raw) = self.fit_status()?;
-        let moving = Some(status.state.is_moving());
-        Ok(Sample { displacement: Some(status.position), moving, raw: vec![raw], ..Sample::default() })
+        Ok(sample_of(status, raw))
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {

@@ -172,21 +172,21 @@ fn a_hold_ends_a_jog_and_the_next_jog_begins_at_once() {
 }
 
 #[test]
-fn an_axis_held_at_rest_is_let_go_of_by_who_held_it_and_only_then() {
+fn an_axis_held_at_rest_is_let_go_of_by_who_held_it_and_by_nobody_else() {
     let (mut device, port) = identified();
     let going = device.encode(&[0.001], 1e-3).unwrap();
     status(&port, "Hold:0", 0.0);
     assert!(reason(device.start(&going)).contains("somebody else"));
     port.reply(&[]);
     status(&port, "Hold:0", 0.0);
-    device.hold().unwrap();
-    status(&port, "Hold:0", 0.0);
     port.reply(&[]);
+    status(&port, "Idle", 0.0);
+    device.hold().unwrap();
+    assert_eq!(sent(&port)[6..], ["!", "?", "~", "?"], "it stands with its load, and idle");
     status(&port, "Idle", 0.0);
     reply(&port, "ok\r\n");
     status(&port, "Jog", 0.0);
     device.start(&going).unwrap();
-    assert_eq!(sent(&port)[8..], ["?", "~", "?", "$J=G21G90G53X1.0000F60.000\n", "?"]);
 }
 
 #[test]

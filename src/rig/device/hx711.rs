@@ -17,10 +17,25 @@ impl Hx711Device {
     }
 }
 
+/// Who answers where counts come.
+pub(super) fn introduced() -> DeviceIdentity {
+    DeviceIdentity { model: "HX711".to_owned(), ..DeviceIdentity::default() }
+}
+
+/// The count of a line.
+pub(super) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
+    let Some(count) = hx711::count(&line) else {
+        return Err(DeviceFault::NoReading { raw: line, reason: "it is no count of 24 bits".to_owned() });
+    };
+    let (low, high) = RAILS;
+    let flags = Flags { saturated: hx711::is_saturated(count), ..Flags::default() };
+    Ok(Sample { force: Some(Force::Counts { count, low, high }), flags, raw: vec![line], ..Sample::default() })
+}
+
 impl Device for Hx711Device {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.sample()?;
-        Ok(DeviceIdentity { model: "HX711".to_owned(), ..DeviceIdentity::default() })
+        Ok(introduced())
     }
 
     fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
@@ -32,13 +47,7 @@ impl Device for Hx711Device {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let line = stream::fresh_line(&mut self.talk)?;
-        let Some(count) = hx711::count(&line) else {
-            return Err(DeviceFault::NoReading { raw: line, reason: "it is no count of 24 bits".to_owned() });
-        };
-        let (low, high) = RAILS;
-        let flags = Flags { saturated: hx711::is_saturated(count), ..Flags::default() };
-        Ok(Sample { force: Some(Force::Counts { count, low, high }), flags, raw: vec![line], ..Sample::default() })
+        decoded(stream::fresh_line(&mut self.talk)?)
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {

@@ -29,6 +29,25 @@ impl IndicatorDevice {
     }
 }
 
+/// Who answers where weights come.
+pub(super) fn introduced() -> DeviceIdentity {
+    DeviceIdentity { model: "weighing indicator".to_owned(), ..DeviceIdentity::default() }
+}
+
+/// The force of a line.
+pub(super) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
+    let weight = match indicator::weight(&line) {
+        Ok(weight) => weight,
+        Err(reason) => return Err(DeviceFault::NoReading { raw: line, reason: reason.to_owned() }),
+    };
+    // Out of range it may show no number: infinite on its side is past every limit.
+    let beyond = if weight.status == Status::Underload { f64::NEG_INFINITY } else { f64::INFINITY };
+    let flags =
+        Flags { saturated: weight.status.is_out_of_range(), unsettled: weight.status == Status::Unstable, ..Flags::default() };
+    let force = Some(Force::Newtons(weight.force.unwrap_or(beyond)));
+    Ok(Sample { force, flags, raw: vec![line], ..Sample::default() })
+}
+
 impl Device for IndicatorDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.sends_by_itself = match stream::fresh_line(&mut self.talk) {
@@ -37,7 +56,7 @@ impl Device for IndicatorDevice {
             Err(fault) => return Err(fault),
         };
         self.sample()?;
-        Ok(DeviceIdentity { model: "weighing indicator".to_owned(), ..DeviceIdentity::default() })
+        Ok(introduced())
     }
 
     fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
@@ -49,20 +68,7 @@ impl Device for IndicatorDevice {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let line = self.line()?;
-        let weight = match indicator::weight(&line) {
-            Ok(weight) => weight,
-            Err(reason) => return Err(DeviceFault::NoReading { raw: line, reason: reason.to_owned() }),
-        };
-        // Out of range it may show no number: infinite on its side is past every limit.
-        let beyond = if weight.status == Status::Underload { f64::NEG_INFINITY } else { f64::INFINITY };
-        let flags = Flags {
-            saturated: weight.status.is_out_of_range(),
-            unsettled: weight.status == Status::Unstable,
-            ..Flags::default()
-        };
-        let force = Some(Force::Newtons(weight.force.unwrap_or(beyond)));
-        Ok(Sample { force, flags, raw: vec![line], ..Sample::default() })
+        decoded(self.line()?)
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {

@@ -157,9 +157,12 @@ impl Instron {
 
 impl Device for Instron {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
-        for channel in [Channel::Position, Channel::Load] {
+        let mut raw = Vec::new();
+        for (place, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
             self.wait_for_poll()?;
-            let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut Vec::new())?;
+            let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
+            // Of a glitch and the number the number.
+            raw.drain(place..raw.len() - 1);
             if !(0.0 < full_scale && full_scale.is_finite()) {
                 return Err(DeviceFault::Unfit(format!("the full scale of its {channel:?} channel is {full_scale}")));
             }
@@ -170,7 +173,7 @@ impl Device for Instron {
             let trouble = if flags.emergency_stop { Trouble::EmergencyStop } else { Trouble::TravelLimit };
             return Err(DeviceFault::Unfit(trouble.to_string()));
         }
-        Ok(DeviceIdentity { model: "Instron 8800-style console".to_owned(), ..DeviceIdentity::default() })
+        Ok(introduced(raw))
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
@@ -184,11 +187,9 @@ impl Device for Instron {
         let mut frames = instron::ramp(fraction, way / speed).ok_or_else(unsayable)?;
         let (fraction, seconds) = instron::said(&frames).ok_or_else(unsayable)?;
         frames.extend(instron::start());
-        let said = fraction * full_scale;
-        // The last bit of a float is no part of what the bytes say; the time was rounded up.
-        let target = if (said - target).abs() <= 4.0 * f64::EPSILON * target.abs() { target } else { said };
+        // The time was rounded up.
         let speed = if way > 0.0 { (way / seconds).min(speed) } else { speed };
-        Ok(Move { frames, targets: vec![target], speed, id: None })
+        Ok(Move { frames, targets: vec![meant_by(fraction * full_scale, target)], speed, id: None })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -239,6 +240,25 @@ impl Device for Instron {
     fn tally(&self) -> Tally {
         self.talk.tally()
     }
+}
+
+/// Who answers as a console, in these replies: the full scales of position and load.
+pub(super) fn introduced(raw: Vec<Vec<u8>>) -> DeviceIdentity {
+    DeviceIdentity { model: "Instron 8800-style console".to_owned(), raw, ..DeviceIdentity::default() }
+}
+
+/// A target (m) that the bytes of a ramp say: the last bit of a float is no part of that.
+fn meant_by(said: f64, target: f64) -> f64 {
+    if (said - target).abs() <= 4.0 * f64::EPSILON * target.abs() { target } else { said }
+}
+
+/// Whether these are the bytes of a ramp to this place (m), the position's full scale being `full_scale`, and of its start. What
+/// speed it is depends on where it begins, which stands in no byte.
+pub(super) fn sends(wire: &[u8], target: f64, full_scale: f64) -> bool {
+    let lines: Vec<Vec<u8>> = wire.split_inclusive(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect();
+    let Some((fraction, seconds)) = instron::said(&lines) else { return false };
+    let again = instron::ramp(fraction, seconds).map(|ramp| [ramp, instron::start()].concat().concat());
+    again.is_some_and(|again| again == wire) && meant_by(fraction * full_scale, target).to_bits() == target.to_bits()
 }
 
 fn no_reading(raw: Vec<u8>, reason: &str) -> DeviceFault {

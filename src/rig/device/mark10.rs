@@ -88,22 +88,20 @@ impl Device for Mark10 {
             return Err(DeviceFault::Unfit("the stand does not go into limit mode: does it have PC control?".to_owned()));
         }
         self.sample()?;
-        Ok(DeviceIdentity { model: "Mark-10 stand".to_owned(), ..DeviceIdentity::default() })
+        Ok(stand_introduced())
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
         let target = one_axis(targets)?;
         let from = self.last.ok_or_else(|| DeviceFault::Unfit("where it stands is not known: read first".to_owned()))?;
         let unsayable = || DeviceFault::Unfit(format!("the stand cannot say {target} m at {speed} m/s"));
-        let (speed_setting, speed) = mark10::speed(speed).ok_or_else(unsayable)?;
         let side = if target < from { Side::Lower } else { Side::Upper };
-        let (limit_setting, target) = mark10::limit(side, target).ok_or_else(unsayable)?;
-        let mut frames = vec![speed_setting, limit_setting];
+        let mut going = settings(target, speed, side).ok_or_else(unsayable)?;
         // Rounded to where it stands already, it is not sent off.
-        if (target - from).abs() > THERE {
-            frames.push(if side == Side::Lower { mark10::DOWN } else { mark10::UP }.to_vec());
+        if (going.targets[0] - from).abs() > THERE {
+            going.frames.push(direction(side).to_vec());
         }
-        Ok(Move { frames, targets: vec![target], speed, id: None })
+        Ok(going)
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -185,7 +183,7 @@ impl Mark10Gauge {
 impl Device for Mark10Gauge {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.sample()?;
-        Ok(DeviceIdentity { model: "Mark-10 gauge".to_owned(), ..DeviceIdentity::default() })
+        Ok(gauge_introduced())
     }
 
     fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
@@ -197,9 +195,7 @@ impl Device for Mark10Gauge {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let said = ask_line(&mut self.talk, mark10::ASK_FORCE, mark10::ENDING)?;
-        let force = newtons(&said)?;
-        Ok(Sample { force: Some(force), raw: vec![said], ..Sample::default() })
+        weighed(ask_line(&mut self.talk, mark10::ASK_FORCE, mark10::ENDING)?)
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
@@ -219,7 +215,47 @@ impl Device for Mark10Gauge {
     }
 }
 
-fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
+/// Who answers as a stand, and as a gauge alone.
+pub(super) fn stand_introduced() -> DeviceIdentity {
+    DeviceIdentity { model: "Mark-10 stand".to_owned(), ..DeviceIdentity::default() }
+}
+
+pub(super) fn gauge_introduced() -> DeviceIdentity {
+    DeviceIdentity { model: "Mark-10 gauge".to_owned(), ..DeviceIdentity::default() }
+}
+
+/// The force of a gauge's answer.
+pub(super) fn weighed(said: Vec<u8>) -> Result<Sample, DeviceFault> {
+    let force = newtons(&said)?;
+    Ok(Sample { force: Some(force), raw: vec![said], ..Sample::default() })
+}
+
+/// Speed and travel limit of a move to `target` (m) at no more than `speed` (m/s), which goes to this side.
+fn settings(target: f64, speed: f64, side: Side) -> Option<Move> {
+    let (speed_setting, speed) = mark10::speed(speed)?;
+    let (limit_setting, target) = mark10::limit(side, target)?;
+    Some(Move { frames: vec![speed_setting, limit_setting], targets: vec![target], speed, id: None })
+}
+
+const fn direction(side: Side) -> &'static [u8] {
+    match side {
+        Side::Lower => mark10::DOWN,
+        Side::Upper => mark10::UP,
+    }
+}
+
+/// Whether these are the bytes of a move to this place (m) at this speed (m/s), by either side, set off or left where it is.
+pub(super) fn sends(wire: &[u8], target: f64, speed: f64) -> bool {
+    [Side::Lower, Side::Upper].into_iter().any(|side| {
+        settings(target, speed, side).is_some_and(|going| {
+            let said = going.targets[0].to_bits() == target.to_bits() && going.speed.to_bits() == speed.to_bits();
+            let rest = wire.strip_prefix(going.frames.concat().as_slice());
+            said && rest.is_some_and(|rest| rest.is_empty() || rest == direction(side))
+        })
+    })
+}
+
+pub(super) fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
     match mark10::force(answer) {
         Some(mark10::Force::Newtons(newtons)) => Ok(Force::Newtons(newtons)),
         Some(mark10::Force::Unknown) => Err(no_reading(answer.to_vec(), "the gauge did not understand")),

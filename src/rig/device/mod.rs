@@ -3,6 +3,7 @@
 
 mod asking;
 mod grbl;
+mod heard;
 mod hx711;
 mod indicator;
 mod instron;
@@ -23,6 +24,7 @@ use crate::plan::Limits;
 use super::{LastMove, Tally};
 
 pub use grbl::GrblDevice;
+pub use heard::{Heard, Teller};
 pub use hx711::Hx711Device;
 pub use indicator::IndicatorDevice;
 pub use instron::Instron;
@@ -89,8 +91,17 @@ impl Sample {
 
     /// Every axis, in order.
     pub fn axes(&self) -> impl Iterator<Item = Channel> + '_ {
-        let first = Channel { displacement: self.displacement, force: self.force, flags: self.flags };
-        std::iter::once(first).chain(self.others.iter().copied())
+        std::iter::once(self.first()).chain(self.others.iter().copied())
+    }
+
+    /// The axis at this place, which is one of them.
+    #[must_use]
+    pub fn axis(&self, place: usize) -> Channel {
+        place.checked_sub(1).map_or_else(|| self.first(), |other| self.others[other])
+    }
+
+    const fn first(&self) -> Channel {
+        Channel { displacement: self.displacement, force: self.force, flags: self.flags }
     }
 }
 

@@ -68,8 +68,7 @@ impl Modbus {
     fn read(&mut self, register: Register, unit: f64, bound: f64) -> Result<Value, DeviceFault> {
         let question = modbus::read(self.map.unit, register.table, register.address, modbus::width(self.map.number));
         let (words, raw) = self.words(&question)?;
-        let value = modbus::from_words(self.map.number, &words).map(|value| value * unit);
-        match value.filter(|value| plausible(*value, bound)) {
+        match value_of(self.map.number, &words, unit, bound) {
             Some(value) => Ok(Value { value, raw }),
             None => Err(DeviceFault::NoReading { raw, reason: "no number that can be".to_owned() }),
         }
@@ -88,33 +87,6 @@ impl Modbus {
 
     fn stop_frame(&self) -> Option<Vec<u8>> {
         self.map.command.map(|command| modbus::write(self.map.unit, command, &[self.map.stop_word]))
-    }
-
-    fn target_frame(&self, target: f64) -> Result<(Vec<u8>, f64), DeviceFault> {
-        let register = self.map.target.ok_or_else(|| unfit("it has no target register: it cannot move"))?;
-        let (words, said) = self.say(target, self.map.length_unit, f64::round)?;
-        Ok((modbus::write(self.map.unit, register, &words), said))
-    }
-
-    /// The registers of a quantity, and what they say; `whole` rounds where they hold whole numbers.
-    fn say(&self, quantity: f64, unit: f64, whole: fn(f64) -> f64) -> Result<(Vec<u16>, f64), DeviceFault> {
-        let number = self.map.number;
-        let value = quantity / unit;
-        let value = if is_float(number) || same(value.round(), value) { value } else { whole(value) };
-        let words = modbus::to_words(number, value).ok_or_else(|| unfit("its registers cannot hold the number"))?;
-        let said = modbus::from_words(number, &words).ok_or_else(|| unfit("its registers cannot hold the number"))? * unit;
-        // The last bit of turning units is no part of what the registers say.
-        Ok((words, if same(said, quantity) { quantity } else { said }))
-    }
-
-    /// Registers of a speed that is not above the one asked for.
-    fn say_speed(&self, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
-        let (words, said) = self.say(speed, self.map.speed_unit, f64::floor)?;
-        if said <= speed {
-            return if said > 0.0 { Ok((words, said)) } else { Err(unfit("its registers cannot hold so low a speed")) };
-        }
-        // A short float may be above by half its last bit.
-        self.say(speed * (1.0 - f64::from(f32::EPSILON)), self.map.speed_unit, f64::floor)
     }
 }
 
@@ -137,24 +109,11 @@ impl Device for Modbus {
             )),
             other => other,
         })?;
-        Ok(DeviceIdentity { model: format!("Modbus unit {}", self.map.unit), ..DeviceIdentity::default() })
+        Ok(introduced(&self.map))
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
-        let target = one_axis(targets)?;
-        let (target_frame, target) = self.target_frame(target)?;
-        let mut going = Move { frames: Vec::new(), targets: vec![target], speed, id: None };
-        // Before the target, since some drives set off as soon as they have one.
-        if let Some(register) = self.map.speed {
-            let (words, said) = self.say_speed(speed)?;
-            going.frames.push(modbus::write(self.map.unit, register, &words));
-            going.speed = said;
-        }
-        going.frames.push(target_frame);
-        if let Some(command) = self.map.command {
-            going.frames.push(modbus::write(self.map.unit, command, &[self.map.start_word]));
-        }
-        Ok(going)
+        frames(&self.map, one_axis(targets)?, speed)
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -188,7 +147,7 @@ impl Device for Modbus {
         } else {
             let register = self.position.ok_or_else(|| unfit("it has nothing to stop it with"))?;
             let here = self.read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?.value;
-            self.target_frame(here)?.0
+            target_frame(&self.map, here)?.0
         };
         self.write(&frame)
     }
@@ -204,6 +163,93 @@ impl Device for Modbus {
     fn tally(&self) -> Tally {
         self.talk.tally()
     }
+}
+
+/// Who answers as this unit.
+pub(super) fn introduced(map: &ModbusMap) -> DeviceIdentity {
+    DeviceIdentity { model: format!("Modbus unit {}", map.unit), ..DeviceIdentity::default() }
+}
+
+/// What is sent to go to `target` (m) at `speed` (m/s), and what it says.
+fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    let (target_frame, target) = target_frame(map, target)?;
+    let mut going = Move { frames: Vec::new(), targets: vec![target], speed, id: None };
+    // Before the target, since some drives set off as soon as they have one.
+    if let Some(register) = map.speed {
+        let (words, said) = say_speed(map, speed)?;
+        going.frames.push(modbus::write(map.unit, register, &words));
+        going.speed = said;
+    }
+    going.frames.push(target_frame);
+    if let Some(command) = map.command {
+        going.frames.push(modbus::write(map.unit, command, &[map.start_word]));
+    }
+    Ok(going)
+}
+
+/// Whether these are the bytes of a move to this place (m) at this speed (m/s).
+pub(super) fn sends(wire: &[u8], map: &ModbusMap, target: f64, speed: f64) -> bool {
+    frames(map, target, speed).is_ok_and(|going| {
+        let said = going.targets[0].to_bits() == target.to_bits() && going.speed.to_bits() == speed.to_bits();
+        said && going.frames.concat() == wire
+    })
+}
+
+fn target_frame(map: &ModbusMap, target: f64) -> Result<(Vec<u8>, f64), DeviceFault> {
+    let register = map.target.ok_or_else(|| unfit("it has no target register: it cannot move"))?;
+    let (words, said) = say(map.number, target, map.length_unit, f64::round)?;
+    Ok((modbus::write(map.unit, register, &words), said))
+}
+
+/// The registers of a quantity, and what they say; `whole` rounds where they hold whole numbers.
+fn say(number: ModbusNumber, quantity: f64, unit: f64, whole: fn(f64) -> f64) -> Result<(Vec<u16>, f64), DeviceFault> {
+    let value = quantity / unit;
+    let value = if is_float(number) || same(value.round(), value) { value } else { whole(value) };
+    let words = modbus::to_words(number, value).ok_or_else(|| unfit("its registers cannot hold the number"))?;
+    let said = modbus::from_words(number, &words).ok_or_else(|| unfit("its registers cannot hold the number"))? * unit;
+    // The last bit of turning units is no part of what the registers say.
+    Ok((words, if same(said, quantity) { quantity } else { said }))
+}
+
+/// Registers of a speed that is not above the one asked for.
+fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
+    let (words, said) = say(map.number, speed, map.speed_unit, f64::floor)?;
+    if said <= speed {
+        return if said > 0.0 { Ok((words, said)) } else { Err(unfit("its registers cannot hold so low a speed")) };
+    }
+    // A short float may be above by half its last bit.
+    say(map.number, speed * (1.0 - f64::from(f32::EPSILON)), map.speed_unit, f64::floor)
+}
+
+/// m or N, where the registers hold a number that can be.
+fn value_of(number: ModbusNumber, words: &[u16], unit: f64, bound: f64) -> Option<f64> {
+    modbus::from_words(number, words).map(|value| value * unit).filter(|value| plausible(*value, bound))
+}
+
+/// What an answer of this unit says as a position (m); None: it is no answer that holds a number. The second None: no number
+/// that can be.
+#[expect(clippy::option_option, reason = "no answer and no number are different things here")]
+pub(super) fn position_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
+    let words = words_in(map, answer, modbus::width(map.number))?;
+    Some(value_of(map.number, &words, map.length_unit, IMPLAUSIBLE_POSITION))
+}
+
+/// The same as a force, N.
+#[expect(clippy::option_option, reason = "no answer and no number are different things here")]
+pub(super) fn force_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
+    let words = words_in(map, answer, modbus::width(map.number))?;
+    Some(value_of(map.number, &words, map.force_unit, IMPLAUSIBLE_FORCE))
+}
+
+/// Whether it is an answer of this unit that holds a status.
+pub(super) fn is_status(map: &ModbusMap, answer: &[u8]) -> bool {
+    words_in(map, answer, 1).is_some()
+}
+
+/// So many registers of an answer, whichever of the two tables they are from. Which they are it does not say itself.
+fn words_in(map: &ModbusMap, answer: &[u8], count: u16) -> Option<Vec<u16>> {
+    let asked = |table| modbus::answer(&modbus::read(map.unit, table, 0, count), answer).ok();
+    asked(Table::Holding).or_else(|| asked(Table::Input))
 }
 
 /// One question or order and its answer, after the silence that ends whatever came before.

@@ -42,12 +42,6 @@ struct Proposed {
     sent: bool,
 }
 
-/// A reply and its bytes.
-struct Answered {
-    reply: Reply,
-    line: Vec<u8>,
-}
-
 impl NativeDevice {
     #[must_use]
     pub const fn new(talk: Talk) -> Self {
@@ -78,7 +72,7 @@ impl NativeDevice {
     }
 
     /// Asks and waits for the reply of this kind, having taken up the conversation again where it was broken off.
-    fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Answered, DeviceFault> {
+    fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Reply, DeviceFault> {
         if self.out_of_step {
             self.say_hello()?;
             if let Some(bounds) = self.narrowed.clone() {
@@ -90,24 +84,24 @@ impl NativeDevice {
     }
 
     /// Sends the frame of the next sequence number.
-    fn exchange(&mut self, frame: &[u8], kind: Kind) -> Result<Answered, DeviceFault> {
+    fn exchange(&mut self, frame: &[u8], kind: Kind) -> Result<Reply, DeviceFault> {
         self.sequence = self.sequence.wrapping_add(1);
         self.out_of_step = true;
         let (sequence, boot) = (self.sequence, self.boot.as_deref());
         let answered = self.talk.exchange(frame, b"\n", |line| judge(line, sequence, kind, boot))?;
-        let refused = answered.reply.kind == Kind::Err;
-        self.out_of_step = refused && answered.reply.words.first().is_some_and(|code| code == "SEQ");
+        let refused = answered.kind == Kind::Err;
+        self.out_of_step = refused && answered.words().first() == Some(&"SEQ");
         if refused {
-            return Err(DeviceFault::Refused { reason: native::refusal(&answered.reply.words) });
+            return Err(DeviceFault::Refused { reason: native::refusal(&answered.words()) });
         }
         Ok(answered)
     }
 
     fn say_hello(&mut self) -> Result<(), DeviceFault> {
         let frame = framed(self.sequence.wrapping_add(1), &Request::Hello)?;
-        let Answered { reply, line } = self.exchange(&frame, Kind::Ack)?;
-        let hello = native::hello(&reply.words).filter(|hello| hello.bounds.allow_something());
-        let strange = || DeviceFault::Unfit(format!("`{}` does not say what rig it is", line.escape_ascii()));
+        let reply = self.exchange(&frame, Kind::Ack)?;
+        let hello = native::hello(&reply.words()).filter(|hello| hello.bounds.allow_something());
+        let strange = || DeviceFault::Unfit(format!("`{}` does not say what rig it is", reply.line.escape_ascii()));
         let hello = hello.ok_or_else(strange)?;
         if let Some(before) = &self.hello
             && before.bounds.axes.len() != hello.bounds.axes.len()
@@ -115,13 +109,13 @@ impl NativeDevice {
             return Err(strange());
         }
         self.hello = Some(hello);
-        self.boot = Some(reply.boot.into_string());
-        self.introduction = line;
+        self.boot = Some(reply.boot().to_owned());
+        self.introduction = reply.line;
         Ok(())
     }
 
     /// Sends a move or a way as it was made. The reply to its last frame.
-    fn send(&mut self, going: &Move) -> Result<Option<Answered>, DeviceFault> {
+    fn send(&mut self, going: &Move) -> Result<Option<Reply>, DeviceFault> {
         // The bytes are on record before they are sent: they are never made anew with another number.
         let next = self.sequence.wrapping_add(1);
         if self.out_of_step || going.frames.first().and_then(|frame| native::sequence(frame)) != Some(next) {
@@ -133,7 +127,7 @@ impl NativeDevice {
         let mut last = None;
         for frame in &going.frames {
             let answered = self.exchange(frame, Kind::Ack)?;
-            state(&answered.reply, &answered.line)?;
+            state(&answered)?;
             last = Some(answered);
         }
         self.next_id = going.id.map_or(self.next_id, |id| id + 1);
@@ -154,8 +148,7 @@ impl NativeDevice {
 
     /// A request that is answered by the state alone.
     fn command(&mut self, request: &Request<'_>) -> Result<State, DeviceFault> {
-        let Answered { reply, line } = self.request(request, Kind::Ack)?;
-        state(&reply, &line)
+        state(&self.request(request, Kind::Ack)?)
     }
 }
 
@@ -170,23 +163,44 @@ pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
     DeviceIdentity { model, serial, firmware, boot, simulated, raw: Vec::new() }
 }
 
+/// The reading that a `DATA` reply of so many axes says.
+pub(super) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
+    let words = reply.words();
+    let Some(data) = native::data(&words).filter(|data| data.axes.len() == axes) else {
+        let reason = match native::axis_without_number(&words) {
+            Some(axis) => format!("axis {axis} has no number where one belongs"),
+            None => "a field is missing, too many or no number".to_owned(),
+        };
+        return Err(DeviceFault::NoReading { raw: reply.line, reason });
+    };
+    let mut axes = data.axes.iter().map(|axis| Channel {
+        displacement: Some(axis.displacement),
+        force: Some(Force::Newtons(axis.force)),
+        flags: axis.flags,
+    });
+    let Channel { displacement, force, flags } = axes.next().unwrap_or_default();
+    let others = axes.collect();
+    let moving = Some(data.state == State::Moving);
+    Ok(Sample { time: Some(data.time), displacement, force, moving, flags, others, raw: vec![reply.line] })
+}
+
 /// What a line is to the request that is open.
-fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Answered> {
+fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Reply> {
     let Ok(reply) = native::reply(line) else { return Answer::Ignore };
-    if let Some(was) = boot.filter(|was| **was != *reply.boot)
+    if let Some(was) = boot.filter(|was| *was != reply.boot())
         && on(Guarding::Reboot)
     {
-        return Answer::Fault(DeviceFault::Rebooted { was: was.to_owned(), is: reply.boot.into_string() });
+        return Answer::Fault(DeviceFault::Rebooted { was: was.to_owned(), is: reply.boot().to_owned() });
     }
     if reply.sequence != sequence && on(Guarding::Sequence) || reply.kind != kind && reply.kind != Kind::Err {
         return Answer::Ignore;
     }
-    Answer::Take(Answered { reply, line: line.to_vec() })
+    Answer::Take(reply)
 }
 
-fn state(reply: &Reply, line: &[u8]) -> Result<State, DeviceFault> {
-    let word = reply.words.first().and_then(|word| native::state(word));
-    word.ok_or_else(|| DeviceFault::NoReading { raw: line.to_vec(), reason: "it names no state".to_owned() })
+fn state(reply: &Reply) -> Result<State, DeviceFault> {
+    let word = reply.words().first().and_then(|word| native::state(word));
+    word.ok_or_else(|| DeviceFault::NoReading { raw: reply.line.clone(), reason: "it names no state".to_owned() })
 }
 
 impl Device for NativeDevice {
@@ -194,15 +208,15 @@ impl Device for NativeDevice {
         self.talk.drain()?;
         self.narrowed = None;
         self.say_hello()?;
-        let Answered { reply, line } = self.request(&Request::Status, Kind::Ack)?;
-        let flags = reply.words.get(1).and_then(|word| native::flags(word));
-        let strange = || DeviceFault::NoReading { raw: line.clone(), reason: "it has no flags".to_owned() };
+        let reply = self.request(&Request::Status, Kind::Ack)?;
+        let flags = reply.words().get(1).and_then(|word| native::flags(word));
+        let strange = || DeviceFault::NoReading { raw: reply.line.clone(), reason: "it has no flags".to_owned() };
         if flags.ok_or_else(strange)?.emergency_stop {
             return Err(DeviceFault::Unfit("the emergency stop is pressed".to_owned()));
         }
         // Between two runs nothing is said to the rig, so that its watchdog has tripped: beginning a run is the
         // operator's act that lets go of it. Within a run it is never let go of.
-        if state(&reply, &line)? == State::Held {
+        if state(&reply)? == State::Held {
             self.command(&Request::Clear)?;
         }
         (self.held, self.proposed) = (false, None);
@@ -223,10 +237,11 @@ impl Device for NativeDevice {
         if targets.len() != bounds.axes.len() {
             return Err(DeviceFault::Unfit(format!("it has {} axes, not {}", bounds.axes.len(), targets.len())));
         }
-        let said = |meant: f64| number::read_back(&native::length(meant)?, 1e3, meant);
-        let heard: Option<Vec<f64>> = targets.iter().map(|target| said(*target)).collect();
         let unsaid = || DeviceFault::Unfit(format!("a move to {targets:?} m at {speed} m/s cannot be said"));
-        let (written, (targets, speed)) = native::lengths(targets).zip(heard.zip(said(speed))).ok_or_else(unsaid)?;
+        let (written, rate) = native::lengths(targets).zip(native::length(speed)).ok_or_else(unsaid)?;
+        let said = |(written, meant): (&str, f64)| number::read_back(written, 1e3, meant);
+        let heard: Option<Vec<f64>> = written.split(' ').zip(targets.iter().copied()).map(said).collect();
+        let (targets, speed) = heard.zip(said((&rate, speed))).ok_or_else(unsaid)?;
         if !bounds.axes.iter().zip(&targets).all(|(axis, target)| axis.displacement.contains(*target)) {
             return Err(DeviceFault::Refused { reason: format!("{written} mm is outside the limits the rig says it has") });
         }
@@ -240,7 +255,7 @@ impl Device for NativeDevice {
             Some(proposed) => proposed.id + 1,
             None => self.next_id,
         };
-        let frames = self.frames_of(Request::Move { id, targets: &targets, speed })?;
+        let frames = self.frames_of(Request::Move { id, targets: &written, speed: &rate })?;
         let sent = self.proposed.as_ref().is_some_and(|proposed| proposed.sent && proposed.id == id);
         self.proposed = Some(Proposed { id, targets: written, sent });
         Ok(Move { frames, targets, speed, id: Some(id) })
@@ -251,9 +266,10 @@ impl Device for NativeDevice {
     }
 
     fn set_out(&mut self, going: &Move) -> Result<f64, DeviceFault> {
-        let Some(Answered { reply, line }) = self.send(going)? else { return Err(nothing_to_send()) };
-        let strange = || DeviceFault::NoReading { raw: line, reason: "it does not say how long the way is".to_owned() };
-        native::left(&reply.words).ok_or_else(strange)
+        let Some(reply) = self.send(going)? else { return Err(nothing_to_send()) };
+        let strange =
+            || DeviceFault::NoReading { raw: reply.line.clone(), reason: "it does not say how long the way is".to_owned() };
+        native::left(&reply.words()).ok_or_else(strange)
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -261,24 +277,8 @@ impl Device for NativeDevice {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let Answered { reply, line } = self.request(&Request::Measure { readings: 1 }, Kind::Data)?;
-        let data = native::data(&reply.words).filter(|data| data.axes.len() == self.axes());
-        let Some(data) = data else {
-            let reason = match native::axis_without_number(&reply.words) {
-                Some(axis) => format!("axis {axis} has no number where one belongs"),
-                None => "a field is missing, too many or no number".to_owned(),
-            };
-            return Err(DeviceFault::NoReading { raw: line, reason });
-        };
-        let mut axes = data.axes.iter().map(|axis| Channel {
-            displacement: Some(axis.displacement),
-            force: Some(Force::Newtons(axis.force)),
-            flags: axis.flags,
-        });
-        let Channel { displacement, force, flags } = axes.next().unwrap_or_default();
-        let others = axes.collect();
-        let moving = Some(data.state == State::Moving);
-        Ok(Sample { time: Some(data.time), displacement, force, moving, flags, others, raw: vec![line] })
+        let reply = self.request(&Request::Measure { readings: 1 }, Kind::Data)?;
+        decoded(reply, self.axes())
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {

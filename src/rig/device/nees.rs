@@ -47,12 +47,10 @@ impl Nees {
         let wait = self.talk.reply_timeout();
         let question = nees::get_control_point(&transaction, control_point);
         let (fields, raw) = self.request(&question, Some(&transaction), wait)?;
-        let measured = fields.get(1..).and_then(|fields| nees::measured(fields, control_point));
-        let (Some(displacement), Some(force)) = measured.map_or((None, None), |at| (at.displacement, at.force)) else {
-            let reason = "no displacement and force along x".to_owned();
-            return Err(DeviceFault::NoReading { raw, reason });
-        };
-        Ok((displacement, force, raw))
+        match measured(&fields, control_point) {
+            Some((displacement, force)) => Ok((displacement, force, raw)),
+            None => Err(DeviceFault::NoReading { raw, reason: "no displacement and force along x".to_owned() }),
+        }
     }
 
     fn next_transaction(&mut self) -> String {
@@ -122,15 +120,13 @@ impl Device for Nees {
         self.prefix = self.talk.clock().wall().unwrap_or_default().chars().filter(char::is_ascii_digit).collect();
         let wait = self.talk.reply_timeout();
         self.talk.drain()?;
-        let (said, _) = self.request(&nees::open_session(SESSION), None, wait)?;
+        let (_, welcome) = self.request(&nees::open_session(SESSION), None, wait)?;
         self.open = true;
         let transaction = self.next_transaction();
         self.request(&nees::steps(&transaction, ANNOUNCED_STEPS), None, wait)?;
         self.sample()?;
-        let model = said.first().filter(|text| !text.is_empty()).map_or_else(String::new, |text| format!(": {text}"));
-        let points = if self.control_points.len() == 1 { "control point" } else { "control points" };
-        let model = format!("NEES {points} {}{model}", self.control_points.join(", "));
-        Ok(DeviceIdentity { model, ..DeviceIdentity::default() })
+        let strange = || DeviceFault::Unfit("it does not say that the session is open".to_owned());
+        introduced(&self.control_points, &welcome).ok_or_else(strange)
     }
 
     fn axes(&self) -> usize {
@@ -187,18 +183,14 @@ impl Device for Nees {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let (mut channels, mut last, mut raw) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut points, mut raw) = (Vec::new(), Vec::new());
         for control_point in self.control_points.clone() {
             let (displacement, force, reply) = self.ask(&control_point)?;
-            let (displacement_read, force) = (Some(displacement), Some(Force::Newtons(force)));
-            channels.push(Channel { displacement: displacement_read, force, flags: Flags::default() });
-            last.push(displacement);
+            points.push((displacement, force));
             raw.push(reply);
         }
-        self.last = last;
-        let others = channels.split_off(1.min(channels.len()));
-        let Channel { displacement, force, flags } = channels.pop().unwrap_or_default();
-        Ok(Sample { time: None, displacement, force, moving: Some(self.executing.is_some()), flags, others, raw })
+        self.last = points.iter().map(|(displacement, _)| *displacement).collect();
+        Ok(Sample { moving: Some(self.executing.is_some()), ..sample_of(&points, raw) })
     }
 
     /// Cancels what is being executed; at rest there is nothing to say.
@@ -217,6 +209,50 @@ impl Device for Nees {
     fn tally(&self) -> Tally {
         self.talk.tally()
     }
+}
+
+/// Who a site is that answers the opening of a session with this line.
+pub(super) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<DeviceIdentity> {
+    let Reply::Done(said) = nees::reply(welcome) else { return None };
+    let model = said.first().filter(|text| !text.is_empty()).map_or_else(String::new, |text| format!(": {text}"));
+    let points = if control_points.len() == 1 { "control point" } else { "control points" };
+    let model = format!("NEES {points} {}{model}", control_points.join(", "));
+    Some(DeviceIdentity { model, raw: vec![welcome.to_vec()], ..DeviceIdentity::default() })
+}
+
+/// Displacement (m) and force (N) of a control point, from the fields of a reply.
+fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
+    let at = nees::measured(fields.get(1..)?, control_point)?;
+    at.displacement.zip(at.force)
+}
+
+/// The same from the reply itself.
+pub(super) fn decoded(reply: &[u8], control_point: &str) -> Option<(f64, f64)> {
+    match nees::reply(reply) {
+        Reply::Done(fields) => measured(&fields, control_point),
+        Reply::Refused { .. } => None,
+    }
+}
+
+/// The reading of all control points, from displacement (m) and force (N) of each.
+pub(super) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
+    let mut channels = points.iter().map(|(displacement, force)| Channel {
+        displacement: Some(*displacement),
+        force: Some(Force::Newtons(*force)),
+        flags: Flags::default(),
+    });
+    let Channel { displacement, force, flags } = channels.next().unwrap_or_default();
+    Sample { displacement, force, flags, others: channels.collect(), raw, ..Sample::default() }
+}
+
+/// Whether these are the bytes of a proposal of these places (m), and of its execution.
+pub(super) fn sends(wire: &[u8], control_points: &[String], targets: &[f64]) -> bool {
+    let Some(transaction) = nees::transaction(wire.split_inclusive(|byte| *byte == b'\n').next().unwrap_or_default()) else {
+        return false;
+    };
+    let points: Vec<(&str, f64)> = control_points.iter().map(String::as_str).zip(targets.iter().copied()).collect();
+    let again = nees::propose(transaction, &points);
+    again.is_some_and(|(proposal, said)| said == targets && [proposal, nees::execute(transaction)].concat() == wire)
 }
 
 /// Proposal, execution and name of a transaction.

@@ -83,22 +83,45 @@ fn stripped(line: &[u8]) -> &[u8] {
     line.strip_suffix(b"\r").unwrap_or(line)
 }
 
+/// Who a meter is that says this of itself.
+pub(super) fn introduced(name: &[u8]) -> Option<DeviceIdentity> {
+    let who = scpi::identification(name)?;
+    let simulated = who.maker.starts_with(super::SIMULATED) || who.model.starts_with(super::SIMULATED);
+    let model = format!("{} {}", who.maker, who.model);
+    Some(DeviceIdentity { model, serial: who.serial, firmware: who.firmware, boot: None, simulated, raw: vec![name.to_vec()] })
+}
+
+/// The forces of an answer, one a channel, by the N of a unit of each.
+pub(super) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample, DeviceFault> {
+    let words: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
+    if words.len() != newtons_per_unit.len() {
+        let reason = format!("it has {} numbers, and the meter {} channels", words.len(), newtons_per_unit.len());
+        return Err(DeviceFault::NoReading { raw: line, reason });
+    }
+    let mut channels = Vec::with_capacity(words.len());
+    for (place, (word, newtons)) in words.iter().zip(newtons_per_unit).enumerate() {
+        let (value, saturated) = match scpi::answer(if words.len() > 1 { word.trim_ascii() } else { word }) {
+            Ok(scpi::Answer::Number(value)) => (value, false),
+            // Past every limit.
+            Ok(scpi::Answer::Overload { negative }) => (if negative { f64::NEG_INFINITY } else { f64::INFINITY }, true),
+            Err(reason) => {
+                let of = if words.len() > 1 { format!("channel {}: {reason}", place + 1) } else { reason.to_owned() };
+                return Err(DeviceFault::NoReading { raw: line.clone(), reason: of });
+            }
+        };
+        let force = Some(Force::Newtons(value * newtons));
+        channels.push(Channel { displacement: None, force, flags: Flags { saturated, ..Flags::default() } });
+    }
+    let others = channels.split_off(1.min(channels.len()));
+    let Channel { force, flags, .. } = channels.pop().unwrap_or_default();
+    Ok(Sample { force, flags, others, raw: vec![line], ..Sample::default() })
+}
+
 impl Device for ScpiDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.name = Vec::new();
         self.catch_up()?;
-        let who = scpi::identification(&self.name);
-        let who = who.ok_or_else(|| DeviceFault::Unfit("it does not say who it is".to_owned()))?;
-        let simulated = who.maker.starts_with(super::SIMULATED) || who.model.starts_with(super::SIMULATED);
-        let model = format!("{} {}", who.maker, who.model);
-        Ok(DeviceIdentity {
-            model,
-            serial: who.serial,
-            firmware: who.firmware,
-            boot: None,
-            simulated,
-            raw: vec![self.name.clone()],
-        })
+        introduced(&self.name).ok_or_else(|| DeviceFault::Unfit("it does not say who it is".to_owned()))
     }
 
     fn axes(&self) -> usize {
@@ -114,29 +137,7 @@ impl Device for ScpiDevice {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let line = self.read()?;
-        let words: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
-        if words.len() != self.newtons_per_unit.len() {
-            let reason = format!("it has {} numbers, and the meter {} channels", words.len(), self.newtons_per_unit.len());
-            return Err(DeviceFault::NoReading { raw: line, reason });
-        }
-        let mut channels = Vec::with_capacity(words.len());
-        for (place, (word, newtons)) in words.iter().zip(&self.newtons_per_unit).enumerate() {
-            let (value, saturated) = match scpi::answer(if words.len() > 1 { word.trim_ascii() } else { word }) {
-                Ok(scpi::Answer::Number(value)) => (value, false),
-                // Past every limit.
-                Ok(scpi::Answer::Overload { negative }) => (if negative { f64::NEG_INFINITY } else { f64::INFINITY }, true),
-                Err(reason) => {
-                    let of = if words.len() > 1 { format!("channel {}: {reason}", place + 1) } else { reason.to_owned() };
-                    return Err(DeviceFault::NoReading { raw: line.clone(), reason: of });
-                }
-            };
-            let force = Some(Force::Newtons(value * newtons));
-            channels.push(Channel { displacement: None, force, flags: Flags { saturated, ..Flags::default() } });
-        }
-        let others = channels.split_off(1.min(channels.len()));
-        let Channel { force, flags, .. } = channels.pop().unwrap_or_default();
-        Ok(Sample { force, flags, others, raw: vec![line], ..Sample::default() })
+        decoded(self.read()?, &self.newtons_per_unit)
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {

@@ -42,8 +42,6 @@
 
 use std::fmt::Write as _;
 
-use compact_str::CompactString;
-
 use super::number;
 use crate::plan::Interval;
 use crate::rig::LastMove;
@@ -54,9 +52,6 @@ use crate::rig::failpoint::{Guarding, on};
 pub const LONGEST_FRAME: usize = 96;
 pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
 
-/// Words of the reply to `MEAS` of a rig of one axis: what most replies are.
-const WORDS_OF_A_READING: usize = 6;
-
 /// Axes of a rig, at most: the reply to HELLO is no longer than a reply may be.
 pub const MOST_AXES: usize = 6;
 
@@ -65,11 +60,11 @@ pub const MOST_AXES: usize = 6;
 pub enum Request<'a> {
     Hello,
     Limits(&'a Bounds),
-    /// Targets of every axis.
+    /// Targets of every axis and the speed as [`lengths`] and [`length`] write them: what is said is written once.
     Move {
         id: u64,
-        targets: &'a [f64],
-        speed: f64,
+        targets: &'a str,
+        speed: &'a str,
     },
     /// Where each axis passes and as fast as what, so long after the way before.
     Glide {
@@ -132,11 +127,36 @@ pub enum Kind {
 pub struct Reply {
     pub kind: Kind,
     pub sequence: u32,
-    pub boot: CompactString,
-    /// Kept without a heap of their own where they are short, as all but names are: a rig says six of them ten thousand
-    /// times a test.
-    pub words: Vec<CompactString>,
+    /// As it came, without its ending.
+    pub line: Vec<u8>,
+    /// Where the word of the power-up begins in it.
+    boot: usize,
 }
+
+impl Reply {
+    /// Word of the power-up, 4 hexadecimal digits.
+    #[must_use]
+    pub fn boot(&self) -> &str {
+        text(&self.line[self.boot..self.boot + BOOT_DIGITS])
+    }
+
+    /// What it says, word by word. Whole and in order it may have an empty or a strange field: the rig says the same however
+    /// often it is asked for this reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
+    #[must_use]
+    pub fn words(&self) -> Vec<&str> {
+        let said = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
+        let mut words = Vec::with_capacity(USUAL_WORDS);
+        words.extend(said.split(|byte| *byte == b' ').skip(1).map(text));
+        words
+    }
+}
+
+/// Of the word of a power-up, and of `*` with the checksum behind it.
+const BOOT_DIGITS: usize = 4;
+const CHECK_LENGTH: usize = 5;
+
+/// Words of a reading of one axis, and some to spare.
+const USUAL_WORDS: usize = 8;
 
 /// Why a line is no reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -189,35 +209,35 @@ pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
             longest = LONGEST_FRAME_OF_SEVERAL;
         }
     };
-    let mut frame = String::with_capacity(LONGEST_FRAME);
+    let mut out = String::with_capacity(LONGEST_FRAME);
     match request {
-        Request::Hello => write!(frame, ">HELLO {sequence}"),
+        Request::Hello => write!(out, ">HELLO {sequence}"),
         Request::Limits(bounds) => {
             several(bounds.axes.len());
             let axes: Vec<String> = bounds.axes.iter().map(bounds_of).collect::<Option<_>>()?;
-            write!(frame, ">LIM {sequence} {} {}", axes.join(" "), length(bounds.top_speed)?)
+            write!(out, ">LIM {sequence} {} {}", axes.join(" "), length(bounds.top_speed)?)
         }
         Request::Move { id, targets, speed } => {
-            several(targets.len());
-            write!(frame, ">MOVE {sequence} {id} {} {}", lengths(targets)?, length(*speed)?)
+            several(targets.split(' ').count());
+            write!(out, ">MOVE {sequence} {id} {targets} {speed}")
         }
         Request::Glide { id, ends, seconds } => {
             several(ends.len());
-            write!(frame, ">GLIDE {sequence} {id} {} {}", lengths(&in_turn(ends))?, time(*seconds)?)
+            write!(out, ">GLIDE {sequence} {id} {} {}", lengths(&in_turn(ends))?, time(*seconds)?)
         }
-        Request::Measure { readings } => write!(frame, ">MEAS {sequence} {readings}"),
-        Request::Status => write!(frame, ">STAT {sequence}"),
-        Request::Stop => write!(frame, ">STOP {sequence}"),
-        Request::Clear => write!(frame, ">CLR {sequence}"),
+        Request::Measure { readings } => write!(out, ">MEAS {sequence} {readings}"),
+        Request::Status => write!(out, ">STAT {sequence}"),
+        Request::Stop => write!(out, ">STOP {sequence}"),
+        Request::Clear => write!(out, ">CLR {sequence}"),
         Request::Reference { token } => {
             let word = !token.is_empty() && token.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
-            word.then(|| write!(frame, ">REF {sequence} {token}"))?
+            word.then(|| write!(out, ">REF {sequence} {token}"))?
         }
     }
     .ok()?;
-    let sum = checksum(&frame.as_bytes()[1..]);
-    writeln!(frame, "*{sum:04X}").ok()?;
-    (frame.len() <= longest).then(|| frame.into_bytes())
+    let sum = checksum(&out.as_bytes()[1..]);
+    writeln!(out, "*{sum:04X}").ok()?;
+    (out.len() <= longest).then(|| out.into_bytes())
 }
 
 /// `d_low d_high f_low f_high`
@@ -228,7 +248,8 @@ fn bounds_of(axis: &AxisBounds) -> Option<String> {
 }
 
 /// Lengths after each other.
-pub(crate) fn lengths(values: &[f64]) -> Option<String> {
+#[must_use]
+pub fn lengths(values: &[f64]) -> Option<String> {
     let words: Vec<String> = values.iter().map(|value| length(*value)).collect::<Option<_>>()?;
     Some(words.join(" "))
 }
@@ -245,9 +266,9 @@ pub(crate) fn time(seconds: f64) -> Option<String> {
 
 /// How long it is to the end of a way (s), as the reply to `GLIDE` says.
 #[must_use]
-pub fn left<W: AsRef<str>>(words: &[W]) -> Option<f64> {
+pub fn left(words: &[&str]) -> Option<f64> {
     let [_, left] = words else { return None };
-    number::fixed(left.as_ref().as_bytes()).filter(|left| *left >= 0.0).map(|left| left / 1e3)
+    number::fixed(left.as_bytes()).filter(|left| *left >= 0.0).map(|left| left / 1e3)
 }
 
 /// The sequence number of a frame to be sent.
@@ -258,7 +279,8 @@ pub fn sequence(frame: &[u8]) -> Option<u32> {
 }
 
 /// m or m/s as it is written: mm or mm/s.
-pub(crate) fn length(value: f64) -> Option<String> {
+#[must_use]
+pub fn length(value: f64) -> Option<String> {
     number::write(value * 1e3, 6)
 }
 
@@ -273,33 +295,33 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
         return Err(Broken::Checksum);
     }
     let mut words = body.split(|byte| *byte == b' ');
-    let kind = match words.next() {
-        Some(b"ACK") => Kind::Ack,
-        Some(b"DATA") => Kind::Data,
-        Some(b"ERR") => Kind::Err,
+    let mut next = || words.next().ok_or(Broken::Shape);
+    let kind = next()?;
+    let (kind_length, kind) = match kind {
+        b"ACK" => (kind.len(), Kind::Ack),
+        b"DATA" => (kind.len(), Kind::Data),
+        b"ERR" => (kind.len(), Kind::Err),
         _ => return Err(Broken::Shape),
     };
-    let mut next = || words.next().ok_or(Broken::Shape);
-    let sequence = number::count(next()?).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
-    let boot = word(next()?).ok_or(Broken::Shape)?;
-    number::hexadecimal(boot.as_bytes(), 4).ok_or(Broken::Shape)?;
-    // Whole and in order, but with an empty or strange field: the rig says the same however often it is asked for this
-    // reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
-    let mut kept = Vec::with_capacity(WORDS_OF_A_READING);
-    kept.extend(words.map(|bytes| word(bytes).unwrap_or_default()));
-    Ok(Reply { kind, sequence, boot, words: kept })
+    let counted = next()?;
+    let sequence = number::count(counted).and_then(|count| u32::try_from(count).ok()).ok_or(Broken::Shape)?;
+    number::hexadecimal(next()?, BOOT_DIGITS).ok_or(Broken::Shape)?;
+    // Behind `<`, the kind, the number, and a blank after either.
+    let boot = 1 + kind_length + 1 + counted.len() + 1;
+    Ok(Reply { kind, sequence, line: line.to_vec(), boot })
 }
 
-fn word(bytes: &[u8]) -> Option<CompactString> {
-    let printable = !bytes.is_empty() && bytes.iter().all(u8::is_ascii_graphic);
-    printable.then(|| CompactString::from_utf8(bytes).ok()).flatten()
+/// A word of a line; of what is none nothing.
+fn text(bytes: &[u8]) -> &str {
+    let printable = bytes.iter().all(u8::is_ascii_graphic);
+    str::from_utf8(bytes).ok().filter(|_| printable).unwrap_or_default()
 }
 
 /// What a rig says of itself.
 #[must_use]
-pub fn hello<W: AsRef<str>>(words: &[W]) -> Option<Hello> {
+pub fn hello(words: &[&str]) -> Option<Hello> {
     let [model, serial, firmware, numbers @ ..] = words else { return None };
-    if words.iter().any(|word| word.as_ref().is_empty()) {
+    if words.iter().any(|word| word.is_empty()) {
         return None;
     }
     // For each axis four limits and a target, and two words for all.
@@ -309,50 +331,50 @@ pub fn hello<W: AsRef<str>>(words: &[W]) -> Option<Hello> {
     }
     let (limits, rest) = numbers.split_at(4 * axes);
     let [top_speed, id, targets @ ..] = rest else { return None };
-    let axis = |words: &[W]| {
+    let axis = |words: &[&str]| {
         let [low, high, least, most] = words else { return None };
         Some(AxisBounds {
-            displacement: Interval { low: millimetres(low.as_ref())?, high: millimetres(high.as_ref())? },
-            force: Interval { low: number::fixed(least.as_ref().as_bytes())?, high: number::fixed(most.as_ref().as_bytes())? },
+            displacement: Interval { low: millimetres(low)?, high: millimetres(high)? },
+            force: Interval { low: number::fixed(least.as_bytes())?, high: number::fixed(most.as_bytes())? },
         })
     };
     let axes = limits.chunks_exact(4).map(axis).collect::<Option<_>>()?;
-    let bounds = Bounds { axes, top_speed: millimetres(top_speed.as_ref())? };
-    let id = number::count(id.as_ref().as_bytes())?;
-    let targets = targets.iter().map(|target| millimetres(target.as_ref())).collect::<Option<_>>()?;
-    let said = |word: &W| word.as_ref().to_owned();
+    let bounds = Bounds { axes, top_speed: millimetres(top_speed)? };
+    let id = number::count(id.as_bytes())?;
+    let targets = targets.iter().map(|target| millimetres(target)).collect::<Option<_>>()?;
     let last = (id > 0).then_some(LastMove { id, targets });
-    Some(Hello { model: said(model), serial: said(serial), firmware: said(firmware), bounds, last })
+    let [model, serial, firmware] = [model, serial, firmware].map(|word| (*word).to_owned());
+    Some(Hello { model, serial, firmware, bounds, last })
 }
 
 /// The reading of a `DATA` reply.
 #[must_use]
-pub fn data<W: AsRef<str>>(words: &[W]) -> Option<Data> {
+pub fn data(words: &[&str]) -> Option<Data> {
     let [time, axes @ .., state] = words else { return None };
     if axes.is_empty() || !axes.len().is_multiple_of(4) {
         return None;
     }
     #[expect(clippy::cast_precision_loss, reason = "ms since power-up")]
-    let time = number::count(time.as_ref().as_bytes())? as f64 / 1e3;
+    let time = number::count(time.as_bytes())? as f64 / 1e3;
     let axes = axes.chunks_exact(4).map(axis_data).collect::<Option<_>>()?;
-    Some(Data { time, axes, state: self::state(state.as_ref())? })
+    Some(Data { time, axes, state: self::state(state)? })
 }
 
 /// The first axis (from 1) of a `DATA` reply of several that has no number where one belongs.
 #[must_use]
-pub fn axis_without_number<W: AsRef<str>>(words: &[W]) -> Option<usize> {
+pub fn axis_without_number(words: &[&str]) -> Option<usize> {
     let [_, axes @ .., _] = words else { return None };
     let several = axes.len() > 4 && axes.len().is_multiple_of(4);
     several.then(|| axes.chunks_exact(4).position(|words| axis_data(words).is_none())).flatten().map(|axis| axis + 1)
 }
 
-fn axis_data<W: AsRef<str>>(words: &[W]) -> Option<AxisData> {
+fn axis_data(words: &[&str]) -> Option<AxisData> {
     let [displacement, force, raw, flags] = words else { return None };
     Some(AxisData {
-        displacement: millimetres(displacement.as_ref())?,
-        force: number::fixed(force.as_ref().as_bytes())?,
-        raw: number::whole(raw.as_ref().as_bytes())?,
-        flags: self::flags(flags.as_ref())?,
+        displacement: millimetres(displacement)?,
+        force: number::fixed(force.as_bytes())?,
+        raw: number::whole(raw.as_bytes())?,
+        flags: self::flags(flags)?,
     })
 }
 
@@ -390,8 +412,8 @@ pub fn state(word: &str) -> Option<State> {
 
 /// What the code of an `ERR` means.
 #[must_use]
-pub fn refusal<W: AsRef<str>>(words: &[W]) -> String {
-    let code = words.first().map_or("", W::as_ref);
+pub fn refusal(words: &[&str]) -> String {
+    let code = words.first().copied().unwrap_or_default();
     let meaning = match code {
         "SEQ" => "the rig is at another sequence number",
         "VERB" => "the rig does not know this request",
@@ -407,21 +429,21 @@ pub fn refusal<W: AsRef<str>>(words: &[W]) -> String {
         "FAULT" => "the rig has a fault of its own",
         _ => "for a reason psd does not know",
     };
-    let said: Vec<&str> = words.iter().map(W::as_ref).collect();
-    format!("{meaning} (`ERR {}`)", said.join(" "))
+    format!("{meaning} (`ERR {}`)", words.join(" "))
 }
 
 /// CRC-16/CCITT-FALSE.
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u16 {
-    bytes.iter().fold(0xffff, |sum, byte| sum << 8 ^ REMAINDERS[usize::from(sum >> 8 ^ u16::from(*byte))])
+    bytes.iter().fold(0xffff, |sum: u16, byte| {
+        let [high, low] = sum.to_be_bytes();
+        u16::from_be_bytes([low, 0]) ^ REMAINDERS[usize::from(high ^ byte)]
+    })
 }
 
-/// What is left of each byte, shifted out of the register, by the polynomial.
-static REMAINDERS: [u16; 256] = remainders();
-
-const fn remainders() -> [u16; 256] {
-    let mut of_bytes = [0; 256];
+/// What the polynomial 1021 leaves of each byte, shifted through bit by bit.
+const REMAINDERS: [u16; 256] = {
+    let mut table = [0; 256];
     let mut byte: u16 = 0;
     while byte < 256 {
         let (mut sum, mut bit) = (byte << 8, 0);
@@ -429,11 +451,11 @@ const fn remainders() -> [u16; 256] {
             sum = if sum & 0x8000 == 0 { sum << 1 } else { sum << 1 ^ 0x1021 };
             bit += 1;
         }
-        of_bytes[byte as usize] = sum;
+        table[byte as usize] = sum;
         byte += 1;
     }
-    of_bytes
-}
+    table
+};
 
 #[cfg(test)]
 #[path = "native_tests.rs"]

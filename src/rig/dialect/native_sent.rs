@@ -45,13 +45,14 @@ fn words(frame: &str) -> Option<Vec<&str>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::native::{Request, frame};
+    use super::super::native::{Request, frame, length, lengths};
     use super::SentMove;
 
     #[test]
     fn a_move_says_what_it_was_made_of_and_nothing_else() {
         let targets = [1.234e-3, -5e-7];
-        let moving = frame(7, &Request::Move { id: 3, targets: &targets, speed: 2e-3 }).unwrap();
+        let (places, speed) = (lengths(&targets).unwrap(), length(2e-3).unwrap());
+        let moving = frame(7, &Request::Move { id: 3, targets: &places, speed: &speed }).unwrap();
         let cleared = [frame(6, &Request::Clear).unwrap(), moving.clone()].concat();
         for wire in [&moving, &cleared] {
             let sent = SentMove::of(wire).unwrap();

@@ -33,7 +33,7 @@ fn same(real: &[(&str, f64)], ideal: &[(&str, f64)]) {
     }
 }
 
-fn plan() -> Plan {
+pub(super) fn plan() -> Plan {
     checked(&text(), "bench")
 }
 

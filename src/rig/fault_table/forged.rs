@@ -10,14 +10,14 @@ use crate::record::journal::{EntryKind, Recovered};
 use crate::run::tape::{self, Played};
 
 /// The record with the `nth` record of a kind altered; what `psd verify` finds first.
-fn found(plan: &Plan, ended: &Ended, kind: EntryKind, nth: usize, alter: impl Fn(&mut Value)) -> Result<(), String> {
+pub(super) fn found(plan: &Plan, ended: &Ended, kind: EntryKind, nth: usize, alter: impl Fn(&mut Value)) -> Result<(), String> {
     let mut forged = ended.recovered.clone();
     let line = forged.lines.iter_mut().filter(|line| line.kind == kind).nth(nth).unwrap();
     alter(&mut line.body);
     judged(plan, &forged)
 }
 
-fn judged(plan: &Plan, forged: &Recovered) -> Result<(), String> {
+pub(super) fn judged(plan: &Plan, forged: &Recovered) -> Result<(), String> {
     let played = Played::of(forged).map_err(|fault| fault.to_string())?;
     tape::agrees(forged, &played, plan).map_err(|fault| fault.to_string())?;
     let replayed = tape::replay(plan, played);

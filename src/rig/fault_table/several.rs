@@ -21,14 +21,14 @@ const LOWER: &str = "    axis(gate:";
 const UPPER: &str = "    axis(sign: negative,";
 
 /// A meter of two channels beside the controller.
-fn metered(duration: &str) -> String {
+pub(super) fn metered(duration: &str) -> String {
     let link = LINK.replace("link ", "actuator ");
     let devices = format!("{link}\n  load_cell   = tcp(\"10.0.0.7:5025\", scpi([2.5 kN, -1 kN]), reply_timeout: 0.1 s)");
     with_devices(duration, &[(LINK, devices.as_str())])
 }
 
 /// A cell for each axis, on its own port: a meter and a converter of counts.
-fn apart(duration: &str) -> String {
+pub(super) fn apart(duration: &str) -> String {
     with_devices(
         duration,
         &[
@@ -41,14 +41,20 @@ fn apart(duration: &str) -> String {
     )
 }
 
+/// Native firmware that weighs the upper axis alone.
+fn native_cell(duration: &str) -> String {
+    let cell = "    axis(load_cell: tcp(\"10.0.0.8:5025\", native, reply_timeout: 0.1 s), sign: negative,";
+    with_devices(duration, &[(LINK, &LINK.replace("link ", "actuator ")), (UPPER, cell)])
+}
+
 /// Each storey behind a site of its own.
-fn sites(duration: &str) -> String {
+pub(super) fn sites(duration: &str) -> String {
     let first = "link        = tcp(\"10.0.0.1:44000\", nees(\"MDL-00-01\"), reply_timeout: 0.1 s)";
     let second = "    axis(actuator: tcp(\"10.0.0.2:44000\", nees(\"MDL-00-07\"), reply_timeout: 0.1 s), sign: negative,";
     with_devices(duration, &[(LINK, first), (UPPER, second)])
 }
 
-fn plan(text: &str) -> Plan {
+pub(super) fn plan(text: &str) -> Plan {
     checked(text, "frame_rig")
 }
 
@@ -63,7 +69,8 @@ fn same(real: &[(&str, f64)], ideal: &[(&str, f64)], near: f64) {
 #[test]
 fn each_layout_gives_what_the_virtual_rig_gives() {
     // Nine digits of a meter, and counts of 10 mN.
-    for (text, near) in [(metered("0.3 s"), 2e-6), (apart("0.3 s"), 2e-5), (sites("0.3 s"), 1e-6)] {
+    let layouts = [(metered("0.3 s"), 2e-6), (apart("0.3 s"), 2e-5), (sites("0.3 s"), 1e-6), (native_cell("0.3 s"), 2e-6)];
+    for (text, near) in layouts {
         let ended = run(&plan(&text), "");
         assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
         assert_eq!(ended.tally, Tally::default());

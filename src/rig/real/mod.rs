@@ -2,6 +2,7 @@
 //! sign, each axis judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
+mod heard;
 mod motion;
 mod open;
 mod poll;
@@ -17,7 +18,7 @@ use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
 use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
-pub use poll::representative;
+pub use heard::ReadBack;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -40,6 +41,8 @@ pub struct RealRig {
     /// The clock when the devices were last heard, s.
     heard: f64,
     proposed: Option<Proposed>,
+    /// Where it has settled, m; None while it is on its way, and where nobody waited for it to settle.
+    settled: Option<Vec<f64>>,
     reread: u64,
     /// Why its position is not to be trusted.
     untrusted: Option<String>,
@@ -231,7 +234,7 @@ impl Rig for RealRig {
     /// Says so, and where that finds no ear sends what needs no answer.
     fn hold(&mut self) {
         self.wish.heed();
-        self.proposed = None;
+        (self.proposed, self.settled) = (None, None);
         if self.deaf || self.actuator.hold().is_err() {
             self.deaf = true;
             safety::hold_everything();
@@ -263,5 +266,7 @@ impl Rig for RealRig {
     }
 }
 
+#[cfg(test)]
+mod disturbed_tests;
 #[cfg(test)]
 mod tests;

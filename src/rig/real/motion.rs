@@ -12,8 +12,15 @@ impl RealRig {
     /// Sends the offered move and waits until settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
         let (targets, seconds) = self.set_off()?;
-        let arrival = self.clock.now() + seconds;
-        let mut settling = Settling::of(self.settle, &targets);
+        self.settle_at(&targets, self.clock.now() + seconds)?;
+        self.settled = Some(targets);
+        Ok(())
+    }
+
+    /// Waits until every axis has settled, all in one sampling: an axis that another disturbs begins its dwell anew. `arrival` (s, by
+    /// the clock) is when the farthest of them is there.
+    pub(super) fn settle_at(&mut self, targets: &[f64], arrival: f64) -> Result<(), RigFault> {
+        let mut settling = Settling::of(self.settle, targets);
         let mut rested = None;
         loop {
             let point = self.poll()?;
@@ -35,7 +42,7 @@ impl RealRig {
             let Some(unmet) = met.iter().position(|met| !met) else { return Ok(()) };
             if now - rested.unwrap_or(arrival) > self.settle.timeout {
                 return match (rested, astray) {
-                    (Some(_), Some(axis)) if on(Guarding::Following) => Err(self.following(axis, &point, &targets)),
+                    (Some(_), Some(axis)) if on(Guarding::Following) => Err(self.following(axis, &point, targets)),
                     (Some(_), Some(_)) => Ok(()),
                     (Some(_), None) => Err(self.unsettled(Some(unmet))),
                     (None, axis) => Err(self.unsettled(axis)),
@@ -93,13 +100,19 @@ impl RealRig {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
         let Proposed { going, targets, from } = self.proposed.take().ok_or_else(nothing)?;
         self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
-        self.deaf = false;
+        (self.deaf, self.settled) = (false, None);
         for axis in &mut self.axes {
             (axis.outside, axis.span) = (false, 0.0);
         }
         self.look_up()?;
         let farthest = targets.iter().zip(&from).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
         Ok((targets, farthest / going.speed))
+    }
+
+    /// Whether a reading where it settled shows that it has not.
+    pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Disturbed> {
+        let astray = first_astray(&Settling::of(self.settle, targets), point);
+        (astray.is_some() || point.moving == Some(true) || point.unsettled).then_some(Disturbed { astray })
     }
 
     /// It says that it has arrived, and the axis at this place stands elsewhere.
@@ -113,6 +126,13 @@ impl RealRig {
         let axis = place.and_then(|place| named_axis(place, self.axes.len()));
         RigFault::NotSettled { timeout: self.settle.timeout, axis }
     }
+}
+
+/// What had settled has not.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disturbed {
+    /// The first axis that left its band, by place; None: a device says that it moves, or that its reading has not settled.
+    pub(super) astray: Option<usize>,
 }
 
 /// The first axis that is not in position.

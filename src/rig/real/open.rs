@@ -35,6 +35,7 @@ impl RealRig {
             began,
             heard: began,
             proposed: None,
+            settled: None,
             reread: 0,
             untrusted: None,
             deaf: false,
@@ -61,25 +62,14 @@ impl RealRig {
         };
         let fit = alone(self.link.actuators()).map_or(Ok(()), |link| pinned(&link, &actuator));
         fit.map_err(|fault| self.told(Part::Actuator, &fault))?;
-        let mut said = vec![actuator.clone()];
+        let mut said = vec![actuator];
         let cell_link = alone(self.link.load_cells());
         if let Some(cell) = &mut self.load_cell {
             let fit = |identity: &DeviceIdentity| cell_link.map_or(Ok(()), |link| pinned(&link, identity));
             let met = cell.identify().and_then(|identity| fit(&identity).map(|()| identity));
             said.push(met.map_err(|fault| self.told(Part::LoadCell, &fault))?);
         }
-        let all = |field: fn(&DeviceIdentity) -> &str| {
-            said.iter().map(field).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ")
-        };
-        let loop_open = if commands_only(&self.link) { " (open loop: displacement as commanded)" } else { "" };
-        self.identity = Identity {
-            name: self.identity.name.clone(),
-            model: all(|identity| &identity.model) + loop_open,
-            serial: all(|identity| &identity.serial),
-            firmware: all(|identity| &identity.firmware),
-            boot: actuator.boot.clone(),
-            simulated: said.iter().any(|identity| identity.simulated),
-        };
+        self.identity = identity_of(&self.identity.name, &self.link, &said);
         self.introduction = said.into_iter().flat_map(|identity| identity.raw).collect();
         Ok(())
     }
@@ -103,6 +93,24 @@ impl RealRig {
             cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, &fault))?;
         }
         Ok(())
+    }
+}
+
+/// Who a rig of this name is whose devices, those that move first, say this of themselves.
+pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) -> Identity {
+    let all = |field: fn(&DeviceIdentity) -> &str| {
+        said.iter().map(field).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ")
+    };
+    let loop_open = if commands_only(link) { " (open loop: displacement as commanded)" } else { "" };
+    let moves = &said[..said.len().min(link.actuators().len())];
+    let boots: Vec<&str> = moves.iter().filter_map(|identity| identity.boot.as_deref()).collect();
+    Identity {
+        name: name.to_owned(),
+        model: all(|identity| &identity.model) + loop_open,
+        serial: all(|identity| &identity.serial),
+        firmware: all(|identity| &identity.firmware),
+        boot: (!boots.is_empty()).then(|| boots.join(" + ")),
+        simulated: said.iter().any(|identity| identity.simulated),
     }
 }
 

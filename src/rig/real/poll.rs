@@ -1,14 +1,16 @@
 //! One reading of a real rig. In: what actuator and load cell say. Out: displacement and force in the plan's sign, judged,
 //! with the bytes they were made of; what is no reading is asked for again a few times. It moves nothing.
 
+use super::motion::Disturbed;
 use super::validity::{Invalid, Said};
-use super::{Axis, Part, RealRig};
+use super::{Part, RealRig};
+use crate::plan::Calibration;
 use crate::rig::device::{DeviceFault, Flags, Force, Sample};
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
 
 /// How often a reading that is none is asked for again.
-const REREADS: u32 = 3;
+pub(super) const REREADS: u32 = 3;
 
 /// One usable reading, in the plan's sign.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,27 +51,55 @@ impl RealRig {
         }
     }
 
-    /// The median of as many readings as the plan wants.
+    /// The median of as many readings as the plan wants. Where it has settled at a target each of them shows all axes settled, or
+    /// it settles anew and all are made again.
     pub(super) fn settled_reading(&mut self) -> Result<Reading, RigFault> {
-        let (mut displacements, mut forces, mut raw) = (Vec::new(), Vec::new(), Vec::new());
-        let mut time = self.clock.now() - self.began;
+        let began = self.clock.now();
+        let targets = self.settled.clone().filter(|_| on(Guarding::Settling) && on(Guarding::Following));
+        loop {
+            let (points, disturbed) = self.readings_at(targets.as_deref())?;
+            let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some()) else {
+                return Ok(self.reading_of(points, began));
+            };
+            let now = self.clock.now();
+            if now - began > self.settle.timeout {
+                return Err(self.unsettled(disturbed.and_then(|disturbed| disturbed.astray)));
+            }
+            self.settle_at(targets, now)?;
+        }
+    }
+
+    /// As many readings as the plan wants, up to the first that shows that the rig has not settled.
+    fn readings_at(&mut self, targets: Option<&[f64]>) -> Result<(Vec<Point>, Option<Disturbed>), RigFault> {
+        let mut points = Vec::new();
         for sample in 0..self.link.readings.samples.max(1) {
             if sample > 0 {
                 self.wait_until(self.heard + self.period())?;
             }
             let point = self.poll()?;
-            time = point.time;
-            displacements.push(point.displacement);
-            forces.push(point.force);
-            raw.extend(point.raw);
+            let disturbed = targets.and_then(|targets| self.disturbed(&point, targets));
+            points.push(point);
+            if disturbed.is_some() {
+                return Ok((points, disturbed));
+            }
         }
-        Ok(Reading { time, displacement: self.medians(&displacements), force: self.medians(&forces), raw })
+        Ok((points, None))
     }
 
-    /// The median of each axis.
-    fn medians(&self, readings: &[Vec<f64>]) -> Vec<f64> {
-        let of_axis = |axis: usize| readings.iter().map(|reading| reading[axis]).collect();
-        (0..self.axes.len()).map(|axis| representative(of_axis(axis))).collect()
+    /// The median of each axis, at the time of the last of them, with all their bytes.
+    fn reading_of(&self, mut points: Vec<Point>, began: f64) -> Reading {
+        if points.len() == 1
+            && let Some(Point { time, displacement, force, raw, .. }) = points.pop()
+        {
+            return Reading { time, displacement, force, raw };
+        }
+        let time = points.last().map_or(began - self.began, |point| point.time);
+        let median = |of: fn(&Point) -> &[f64]| {
+            let of_axis = |axis: usize| points.iter().map(|point| of(point)[axis]).collect();
+            (0..self.axes.len()).map(|axis| representative(of_axis(axis))).collect()
+        };
+        let (displacement, force) = (median(|point| &point.displacement), median(|point| &point.force));
+        Reading { time, displacement, force, raw: points.into_iter().flat_map(|point| point.raw).collect() }
     }
 
     /// A reading on the way: one, not a median.
@@ -110,19 +140,22 @@ impl RealRig {
             None => None,
         };
         let weighed = weighed.as_ref().unwrap_or(&moved);
-        let (found, wanted) = (moved.axis_count().min(weighed.axis_count()), self.axes.len());
-        if moved.axis_count() != wanted || weighed.axis_count() != wanted {
+        let count = self.axes.len();
+        if moved.axis_count() != count || weighed.axis_count() != count {
+            let (found, wanted) = (moved.axis_count().min(weighed.axis_count()), count);
             return Err(Unusable::Fault(RigFault::Device(format!("an answer of {found} axes, the rig has {wanted}"))));
         }
         let time = self.clock.now() - self.began;
-        let (displacement, force) = (Vec::with_capacity(wanted), Vec::with_capacity(wanted));
+        let (displacement, force) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut point = Point { time, displacement, force, moving: moved.moving, unsettled: false, raw: Vec::new() };
-        for (place, (moved_axis, weighed_axis)) in moved.axes().zip(weighed.axes()).enumerate() {
+        for place in 0..count {
+            let (moved_axis, weighed_axis) = (moved.axis(place), weighed.axis(place));
             let lacks = |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
             let displacement = moved_axis.displacement.ok_or_else(|| lacks("displacement"))?;
             let weighed_axis = if self.axes[place].weighed_apart { weighed_axis } else { moved_axis };
             let original = weighed_axis.force.ok_or_else(|| lacks("force"))?;
-            let force = self.axes[place].newtons(original).ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
+            let force = newtons(&self.axes[place].calibration, original)
+                .ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
             let flags = either(moved_axis.flags, weighed_axis.flags);
             // One clock for all axes: the first judges it.
             let device_time = moved.time.filter(|_| place == 0);
@@ -169,15 +202,13 @@ impl RealRig {
     }
 }
 
-impl Axis {
-    /// N, in the cell's sign.
-    fn newtons(&self, force: Force) -> Option<f64> {
-        match force {
-            Force::Newtons(force) => Some(force),
-            #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
-            Force::Counts { count, .. } => {
-                self.calibration.newtons_per_count.map(|factor| (count as f64 - self.calibration.zero_count) * factor)
-            }
+/// N, in the cell's sign.
+pub(super) fn newtons(calibration: &Calibration, force: Force) -> Option<f64> {
+    match force {
+        Force::Newtons(force) => Some(force),
+        #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
+        Force::Counts { count, .. } => {
+            calibration.newtons_per_count.map(|factor| (count as f64 - calibration.zero_count) * factor)
         }
     }
 }

@@ -70,7 +70,7 @@ impl RealRig {
             return Err(RigFault::Device(format!("asked for {turned:?}, the bytes say {:?} m: not sent", going.targets)));
         }
         let left = self.actuator.set_out(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
-        self.deaf = false;
+        (self.deaf, self.settled) = (false, None);
         self.look_up()?;
         Ok(self.clock.now() + left)
     }

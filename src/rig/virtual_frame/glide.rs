@@ -35,9 +35,8 @@ impl VirtualFrame {
         for pair in instants.windows(2).skip(done) {
             let axes = courses.iter().zip(&mut self.axes);
             let travels: Vec<Travel> = axes.map(|(course, axis)| course.advance(&mut axis.actuator, pair[0], pair[1])).collect();
-            self.structure.relax(&travels);
             self.time = began + pair[1];
-            self.follow();
+            self.follow(&travels);
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();

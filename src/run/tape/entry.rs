@@ -334,7 +334,15 @@ pub enum Doubt {
 
 /// The bytes of a frame as text that any log can hold.
 pub fn escaped(bytes: &[u8]) -> String {
-    bytes.escape_ascii().to_string()
+    let mut text = String::with_capacity(bytes.len() + 8);
+    for byte in bytes {
+        match byte {
+            b'\\' | b'\'' | b'"' => text.extend(['\\', char::from(*byte)]),
+            b' '..=b'~' => text.push(char::from(*byte)),
+            _ => text.extend(byte.escape_ascii().map(char::from)),
+        }
+    }
+    text
 }
 
 /// The bytes that [`escaped`] makes this text of; None where it makes it of none.
@@ -361,6 +369,7 @@ mod tests {
     #[test]
     fn every_byte_comes_back_and_what_nobody_writes_is_none() {
         let all: Vec<u8> = (0..=255).collect();
+        assert_eq!(escaped(&all), all.escape_ascii().to_string());
         assert_eq!(unescaped(&escaped(&all)), Some(all));
         for none in ["\\", "\\x4", "\\x41", "\\q", "a\nb", "\u{e9}", "\""] {
             assert_eq!(unescaped(none), None, "{none:?}");

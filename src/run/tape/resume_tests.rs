@@ -7,8 +7,8 @@ use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
     Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, FrameUnload, Ground, Impact,
-    InspectTrigger, Integrator, Level, Mode, Move, Procedure, ProcedureKind, RelaxationModel, Shake, ShakeDamping, Sides,
-    Stepping, StiffnessRamp, Storey, Test, Unload, Until, WatchedHold, ZeroAfter,
+    InspectTrigger, Integrator, Level, Mode, Move, Procedure, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp,
+    Storey, Test, Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
 };
 use crate::quantity::Dimension;
 use crate::rig::failpoint::{Guarding, without};
@@ -124,7 +124,7 @@ fn watched() -> Plan {
         samples: 2,
         repeats: 2,
         return_path: true,
-        relaxation: Some(WatchedHold { model: RelaxationModel::Exponential, readings: 3, accuracy: None }),
+        relaxation: Some(WatchedHold { model: WatchedModel::Reached { law: None, rate: 1.0 }, readings: 3 }),
         ..ramp(1e-4)
     };
     yielding(vec![ProcedureKind::StiffnessRamp(watched), to(0.0)])

@@ -95,7 +95,7 @@ impl<'rig> TapedRig<'rig> {
     fn played_intent(&self, targets: &[f64], speed: Option<f64>, stroke: Option<usize>) -> Result<IntentBody, RigFault> {
         let mut state = self.state.borrow_mut();
         let intent: IntentBody = state.peek(EntryKind::Intent, "a target")?;
-        let same = bits(&intent.to) == bits(targets)
+        let same = same_bits(&intent.to, targets)
             && intent.speed.map(f64::to_bits) == speed.map(f64::to_bits)
             && intent.samples == stroke;
         if same {
@@ -322,7 +322,7 @@ pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples
         t: 0.0,
         to: targets.to_vec(),
         speed,
-        said: (bits(&offer.targets) != bits(targets)).then(|| offer.targets.clone()),
+        said: (!same_bits(&offer.targets, targets)).then(|| offer.targets.clone()),
         rate: offer.speed,
         wire: (!offer.wire.is_empty()).then(|| escaped(&offer.wire)),
         id: offer.move_id,
@@ -351,6 +351,10 @@ pub(super) fn finite(reading: Reading) -> Result<Reading, RigFault> {
         return Ok(reading);
     }
     Err(RigFault::Device(format!("a reading is no number: {:?}", numbers().collect::<Vec<_>>())))
+}
+
+fn same_bits(one: &[f64], other: &[f64]) -> bool {
+    one.iter().map(|value| value.to_bits()).eq(other.iter().map(|value| value.to_bits()))
 }
 
 pub(super) fn bits(values: &[f64]) -> Vec<u64> {

@@ -21,6 +21,8 @@ const NO_LIMIT_N: f64 = 99_999.0;
 #[derive(Clone, Debug)]
 pub struct NativeSettings {
     pub serial_number: String,
+    /// The rams that its axes are, by place; None: all of the bench.
+    pub rams: Option<Vec<usize>>,
     /// One an axis, N; an axis without an entry has none.
     pub force_limits: Vec<Interval>,
     /// Silence after which it holds, s.
@@ -31,7 +33,7 @@ pub struct NativeSettings {
 
 impl Default for NativeSettings {
     fn default() -> Self {
-        Self { serial_number: "0042".to_owned(), force_limits: Vec::new(), watchdog: 3.0, boot: None }
+        Self { serial_number: "0042".to_owned(), rams: None, force_limits: Vec::new(), watchdog: 3.0, boot: None }
     }
 }
 
@@ -67,6 +69,8 @@ impl AxisBounds {
 #[derive(Debug)]
 pub struct Native {
     settings: NativeSettings,
+    /// Which ram each axis is.
+    rams: Vec<usize>,
     generator: Pcg64,
     boot: u16,
     /// What has come of the line; one that fills it is no frame.
@@ -95,18 +99,20 @@ impl Native {
             let scale = 10_f64.powi(decimals);
             (wire * scale).round() / scale
         };
-        let axis = |ram: usize| {
-            let (place, force) = (bench.limits_of(ram), settings.force_limits.get(ram).copied().unwrap_or(Interval::ALL));
+        let rams = settings.rams.clone().unwrap_or_else(|| (0..bench.rams()).collect());
+        let axis = |(axis, ram): (usize, &usize)| {
+            let (place, force) = (bench.limits_of(*ram), settings.force_limits.get(axis).copied().unwrap_or(Interval::ALL));
             AxisBounds {
                 displacement: (known(place.low, NO_LIMIT_MM, 1e3, 6), known(place.high, NO_LIMIT_MM, 1e3, 6)),
                 force: (known(force.low, NO_LIMIT_N, 1.0, 3), known(force.high, NO_LIMIT_N, 1.0, 3)),
             }
         };
         let own = Bounds {
-            axes: (0..bench.rams()).map(axis).collect(),
+            axes: rams.iter().enumerate().map(axis).collect(),
             top_speed: known(bench.settings().top_speed, NO_LIMIT_MM, 1e3, 6),
         };
         Self {
+            rams,
             settings,
             generator,
             boot,
@@ -123,8 +129,25 @@ impl Native {
     }
 
     fn hold(&mut self, bench: &mut Bench) {
-        bench.hold();
+        self.stand_still(bench);
         self.held = true;
+    }
+
+    fn stand_still(&self, bench: &mut Bench) {
+        if self.has_all_of(bench) {
+            bench.hold();
+        } else {
+            bench.hold_those(&self.rams);
+        }
+    }
+
+    /// Of a part of the bench it follows no way: another controller moves it.
+    const fn has_all_of(&self, bench: &Bench) -> bool {
+        self.rams.len() == bench.rams()
+    }
+
+    fn moves(&self, bench: &Bench) -> bool {
+        bench.any_moving(&self.rams)
     }
 
     /// One line without its ending → the answer, if it was a frame.
@@ -160,7 +183,7 @@ impl Native {
     }
 
     fn carry_out(&mut self, verb: &str, arguments: &[&str], bench: &mut Bench) -> Result<(&'static str, String), String> {
-        let axes = bench.rams();
+        let axes = self.rams.len();
         match (verb, arguments) {
             ("HELLO", []) => {
                 self.run = self.own.clone();
@@ -179,6 +202,7 @@ impl Native {
                 self.run = Bounds { axes: given, top_speed };
             }
             ("MOVE", [id, targets @ .., rate]) if targets.len() == axes => self.move_to(id, targets, rate, bench)?,
+            ("GLIDE", _) if !self.has_all_of(bench) => return Err("VERB".to_owned()),
             ("GLIDE", [id, ends @ .., time]) if ends.len() == 2 * axes => {
                 let left = self.glide(id, ends, time, bench)?;
                 return Ok(("ACK", format!("{} {:.3}", self.state(bench), left * 1e3)));
@@ -224,41 +248,44 @@ impl Native {
         let metres: Vec<f64> = targets.iter().map(|target| target / 1e3).collect();
         let inside = |(axis, target): (&AxisBounds, &f64)| axis.displacement.0 <= *target && *target <= axis.displacement.1;
         if let Some(axis) = self.run.axes.iter().zip(&targets).position(|axis| !inside(axis)) {
-            bench.refuse_all(&metres);
+            for (ram, target) in self.rams.iter().zip(&metres) {
+                bench.refuse_of(*ram, *target);
+            }
             return Err(of_axis("LIMIT", axis, targets.len()));
         }
         let refused = [
             (!(0.0 < rate && rate <= self.run.top_speed), "RATE"),
             (!self.referenced, "REF"),
             (self.held, "HELD"),
-            (bench.moving(), "BUSY"),
+            (self.moves(bench), "BUSY"),
         ];
         if let Some((_, code)) = refused.into_iter().find(|(refused, _)| *refused) {
             return Err(code.to_owned());
         }
         self.last_move = Some((id, targets));
-        bench.go_as(Some(id), &metres, rate / 1e3);
+        bench.go_those(Some(id), &self.rams, &metres, rate / 1e3);
         Ok(())
     }
 
     /// The medians of some readings.
     fn measure(&self, count: usize, bench: &mut Bench) -> String {
-        let axis = |ram: usize| {
+        let told = |(axis, ram): (usize, &usize)| {
+            let ram = *ram;
             let mut forces: Vec<f64> = (0..count).map(|_| bench.force_of(ram)).collect();
             forces.sort_by(f64::total_cmp);
             let force = f64::midpoint(forces[(count - 1) / 2], forces[count / 2]);
             let raw = bench.counts_of(force);
             let displacement = bench.displacement_of(ram) * 1e3;
             let shown = bench.shown_force(ram, format!("{force:.3}"));
-            let flags = self.flags(ram, !(-8_388_607..8_388_607).contains(&raw), bench);
+            let flags = self.flags(axis, !(-8_388_607..8_388_607).contains(&raw), bench);
             format!("{displacement:.6} {shown} {raw} 0x{flags:04X}")
         };
-        let axes: Vec<String> = (0..self.own.axes.len()).map(axis).collect();
+        let axes: Vec<String> = self.rams.iter().enumerate().map(told).collect();
         format!("{:.0} {} {}", (bench.time() * 1e3).floor(), axes.join(" "), self.state(bench))
     }
 
     fn state(&self, bench: &Bench) -> &'static str {
-        match (self.held, bench.moving()) {
+        match (self.held, self.moves(bench)) {
             (true, _) => "HELD",
             (false, true) => "MOVING",
             (false, false) => "IDLE",
@@ -267,11 +294,11 @@ impl Native {
 
     /// Those of any axis.
     fn all_flags(&self, bench: &Bench) -> u16 {
-        (0..self.run.axes.len()).fold(0, |flags, ram| flags | self.flags(ram, false, bench))
+        (0..self.run.axes.len()).fold(0, |flags, axis| flags | self.flags(axis, false, bench))
     }
 
-    fn flags(&self, ram: usize, saturated: bool, bench: &Bench) -> u16 {
-        let (position, (low, high)) = (bench.commanded_of(ram) * 1e3, self.run.axes[ram].displacement);
+    fn flags(&self, axis: usize, saturated: bool, bench: &Bench) -> u16 {
+        let (position, (low, high)) = (bench.commanded_of(self.rams[axis]) * 1e3, self.run.axes[axis].displacement);
         // Standing on a limit is within it, also for the last bits of a turn to mm.
         let beyond = |excess: f64| excess > 1e-6;
         let bits = [
@@ -281,7 +308,7 @@ impl Native {
             beyond(low - position),
             false,
             !self.referenced,
-            bench.moving(),
+            self.moves(bench),
             self.watchdog_tripped,
         ];
         bits.iter().rev().fold(0, |word, bit| word << 1 | u16::from(*bit))
@@ -294,7 +321,7 @@ mod glide;
 impl Firmware for Native {
     fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
         let mut said = self.tick(bench);
-        let longest = if bench.rams() > 1 { LONGEST_OF_SEVERAL } else { LONGEST };
+        let longest = if self.rams.len() > 1 { LONGEST_OF_SEVERAL } else { LONGEST };
         for byte in bytes {
             match byte {
                 b'!' => self.hold(bench),
@@ -321,7 +348,7 @@ impl Firmware for Native {
     }
 
     fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        bench.hold();
+        self.stand_still(bench);
         let was = self.boot;
         *self = Self::new(NativeSettings { boot: None, ..self.settings.clone() }, bench);
         while self.boot == was {

@@ -53,7 +53,7 @@ impl Native {
 
     /// Behind a way that no other follows it goes on for a while, and no farther than its limits; then it holds.
     pub(super) fn coast(&mut self, bench: &mut Bench) {
-        let Some(gone_on) = bench.gone_on() else { return };
+        let Some(gone_on) = bench.gone_on().filter(|_| self.has_all_of(bench)) else { return };
         let inside = |(ram, axis): (usize, &AxisBounds)| {
             let (place, (low, high)) = (bench.commanded_of(ram) * 1e3, axis.displacement);
             low - ROUNDING <= place && place <= high + ROUNDING

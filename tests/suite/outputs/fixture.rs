@@ -70,6 +70,7 @@ pub fn finished() -> Finished {
             multilinear: None,
             holds: Vec::new(),
             relaxation: None,
+            reached: None,
         }),
     };
     let sweep = ProcedureRecord {
@@ -83,6 +84,8 @@ pub fn finished() -> Finished {
         ],
         history: History::Sweep(SweepHistory {
             pairs: sweep_pairs(&sweep_steps()),
+            middles: Vec::new(),
+            stiffness: Some(327.72),
             steps: sweep_steps(),
             fit: Some(line(4.02, 0.08, 0.31, 0.02)),
         }),
@@ -141,7 +144,7 @@ fn event(kind: EventKind, time: f64, text: &str) -> Event {
 }
 
 const fn line(slope: f64, slope_error: f64, intercept: f64, intercept_error: f64) -> LineFit {
-    LineFit { slope, slope_error, intercept, intercept_error, correlation: 0.0, r_squared: 0.999_98 }
+    LineFit { slope, slope_error, intercept, intercept_error, correlation: 0.0, r_squared: 0.999_98, degrees: 8.0 }
 }
 
 /// Eqs. 4 and 5 for a linear structure without damping, one row a step.
@@ -403,9 +406,11 @@ fn assessment(largest: f64, error: f64) -> Assessment {
             dimension,
             value: Some(value),
             uncertainty,
+            degrees: f64::INFINITY,
             bound: Some(Bound::Compare { comparison: Comparison::LessEqual, limit }),
             margin: Some(limit - value),
             guard_band: None,
+            margin_degrees: f64::INFINITY,
             reason: None,
         }],
     };

@@ -1,8 +1,12 @@
 //! Force that relaxes, on the virtual rig: the standard linear solid in closed form, whatever the rig does, and the energy of its
 //! cycles.
 
+use psd::mechanics::logarithmic::Went;
 use psd::mechanics::maxwell::{MaxwellBranch, Travel};
 use psd::mechanics::path::Path;
+use psd::mechanics::relaxation_law::RelaxationLaw;
+use psd::mechanics::relaxing::Relaxing;
+use psd::mechanics::specimen::{RestoringForce, SpecimenModel};
 use psd::plan::{Behaviour, Settle, Specimen, VirtualLink};
 use psd::rig::{Rig, VirtualRig};
 
@@ -126,4 +130,109 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
     };
     let [slow, middle, fast] = [1e-4, 1e-3, 1e-2].map(energy);
     assert!(slow < middle && fast < middle, "{slow}, {middle}, {fast} J");
+}
+
+fn logarithmic(of: Behaviour, share: f64) -> Behaviour {
+    Behaviour::Logarithmic { of: Box::new(of), share, reference_time: 0.4, longest: 1e12 }
+}
+
+fn rig_of(behaviour: Behaviour, link: VirtualLink, settle: Settle) -> VirtualRig {
+    VirtualRig::new(link, settle, Some(&Specimen::new("plate", 1.0, Some(behaviour))), -1.0)
+}
+
+/// 1 kN/mm to 3 kN: out elastically in three steps, flowing in the fourth and back in the fifth, a pause after each. What is felt is the
+/// reached force less `a` times the sum of every increment's own logarithm, whatever came after it.
+#[test]
+fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
+    let of = Behaviour::Bilinear { stiffness: 1e6, yield_force: 3000.0, hardening: 0.0 };
+    let (share, pause, v) = (0.01, 7.0, 2e-3);
+    let mut rig = rig_of(logarithmic(of, share), VirtualLink::default(), AT_ONCE);
+    let steps = [(1e-3, 1000.0), (2e-3, 2000.0), (3e-3, 3000.0), (5e-3, 3000.0), (4e-3, 2000.0)];
+    let (mut time, mut from, mut before) = (0.0, 0.0, 0.0);
+    let mut increments: Vec<(f64, f64, f64)> = Vec::new();
+    for (place, reached) in steps {
+        let took = f64::abs(place - from) / v;
+        time += took;
+        increments.push((reached - before, time, took));
+        let felt = |now: f64| {
+            let lost = |(force, ended, took): &(f64, f64, f64)| force * RelaxationLaw::Logarithmic.lost(now - ended, *took, 0.4);
+            reached - share * increments.iter().map(lost).sum::<f64>()
+        };
+        let (_, force) = go(&mut rig, place, v);
+        assert!((force - felt(time)).abs() < 1e-6, "{force} N is not {} N", felt(time));
+        rig.pause(0.3 * pause).expect("a pause");
+        rig.pause(0.7 * pause).expect("its rest");
+        time += pause;
+        let (_, force) = read(&mut rig);
+        assert!((force - felt(time)).abs() < 1e-6, "after a pause {force} N is not {} N", felt(time));
+        (from, before) = (place, reached);
+    }
+}
+
+/// 300 N at 2 % lose 6 N/(0.4 s + t) a second: 0.5 N/s come after 11.6 s, and the dwell makes less of it.
+#[test]
+fn a_rig_settles_when_the_logarithm_is_slow() {
+    let settle = Settle { band: 1e-5, force_rate: 0.5, dwell: 0.0, timeout: 60.0 };
+    let mut rig = rig_of(logarithmic(Behaviour::Elastic { stiffness: 3e5 }, 0.02), VirtualLink::default(), settle);
+    let (time, _) = go(&mut rig, 1e-3, 1.0);
+    assert!((time - 11.6).abs() < 2e-3, "{time} s");
+    let mut never = rig_of(
+        logarithmic(Behaviour::Elastic { stiffness: 3e5 }, 0.02),
+        VirtualLink::default(),
+        Settle { timeout: 10.0, ..settle },
+    );
+    never.propose(&[1e-3], Some(1.0)).expect("a target");
+    assert!(never.execute().is_err(), "0.5 N/s do not come within 10 s");
+}
+
+/// The work done on it never comes back whole, whatever it is, wherever it goes and however long it rests there.
+#[test]
+fn what_relaxes_gives_back_no_more_than_it_took() {
+    let bases = [
+        Behaviour::Elastic { stiffness: 1e6 },
+        Behaviour::Bilinear { stiffness: 1e6, yield_force: 1500.0, hardening: 0.05 },
+        Behaviour::BoucWen { stiffness: 1e6, yield_force: 1500.0, hardening: 0.0, sharpness: 2.0, beta: 0.5 },
+    ];
+    let turns = [3e-3, -2e-3, 4e-3, 1e-3, 3.5e-3, -4e-3, 0.5e-3, -3e-3, 2e-3, 0.0];
+    for base in bases {
+        for rest in [0.0, 0.3, 50.0, 1e5] {
+            let behaviour = Behaviour::Logarithmic { of: Box::new(base.clone()), share: 0.03, reference_time: 0.4, longest: 4e6 };
+            let (mut model, mut relaxing) = (SpecimenModel::new(&base), Relaxing::of(&behaviour));
+            let (mut at, mut force, mut work) = (0.0, 0.0, 0.0);
+            for turn in turns {
+                let parts = 2000;
+                let part = (turn - at) / f64::from(parts);
+                for _ in 0..parts {
+                    at += part;
+                    let own = model.move_to(at);
+                    relaxing.follow(&Travel::even(part / 1e-3, 1e-3), Went { moved: part, force: own });
+                    let felt = own + relaxing.force();
+                    work += 0.5 * (force + felt) * part;
+                    force = felt;
+                    assert!(work >= -1e-9, "{base:?} gave back {work} J after rests of {rest} s");
+                }
+                relaxing.follow(&Travel::rest(rest), Went { moved: 0.0, force: model.move_to(at) });
+                force = model.move_to(at) + relaxing.force();
+            }
+        }
+    }
+}
+
+/// A move in which it begins to yield, in one look or in many: the force is taken to change with the way, and what that leaves is a small
+/// part of what is lost, less the more looks there are.
+#[test]
+fn a_kink_within_a_move_is_followed_closer_with_more_looks() {
+    let of = Behaviour::Bilinear { stiffness: 1e6, yield_force: 1000.0, hardening: 0.0 };
+    let lost = |looks: u32| {
+        let mut rig = rig_of(logarithmic(of.clone(), 0.01), VirtualLink::default(), AT_ONCE);
+        let mut last = 0.0;
+        for look in 1..=looks {
+            last = go(&mut rig, 3e-3 * f64::from(look) / f64::from(looks), 3e-3).1;
+        }
+        1000.0 - last
+    };
+    let exact = 10.0 * RelaxationLaw::Logarithmic.lost(2.0 / 3.0, 1.0 / 3.0, 0.4);
+    let off = [1, 10, 100, 1000].map(|looks| (lost(looks) - exact).abs());
+    assert!(off[0] < 0.4 * exact, "in one look {} N of {exact} N", off[0]);
+    assert!(off[1] < 0.1 * off[0] && off[2] < 0.1 * off[1] && off[3] < 0.1 * off[2], "{off:?}");
 }

@@ -3,21 +3,40 @@
 
 use proptest::prelude::*;
 use psd::mechanics::specimen::{RestoringForce, SpecimenModel};
-use psd::plan::{Behaviour, Bolted, Breaks, Deterioration, Pinching, Table, Unloading};
+use psd::plan::{Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading};
 
 /// Stiffness 1 N/m to 3 N/m and yield near 1 m: the models know no scale but their own.
 fn simple() -> impl Strategy<Value = Behaviour> {
     let stiffness = || 1.0..3.0_f64;
     let force = || 0.5..2.0_f64;
     let hardening = || prop_oneof![Just(0.0), 0.0..0.5_f64];
-    let tires = (1.0..60.0_f64, 0.5..2.0_f64, 0.01..0.5_f64).prop_map(|(capacity, exponent, residual)| Deterioration {
-        capacity,
-        exponent,
+    let capacity = || prop_oneof![Just(f64::INFINITY), 1.0..60.0_f64];
+    let tires = (prop::array::uniform4(capacity()), 0.5..2.0_f64, 0.01..0.5_f64).prop_map(
+        |([strength, capping, unloading, reloading], exponent, residual)| Deterioration {
+            strength,
+            capping,
+            unloading,
+            reloading,
+            exponent,
+            residual,
+        },
+    );
+    // Boxed, as all that is nested deep: its tree lies on the stack of a test else.
+    let tires = tires.boxed();
+    // Past any yield, which comes at 2 m at the latest.
+    let capped = (2.0..6.0_f64, 0.01..0.5_f64, 0.01..0.5_f64).prop_map(|(displacement, slope, residual)| Capping {
+        displacement,
+        slope,
         residual,
     });
+    let capped = capped.boxed();
+    let falls = (prop::option::of(tires), prop::option::of(capped));
     let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
-    let pinching = (stiffness(), force(), hardening(), shape, prop::option::of(tires)).prop_map(
-        |(stiffness, yield_force, hardening, (force_factor, displacement_factor, unloading_exponent), deterioration)| {
+    let pinching = (stiffness(), force(), hardening(), shape, falls).prop_map(
+        |(stiffness, yield_force, hardening, (force_factor, displacement_factor, unloading_exponent), (tires, capping))| {
+            // One strength is never lost, whatever takes the rest.
+            let residual =
+                |capping: Capping| Capping { residual: tires.map_or(capping.residual, |rule| rule.residual), ..capping };
             Behaviour::Pinching(Pinching {
                 stiffness,
                 yield_force,
@@ -25,10 +44,12 @@ fn simple() -> impl Strategy<Value = Behaviour> {
                 force_factor,
                 displacement_factor,
                 unloading_exponent,
-                deterioration,
+                capping: capping.map(residual),
+                deterioration: tires,
             })
         },
     );
+    let pinching = pinching.boxed();
     prop_oneof![
         stiffness().prop_map(|stiffness| Behaviour::Elastic { stiffness }),
         (stiffness(), force(), hardening()).prop_map(|(stiffness, yield_force, hardening)| Behaviour::Bilinear {
