@@ -9,6 +9,7 @@
 
 pub mod digest;
 pub mod inert;
+pub mod legible;
 pub mod source;
 
 pub mod diagnostic;

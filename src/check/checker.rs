@@ -76,6 +76,8 @@ pub struct Checker<'a> {
     pub names_lost: bool,
     /// Lines that could not be read: names on them may be declared there.
     pub unread: Vec<Span>,
+    /// Places of which all is said.
+    pub explained: Vec<Span>,
     pub known: BTreeMap<Node, Option<Typed>>,
     pub used: BTreeSet<usize>,
     /// The rig of the run, where it is one that moves a specimen.
@@ -111,6 +113,7 @@ impl<'a> Checker<'a> {
             faults,
             names_lost,
             unread,
+            explained: Vec::new(),
             known,
             used,
             real_rig: None,

@@ -217,7 +217,7 @@ impl<'a> Checker<'a> {
             Some(super::scope::Meaning::Block(index)) if self.scope.blocks[index].kind.kind == kind => Some(index),
             Some(super::scope::Meaning::Poisoned) => None,
             Some(_) => self.fail(types::block_wanted(kind, span, name)),
-            None if self.may_be_lost(name) => None,
+            None if self.may_be_lost(name) || self.scope.of_kind(kind).any(|(_, block)| block.lacks_its_name()) => None,
             None => {
                 let known: Vec<&str> =
                     self.scope.of_kind(kind).filter_map(|(_, block)| block.name).map(|name| name.node.as_str()).collect();

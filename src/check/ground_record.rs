@@ -69,6 +69,9 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     let Some((at, counts)) = head().find(|(_, line)| upper(line).contains("NPTS")) else {
         return Err(format!("none of its first {AT2_HEAD} lines holds NPTS and DT"));
     };
+    if let Some((line, what)) = head().take_while(|(line, _)| *line <= at).find(|(_, line)| is_no_acceleration(&upper(line))) {
+        return Err(format!("line {line} says `{}`, and a record of accelerations is wanted", shortened(what)));
+    }
     let (points, step) = counts_of(&upper(counts)).ok_or_else(|| format!("line {at} does not say NPTS and DT as numbers"))?;
     not_too_long(points)?;
     let unit = head().take_while(|(line, _)| *line <= at).any(|(_, line)| upper(line).contains("UNITS OF G"));
@@ -87,6 +90,12 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_SAMPLES")]
     let times = (0..points).map(|sample| sample as f64 * step).collect();
     Ok(GroundRecord { times, values, unit: unit.then_some(STANDARD_GRAVITY) })
+}
+
+/// Whether a line of the head says that the samples are velocities or displacements, as those of `.VT2` and `.DT2` files are.
+fn is_no_acceleration(line: &str) -> bool {
+    let series = line.contains("TIME SERIES") || line.contains("TIME HISTORY") || line.contains("UNITS OF");
+    series && (line.contains("VELOCITY") || line.contains("DISPLACEMENT")) && !line.contains("ACCEL")
 }
 
 /// `NPTS=  4000, DT=   .0050 SEC` as it is today, or `4000 .0050 NPTS, DT` as it was.
@@ -143,6 +152,11 @@ mod tests {
         assert!(refused(&format!("{head}NPTS= 3, DT= 1\n1 x 3")).contains("line 5: `x`"));
         assert!(refused(&format!("{head}NPTS= 900000, DT= 1\n1")).contains("more than 100000"));
         assert!(refused("1 2 3").contains("NPTS"));
+        for what in ["VELOCITY TIME SERIES IN UNITS OF CM/S", "DISPLACEMENT TIME SERIES IN UNITS OF CM"] {
+            let other = head.replace("ACCELERATION TIME SERIES IN UNITS OF G", what);
+            let told = refused(&format!("{other}NPTS= 2, DT= .005\n1 2"));
+            assert_eq!(told, format!("line 3 says `{what}`, and a record of accelerations is wanted"));
+        }
     }
 
     #[test]

@@ -41,12 +41,15 @@ impl Loading<'_> {
     fn read(&mut self, path: &str, name: &str, text: &str, sources: &mut Sources, faults: &mut Vec<Diagnostic>) {
         let file = sources.add(name, text);
         let (ast, found) = syntax::parse(sources, file);
+        let known = faults.len();
         faults.extend(found);
         let used: Vec<Spanned<String>> = ast
             .items
             .iter()
             .filter_map(|item| if let ItemKind::Use { path } = &item.kind { Some(path.clone()) } else { None })
             .collect();
+        // Of a file that could not be read at all, nobody knows what it declares.
+        self.incomplete |= ast.items.is_empty() && faults[known..].iter().any(Diagnostic::is_error);
         self.loaded.push((path.to_owned(), ast));
         debug_assert_eq!(FileId(u32::try_from(self.loaded.len()).unwrap_or(0)), FileId(file.0 + 1));
         self.chain.push(path.to_owned());
@@ -121,6 +124,8 @@ pub fn refused(path: &str) -> Option<&'static str> {
         Some("it leaves the plan's folder by `..`")
     } else if path.split('/').any(str::is_empty) {
         Some("a folder in it has no name")
+    } else if path.split('/').all(|step| step == ".") {
+        Some("it is the plan's folder, not a file")
     } else {
         None
     }

@@ -14,6 +14,7 @@ use crate::syntax::ast::{Expr, ExprKind};
 pub struct CheckedLimits {
     pub limits: Limits,
     pub displacement_at: Option<Span>,
+    pub force_at: Option<Span>,
     pub speed_at: Option<Span>,
 }
 
@@ -120,16 +121,17 @@ impl<'a> Checker<'a> {
         let plan: Vec<(usize, Limits)> =
             checked.into_iter().filter(|(index, _)| self.scope.blocks[*index].name.is_none()).collect();
         let mut all = Limits::NONE;
-        let (mut displacement_at, mut speed_at) = (None, None);
+        let (mut displacement_at, mut force_at, mut speed_at) = (None, None, None);
         for (index, limits) in plan.iter().chain(&rig) {
             if let (Some((rig, allowed)), true) = (&rig, Some(*index) != rig_limits) {
                 self.compare_limits(*index, limits, *rig, allowed);
             }
             all = intersection(&all, limits);
             displacement_at = self.given(*index, "displacement").map(|(_, entry)| entry.span).or(displacement_at);
+            force_at = self.given(*index, "force").map(|(_, entry)| entry.span).or(force_at);
             speed_at = self.given(*index, "speed").map(|(_, entry)| entry.span).or(speed_at);
         }
-        Some(CheckedLimits { limits: all, displacement_at, speed_at })
+        Some(CheckedLimits { limits: all, displacement_at, force_at, speed_at })
     }
 
     fn compare_limits(&mut self, plan: usize, asked: &Limits, rig: usize, allowed: &Limits) {
@@ -167,6 +169,22 @@ fn intersection(one: &Limits, other: &Limits) -> Limits {
         energy_error: one.energy_error.intersection(other.energy_error),
         tracking_energy_error: one.tracking_energy_error.intersection(other.tracking_energy_error),
         nrms_error: one.nrms_error.intersection(other.nrms_error),
+    }
+}
+
+/// A virtual rig begins at rest, with displacement and force 0: limits that leave those out stop it before it moves. Where a
+/// real one stands, nobody knows here.
+pub fn hold_start(checker: &mut Checker, limits: &CheckedLimits) {
+    if checker.real_rig.is_some() {
+        return;
+    }
+    for (name, interval, dimension, at) in [
+        ("displacement", limits.limits.displacement, Dimension::LENGTH, limits.displacement_at),
+        ("force", limits.limits.force, Dimension::FORCE, limits.force_at),
+    ] {
+        if let (Some(at), false) = (at, interval.contains(0.0)) {
+            checker.faults.push(whole::start_beyond_limits(name, interval, dimension, at));
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Syntax tree → plan, all errors at once. In: the text of the plan and a [`Loader`] for the files it uses.
 //! Out: a [`Checked`].
 
+mod arrival;
 mod axes;
 mod axis_devices;
 mod behaviour;
@@ -35,6 +36,7 @@ mod move_block;
 mod names;
 mod parameters;
 mod plan_block;
+mod print;
 mod procedures;
 mod real_rig;
 mod report;
@@ -60,7 +62,7 @@ pub use imports::{DEEPEST, MOST_FILES};
 pub use literal::MOST_ENTRIES;
 pub use stiffness_ramp::MOST_READINGS;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{BlowOn, Plan, PlanFile, Procedure, ProcedureKind, Specimen};
 use crate::schema::Kind;
 use crate::source::{FileId, Sources, Span};
@@ -120,9 +122,23 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     let plan = plan(&mut checker, name, files, options);
     let rig_links = rig::links_of_run(&checker, options.rig.as_deref());
     let mut diagnostics = checker.faults;
+    let misspelt: Vec<Span> = imports.asts.iter().flat_map(|ast| ast.misspelt.iter().copied()).collect();
+    // What follows from a fault that was told at the same place is not told again.
+    let at = |fault: &Diagnostic, places: &[Span]| fault.span().is_some_and(|at| places.iter().any(|place| touch(at, *place)));
+    diagnostics.retain(|fault| is_of_the_text(fault) || !at(fault, &misspelt));
+    diagnostics.retain(|fault| fault.code != Code::UnknownName || !at(fault, &checker.explained));
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
     let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
     Checked { plan, diagnostics, sources, rig_links }
+}
+
+fn is_of_the_text(fault: &Diagnostic) -> bool {
+    fault.code.id().starts_with("E1")
+}
+
+/// Whether two places have a character in common.
+fn touch(one: Span, other: Span) -> bool {
+    one.file == other.file && one.start < other.end && other.start < one.end
 }
 
 /// The lines at which the text could not be read.
@@ -134,8 +150,7 @@ fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
         let last = text[end..].find('\n').map_or(text.len(), |newline| end + newline);
         Span::new(span.file, first, last)
     };
-    let unreadable = |fault: &&Diagnostic| fault.code.id().starts_with("E1");
-    faults.iter().filter(unreadable).filter_map(Diagnostic::span).map(line).collect()
+    faults.iter().filter(|fault| is_of_the_text(fault)).filter_map(Diagnostic::span).map(line).collect()
 }
 
 fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Options) -> Option<Plan> {
@@ -160,6 +175,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     procedures::hold_specimen(checker, &procedures);
     procedures::hold_axes(checker, &procedures, &specimens, rig.as_ref());
     if let Some(limits) = &limits {
+        limits::hold_start(checker, limits);
         limits::hold_targets(checker, limits);
         limits::hold_cycles(checker, &procedures, limits);
     }
@@ -169,12 +185,16 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             warnings::impact(checker, *block, impact, striker);
             mode::damping_twice(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
             integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
+            if let Some(striker) = striker {
+                arrival::hold(checker, *block, striker, impact.duration.constant());
+            }
         }
         if let Some(Procedure { kind: ProcedureKind::StoreyImpact(impact), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
             && let Some(Some(striker)) = strikers.get(impact.striker)
         {
             storey_impact::judge(checker, *block, impact, frame, striker);
+            arrival::hold(checker, *block, striker, impact.duration.constant());
         }
         if let Some(Procedure { kind: ProcedureKind::Escalate(escalate), .. }) = procedure
             && let BlowOn::Storey(impact) = &escalate.blow
@@ -203,6 +223,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         }
         if let Some(limits) = &limits {
             specimen::warn_of_short_tables(checker, &specimens, limits);
+        }
+        if let Some(report) = &report {
+            print::warn(checker, report);
         }
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
     }

@@ -53,10 +53,16 @@ impl<'a> Checker<'a> {
                     _ => (&[][..], false),
                 };
                 let results = results.iter().filter(|result| !result.of_storey || storey).map(|result| result.name);
-                let fault = fault::unknown_name(name, span, known.into_iter().chain(results));
+                let fault = fault::unknown_name(name, span, self.before(span), known.into_iter().chain(results));
                 self.fail(fault)
             }
         }
+    }
+
+    /// What stands before a place on its line.
+    fn before(&self, span: Span) -> &'a str {
+        let before = &self.sources.file(span.file).text[..span.range().start];
+        before.rsplit('\n').next().unwrap_or_default()
     }
 
     /// The entry `name` of a block, if it is one with a number and not the entry that asks.
@@ -83,7 +89,7 @@ impl<'a> Checker<'a> {
                 if self.may_be_lost(owner) {
                     return None;
                 }
-                let fault = fault::unknown_name(owner, base.span, self.scope.names());
+                let fault = fault::unknown_name(owner, base.span, self.before(base.span), self.scope.names());
                 return self.fail(fault);
             }
         }
@@ -144,7 +150,17 @@ impl<'a> Checker<'a> {
             }
             return self.reads_allowed(Typed { span, ..typed }, span, place);
         }
-        let fault = fault::unknown_result(declared.kind, declared.name, &name.node, name.span);
+        let (kind, owner) = (declared.kind, declared.name);
+        // `hit.max-displacement` is read as a difference.
+        let text = &self.sources.file(name.span.file).text[name.span.range().start..];
+        let end = text.find(|c: char| !c.is_ascii_alphanumeric() && !matches!(c, '_' | '-')).unwrap_or(text.len());
+        let joined = text[..end].replace('-', "_");
+        if kind.result(&joined).is_some() {
+            let whole = Span { end: name.span.start + u32::try_from(end).unwrap_or(0), ..name.span };
+            self.explained.push(whole);
+            return self.fail(fault::minus_in_name(&text[..end], &joined, whole));
+        }
+        let fault = fault::unknown_result(kind, owner, &name.node, name.span);
         self.fail(fault)
     }
 

@@ -4,6 +4,7 @@ use super::checker::Checker;
 use super::faults::{axes as axis_faults, frames, names, whole as fault};
 use super::rig::CheckedRig;
 use super::{axes, cycle, damping_sweep, escalate, impact, inspect, move_block, shake, stiffness_ramp, unload};
+use crate::diagnostic::Code;
 use crate::plan::{BlowOn, Escalate, Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
@@ -121,7 +122,8 @@ impl Checker<'_> {
     /// Says once that nothing is there to be tested.
     pub fn specimen_needed(&mut self, block: usize) {
         let none = self.scope.of_kind(Kind::Specimen).next().is_none();
-        let said = self.faults.iter().any(|fault| fault.code == crate::diagnostic::Code::MissingBlock);
+        // A block whose keyword is no word of the language may be the one that is missing.
+        let said = self.faults.iter().any(|fault| matches!(fault.code, Code::MissingBlock | Code::UnknownBlock));
         if none && !said && !self.names_lost && self.unread.is_empty() {
             let head = self.scope.blocks[block].block.head;
             self.faults.push(names::missing_block(schema::block(Kind::Specimen), head));

@@ -21,6 +21,13 @@ pub struct DeclaredBlock<'a> {
     pub procedure: Option<ProcedureId>,
 }
 
+impl DeclaredBlock<'_> {
+    /// Whether it should have a name and has none, which is told: what is called by a name may be this one.
+    pub fn lacks_its_name(&self) -> bool {
+        self.name.is_none() && self.kind.naming == Naming::Named
+    }
+}
+
 /// A `let` or a `param`.
 pub struct DeclaredValue<'a> {
     pub keyword: &'static str,
@@ -68,7 +75,7 @@ impl<'a> Scope<'a> {
                         scope.declare_value("param", name, value, bounds.as_ref(), settings.get(&name.node), faults);
                     }
                     ItemKind::Require { label, .. } if library => faults.push(fault::not_in_library("require", label.span)),
-                    ItemKind::Require { label, condition } => scope.requirements.push(DeclaredRequirement { label, condition }),
+                    ItemKind::Require { label, condition } => scope.require(label, condition, faults),
                     ItemKind::Block(block) => scope.declare_block(block, item.span, library, faults),
                 }
             }
@@ -99,9 +106,22 @@ impl<'a> Scope<'a> {
         self.blocks.iter().enumerate().filter(|(_, block)| block.procedure.is_some())
     }
 
+    fn require(&mut self, label: &'a Spanned<String>, condition: &'a Expr, faults: &mut Vec<Diagnostic>) {
+        if let Some(first) = self.requirements.iter().find(|first| first.label.node == label.node) {
+            faults.push(fault::requirement_twice(&label.node, label.span, first.label.span));
+        }
+        self.requirements.push(DeclaredRequirement { label, condition });
+    }
+
     fn declare(&mut self, name: &'a Ident, meaning: Meaning, faults: &mut Vec<Diagnostic>) {
         match self.names.get(name.node.as_str()) {
-            Some((_, first)) => faults.push(fault::declared_twice(&name.node, name.span, *first)),
+            Some((before, first)) => {
+                faults.push(fault::declared_twice(&name.node, name.span, *first));
+                // Which of two things of different sorts is meant, nobody knows.
+                if std::mem::discriminant(before) != std::mem::discriminant(&meaning) {
+                    self.names.insert(&name.node, (Meaning::Poisoned, *first));
+                }
+            }
             None => {
                 self.names.insert(&name.node, (meaning, name.span));
             }
@@ -139,7 +159,12 @@ impl<'a> Scope<'a> {
             self.poison(rest, faults);
             return;
         }
-        if let Some(wrong) = fault::block_name(kind, block, rest) {
+        // A head that could not be read to its end has more words than are known.
+        let cut_short = faults
+            .iter()
+            .filter_map(Diagnostic::span)
+            .any(|at| at.file == block.head.file && (block.head.start..=block.head.end + 1).contains(&at.start));
+        if let Some(wrong) = fault::block_name(kind, block, rest).filter(|_| !cut_short) {
             faults.push(wrong);
         } else if let (Naming::Unnamed | Naming::Titled | Naming::MaybeNamed, []) = (kind.naming, rest)
             && let Some(first) = self.unnamed(kind, span)

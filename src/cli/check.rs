@@ -17,7 +17,7 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
             // One file that cannot be read does not hide what is wrong with the others.
             Err(failure) => {
                 tell(&failure.report(settings));
-                found.push(json::unreadable(&path.display().to_string(), &failure.to_string()));
+                found.push(json::unreadable(&path.display().to_string(), &failure.to_string(), failure.place()));
                 exit = exit.max(failure.exit());
                 continue;
             }

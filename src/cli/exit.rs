@@ -8,6 +8,7 @@ use super::room::NoRoom;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
 use crate::rig::RigFault;
+use crate::source::Position;
 use crate::verdict::Verdict;
 
 /// An exit code, worst last.
@@ -67,7 +68,7 @@ pub enum Failure {
     #[error("{}: {reason}", path.display())]
     File { path: PathBuf, reason: String, help: Option<String> },
     #[error("{}: not a plan: {reason}", path.display())]
-    NotAPlan { path: PathBuf, reason: String },
+    NotAPlan { path: PathBuf, reason: String, at: Option<Position> },
     #[error("the results could not be made: {0}")]
     Output(#[from] crate::output::OutputError),
     #[error("standard output: {0}")]
@@ -102,6 +103,14 @@ impl Failure {
 
     pub fn file(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
         Self::File { path: path.into(), reason: reason.into(), help: None }
+    }
+
+    /// Where in a file its text could not be read.
+    pub const fn place(&self) -> Option<Position> {
+        match self {
+            Self::NotAPlan { at, .. } => *at,
+            _ => None,
+        }
     }
 
     /// The same failure with a way out.

@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::exit::Failure;
 use crate::check::{LoadFault, Loader};
+use crate::source::Position;
 use crate::syntax::limits::FILE_BYTES;
 
 /// Gives files of one folder and what is under it.
@@ -38,7 +39,7 @@ impl Loader for FolderLoader {
         if !file.starts_with(&self.folder) {
             return Err(LoadFault::Refused("it is a link that leads out of the plan's folder".to_owned()));
         }
-        read(&file).map_err(LoadFault::Refused)
+        read(&file).map_err(|fault| LoadFault::Refused(fault.reason))
     }
 }
 
@@ -48,24 +49,37 @@ pub fn read_plan(path: &Path) -> Result<String, Failure> {
     if metadata.is_dir() {
         return Err(Failure::file(path, "is a folder").help("name the plan itself, a `.psd` file"));
     }
-    read(path).map_err(|reason| Failure::NotAPlan { path: path.to_owned(), reason })
+    read(path).map_err(|Unread { reason, at }| Failure::NotAPlan { path: path.to_owned(), reason, at })
 }
 
-fn read(path: &Path) -> Result<String, String> {
+/// Why a file is no text of a plan, and where, if it is a byte of it.
+struct Unread {
+    reason: String,
+    at: Option<Position>,
+}
+
+impl From<String> for Unread {
+    fn from(reason: String) -> Self {
+        Self { reason, at: None }
+    }
+}
+
+fn read(path: &Path) -> Result<String, Unread> {
     // Asked before opening: to open a pipe or a device may wait for ever.
     if !path.metadata().map_err(|error| plain(&error))?.is_file() {
-        return Err("it is not a regular file".to_owned());
+        return Err("it is not a regular file".to_owned().into());
     }
     let file = File::open(path).map_err(|error| plain(&error))?;
     let mut bytes = Vec::new();
     file.take(FILE_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(|error| plain(&error))?;
     if bytes.len() > FILE_BYTES {
-        return Err(format!("it is larger than {} MiB", FILE_BYTES >> 20));
+        return Err(format!("it is larger than {} MiB", FILE_BYTES >> 20).into());
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let (line, column) = place(&error.as_bytes()[..at]);
-        format!("it is not UTF-8 text (byte {at}, line {line}, column {column}): save it as UTF-8")
+        let reason = format!("it is not UTF-8 text (byte {at}, line {line}, column {column}): save it as UTF-8");
+        Unread { reason, at: Some(Position { line, column }) }
     })
 }
 

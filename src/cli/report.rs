@@ -1,6 +1,7 @@
 //! `psd report RUN`: the results anew, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
-//! for byte, into a folder that has none; with an amendment, a report of its own beside the one it takes the place of. It
-//! opens no rig, changes no record and overwrites nothing; of a run that is still going on it makes nothing.
+//! for byte, into a folder that has none, with a copy of the record where that is another folder; with an amendment, a report
+//! of its own beside the one it takes the place of. It opens no rig, changes no record and overwrites nothing; of a run that is
+//! still going on it makes nothing.
 
 use std::path::{Path, PathBuf};
 
@@ -35,9 +36,23 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     };
     let beside = kept.files.get(AMENDMENT).map(|held| (AMENDMENT.to_owned(), held.digest.clone()));
     let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
+    // What a manifest lists lies beside it: another folder is a whole run folder, and verifies.
+    if folder != *run {
+        beside.iter().try_for_each(|(name, _)| copy(run, &folder, name))?;
+    }
     let exit = conclude_played(&folder, &played, &beside, settings)?;
     give(&format!("{}\n", folder.display()))?;
     Ok(exit)
+}
+
+/// Copies one file of a run, by its name in the folder.
+fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
+    let to = folder.join(name);
+    let failed = |error: std::io::Error| Failure::file(&to, plain(&error));
+    if let Some(above) = to.parent() {
+        std::fs::create_dir_all(above).map_err(failed)?;
+    }
+    std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
 }
 
 /// Tells the verdict of a record played back, and writes its results.

@@ -118,6 +118,7 @@ codes! {
     E635 TooUncertain Error;
     E636 ChannelsDiffer Error;
     E637 NotAsked Error;
+    E638 NeverArrives Error;
     E639 DampingTooUncertain Error;
     E640 WhichStorey Error;
     E641 NoUseOnAFrame Error;
@@ -149,6 +150,7 @@ codes! {
     W714 UncertaintyUnused Warning;
     W715 TableTooShort Warning;
     W716 DampingTwice Warning;
+    W717 NotPrinted Warning;
     W718 StifferThanOperator Warning;
     W719 TrackingStops Warning;
     W720 BlowOnBlow Warning;

@@ -4,9 +4,9 @@
 use serde_json::{Value, json};
 
 use super::render::severity_name;
-use super::{Diagnostic, Label};
+use super::{Code, Diagnostic, Label};
 use crate::inert;
-use crate::source::{Sources, Span};
+use crate::source::{Position, Sources, Span};
 
 /// Name of the format, in the document's `schema`.
 pub const SCHEMA: &str = "psd.diagnostics/1";
@@ -43,12 +43,13 @@ pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder
     value
 }
 
-/// A plan that cannot be read: an error of no code and no place that an editor could show.
+/// A plan that cannot be read: an error of no code, and of no place but where its text is none.
 #[must_use]
-pub fn unreadable(file: &str, message: &str) -> Value {
+pub fn unreadable(file: &str, message: &str, at: Option<Position>) -> Value {
+    let (line, column) = (at.map(|at| at.line), at.map(|at| at.column));
     json!({
-        "code": null, "severity": "error", "message": message, "file": file, "line": null, "column": null,
-        "end_line": null, "end_column": null, "span": null, "labels": [], "help": null,
+        "code": at.map(|_| Code::BadText.id()), "severity": "error", "message": message, "file": file, "line": line, "column": column,
+        "end_line": line, "end_column": column, "span": null, "labels": [], "help": null,
     })
 }
 

@@ -30,10 +30,11 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
     for (axis, (gate, force)) in gates.iter().zip(&at_rest.force).enumerate() {
         if failpoint::on(Guarding::GateZero) && !within(force.abs(), 0.0, gate.zero) {
             return refuse(format!(
-                "{}{} at rest, {} is allowed: zero the cell, or take the load off",
+                "{}{} at rest, {} is allowed: {}",
                 named_axis(axis, axes).map_or_else(String::new, |axis| format!("axis {axis}: ")),
                 readable(*force, Dimension::FORCE),
-                stated(gate.zero, Dimension::FORCE)
+                stated(gate.zero, Dimension::FORCE),
+                remedy(at_rest.displacement[axis], *force, gate)
             ));
         }
     }
@@ -54,6 +55,20 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
         session.event(EventKind::Note, text);
     }
     Ok(())
+}
+
+/// What to do about a force at rest: a rig that stands where its specimen would carry about as much was left there by a run.
+fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
+    let carried = force / displacement;
+    let bent = within(carried, 0.5 * gate.stiffness.low, 2.0 * gate.stiffness.high) && displacement.abs() > gate.probe;
+    if bent {
+        let place = readable(displacement, Dimension::LENGTH);
+        format!(
+            "it stands at {place}, as a run without `unload` at its end leaves it: go back with `psd rig jog`, or start a stand-in anew"
+        )
+    } else {
+        "zero the cell, or take the load off".to_owned()
+    }
 }
 
 /// A tiny move of one axis alone, and back. Gives its column of the stiffness matrix, N/m: the forces that it raised in
@@ -105,4 +120,20 @@ fn within(value: f64, low: f64, high: f64) -> bool {
 
 fn refuse<T>(reason: String) -> Result<T, Stop> {
     Err(Stop::Gate { reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Interval;
+
+    #[test]
+    fn a_bent_specimen_is_told_from_a_cell_without_its_zero() {
+        let gate = Gate { probe: 1e-4, stiffness: Interval { low: 250e3, high: 350e3 }, zero: 20.0 };
+        assert!(remedy(7.86e-3, 2353.0, &gate).contains("stands at 7.860 mm"), "{}", remedy(7.86e-3, 2353.0, &gate));
+        assert!(remedy(-7.86e-3, -1500.0, &gate).contains("psd rig jog"));
+        for (displacement, force) in [(0.0, 2353.0), (1e-5, 3.0), (7.86e-3, 40.0), (7.86e-3, -2353.0)] {
+            assert!(remedy(displacement, force, &gate).starts_with("zero the cell"), "{displacement} m, {force} N");
+        }
+    }
 }

@@ -10,6 +10,9 @@ pub struct Ast {
     pub items: Vec<Item>,
     /// Every comment of the file in order of position, wherever it stands; text from `#` to the end of the line.
     pub comments: Vec<Spanned<String>>,
+    /// Places that were read otherwise than they are written, which is a fault that was told: what else is said of them follows
+    /// from it.
+    pub misspelt: Vec<Span>,
 }
 
 /// A name as it was written.

@@ -30,12 +30,11 @@ pub fn bad_runs(line: &str, in_comment: bool) -> Vec<(Range<usize>, String)> {
 /// and comments.
 #[must_use]
 pub fn stray_run(text: &str) -> usize {
-    let sort = |character: char| {
-        (is_bad(character, false), character.is_alphabetic(), character.is_ascii() && !character.is_ascii_control())
-    };
+    let sort = |character: char| (is_bad(character, false), character.is_alphabetic(), character.is_ascii());
     let Some(first) = text.chars().next() else { return 0 };
     if first.is_ascii() && !first.is_ascii_control() {
-        return 1;
+        // `&&`
+        return text.find(|next| next != first).unwrap_or(text.len()).min(2);
     }
     text.find(|next: char| sort(next) != sort(first)).unwrap_or(text.len())
 }

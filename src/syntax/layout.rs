@@ -35,6 +35,7 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
             continue;
         }
         let statement = cutter.statement();
+        cutter.brace_below(statement);
         if cutter.is("{") {
             let block = cutter.block(statement);
             let closed = matches!(block, Piece::Block { close: Some(_), .. });
@@ -51,6 +52,9 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
 
 /// Words a top-level item starts with, other than a block.
 pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
+
+/// Signs between two values.
+const OPERATORS: [&str; 12] = ["+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!="];
 
 struct Cutter<'a> {
     tokens: &'a Tokens<'a>,
@@ -97,7 +101,12 @@ impl Cutter<'_> {
         let mut broken = false;
         while let Some(kind) = self.tokens.kind(self.at) {
             match kind {
-                Kind::Newline if open.is_empty() && !self.continues(end) => break,
+                Kind::Newline if open.is_empty() && !self.continues(end) => {
+                    if !self.goes_on_below() {
+                        break;
+                    }
+                    broken = true;
+                }
                 Kind::Newline if self.starts_something() => break,
                 Kind::Newline | Kind::Comment => {}
                 _ if self.is("{") || self.is("}") => break,
@@ -126,11 +135,38 @@ impl Cutter<'_> {
         Statement { start, end, broken }
     }
 
+    /// Whether the next line begins with an operator, which is told: it goes on with the expression of this one.
+    fn goes_on_below(&mut self) -> bool {
+        let next = self.at + 1;
+        let joins = |word: &&str| self.tokens.is(next, word) && !self.tokens.is(next + 1, "=");
+        if !OPERATORS.iter().chain(&JOINING_WORDS).any(joins) {
+            return false;
+        }
+        let token = self.tokens.list[next];
+        let operator = self.tokens.text_of(token);
+        self.faults.push(faults::operator_begins_line(self.tokens.span(token.start, token.end), operator));
+        true
+    }
+
+    /// A brace that stands on a line of its own below the head that it belongs to: told, and read as that block's.
+    fn brace_below(&mut self, head: Statement) {
+        let mut next = self.at;
+        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
+            next += 1;
+        }
+        let words = (head.start..head.end).all(|at| matches!(self.tokens.kind(at), Some(Kind::Word | Kind::Text)));
+        let item = ITEM_WORDS.iter().any(|word| self.tokens.is(head.start, word));
+        if next > self.at && head.end > head.start && words && !item && self.tokens.is(next, "{") {
+            let brace = self.tokens.list[next];
+            self.faults.push(faults::brace_on_next_line(self.tokens.span(brace.start, brace.end)));
+            self.at = next;
+        }
+    }
+
     /// Whether the token before `end` wants a value after it.
     fn continues(&self, end: usize) -> bool {
         let Some(last) = end.checked_sub(1) else { return false };
-        let signs = ["+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!="];
-        signs.iter().chain(&JOINING_WORDS).any(|operator| self.tokens.is(last, operator))
+        OPERATORS.iter().chain(&JOINING_WORDS).any(|operator| self.tokens.is(last, operator))
     }
 
     /// Whether the line after this line end starts a field, an item, a block or ends a block.

@@ -6,7 +6,8 @@ use super::limits;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     pub why: &'static str,
-    pub write: Option<String>,
+    /// The ways to write it, the likeliest first.
+    pub write: Vec<String>,
 }
 
 fn digits(text: &str) -> usize {
@@ -14,9 +15,9 @@ fn digits(text: &str) -> usize {
 }
 
 /// Bytes of the number at the start of `text`, taking in what was meant as part of it: `1_000`, `0x10`, `1,5`, `5.`,
-/// `1.2.3`. A comma counts only where no list is open.
+/// `1.2.3`, `1 000`. A comma counts only where no bracket is open, a blank where no list is.
 #[must_use]
-pub fn extent(text: &str, comma: bool) -> usize {
+pub fn extent(text: &str, comma: bool, blank: bool) -> usize {
     let hexadecimal = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
     if let Some(body) = hexadecimal.filter(|body| body.starts_with(|next: char| next.is_ascii_hexdigit())) {
         return 2 + body.find(|next: char| !(next.is_ascii_hexdigit() || next == '_')).unwrap_or(body.len());
@@ -24,6 +25,9 @@ pub fn extent(text: &str, comma: bool) -> usize {
     let digits_or_underscores =
         |text: &str| text.find(|next: char| !(next.is_ascii_digit() || next == '_')).unwrap_or(text.len());
     let mut end = digits_or_underscores(text);
+    while let Some(group) = grouped(&text[end..], blank).filter(|_| end <= 3 || text[..end].contains([' ', '\'', '’'])) {
+        end += group;
+    }
     loop {
         let rest = &text[end..];
         let joined = rest.starts_with('.') || (comma && rest.starts_with(','));
@@ -50,10 +54,41 @@ pub fn extent(text: &str, comma: bool) -> usize {
     end
 }
 
+/// Bytes of a mark that groups digits and the three digits behind it: ` 000`, `'000`.
+fn grouped(text: &str, blank: bool) -> Option<usize> {
+    let mark = match text.chars().next()? {
+        mark @ ('\'' | '’') => mark.len_utf8(),
+        // A blank of another sort was up to three bytes long.
+        ' ' if blank => (text.len() - text.trim_start_matches(' ').len()).min(4),
+        _ => return None,
+    };
+    let after = &text[mark..];
+    let ends = after.get(3..)?.chars().next().is_none_or(|next| !next.is_ascii_alphanumeric() && next != '_');
+    (mark < 4 && digits(after) == 3 && ends).then_some(mark + 3)
+}
+
+/// What is wrong with a number that holds commas.
+fn commas(written: &str) -> Fault {
+    let none = written.replace(',', "");
+    let point = written.replace('.', "").replace(',', ".");
+    let (whole, rest) = written.split_once(',').unwrap_or((written, ""));
+    let thousands =
+        (1..=3).contains(&whole.len()) && whole != "0" && rest.split([',', '.']).next().is_some_and(|group| group.len() == 3);
+    let many = rest.contains(',') || rest.contains('.');
+    let (why, write) = match (thousands, many, whole.contains('.')) {
+        (true, true, false) => ("digits are not grouped", vec![none]),
+        (true, false, _) => ("a comma neither groups digits nor parts decimals", vec![none, point]),
+        _ => ("the decimal sign is a point", vec![point]),
+    };
+    Fault { why, write: write.into_iter().filter(|text| fault(text).is_none()).collect() }
+}
+
 /// What is wrong with the number `written`, if anything.
 #[must_use]
 pub fn fault(written: &str) -> Option<Fault> {
-    let fault = |why, write: Option<String>| Some(Fault { why, write: write.filter(|text| self::fault(text).is_none()) });
+    let fault = |why, write: Option<String>| {
+        Some(Fault { why, write: write.filter(|text| self::fault(text).is_none()).into_iter().collect() })
+    };
     if written.len() > limits::NUMBER_CHARS {
         return fault("a number has at most 40 characters", None);
     }
@@ -61,11 +96,11 @@ pub fn fault(written: &str) -> Option<Fault> {
         let value = u64::from_str_radix(&body.replace('_', ""), 16).ok();
         return fault("numbers are decimal", value.map(|value| value.to_string()));
     }
-    if written.contains('_') {
-        return fault("digits are not grouped", Some(written.replace('_', "")));
+    if written.contains(['_', ' ', '\'', '’']) {
+        return fault("digits are not grouped", Some(written.replace(['_', ' ', '\'', '’'], "")));
     }
     if written.contains(',') {
-        return fault("the decimal sign is a point", Some(written.replace(',', ".")));
+        return Some(commas(written));
     }
     let (mantissa, power) = match written.split_once(['e', 'E']) {
         Some((mantissa, power)) => (mantissa, Some(power)),

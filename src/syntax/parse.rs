@@ -1,6 +1,8 @@
 //! One file, read whole: [`parse`] gives the tree of all that could be read and every fault of the text. A sound file
 //! goes through the grammar at once; a faulty one is cut into pieces (`layout`) and each piece is read alone.
 
+use std::collections::BTreeSet;
+
 use pest::{
     Parser as _,
     error::{ErrorVariant, InputLocation},
@@ -14,11 +16,11 @@ use super::{
     layout::{self, Piece, Statement},
     limits,
     lower::{Lowering, unescape},
-    rule_names,
+    misspelt, rule_names,
     tokens::{Kind, Tokens},
 };
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{Code, Diagnostic},
     source::{FileId, Sources, Span, Spanned},
 };
 
@@ -31,30 +33,49 @@ pub struct Grammar;
 #[must_use]
 pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let text = sources.file(file).text.as_str();
-    let mut ast = Ast { file, items: Vec::new(), comments: Vec::new() };
+    let mut ast = Ast { file, items: Vec::new(), comments: Vec::new(), misspelt: Vec::new() };
     if text.len() > limits::FILE_BYTES {
         let start = Span::new(file, 0, 0);
         return (ast, vec![faults::too_large(start, "this file", limits::FILE_BYTES, "bytes")]);
     }
+    if let Some(at) = text.find('\r').filter(|_| !text.contains('\n')) {
+        return (ast, vec![faults::carriage_returns(Span::new(file, at, at + 1))]);
+    }
+    let mended = misspelt::mend(text, file);
+    let text = mended.text.as_ref();
     let mut tokens = Tokens::read(text, file);
     ast.comments = tokens.comments();
     if tokens.faults.is_empty()
         && let Some(items) = whole(text, file)
     {
         ast.items = items;
-        return (ast, Vec::new());
+        ast.misspelt = mended.places;
+        return (ast, mended.faults);
     }
     if tokens.cut_short {
-        return (ast, tokens.faults);
+        return (ast, [mended.faults, tokens.faults].concat());
     }
     let (items, mut faults) = piecewise(&mut tokens);
     ast.items = items;
+    let lines: BTreeSet<usize> = mended.places.iter().map(|place| line_start(text, place.start)).collect();
+    faults.retain(|fault| !follows(fault) || fault.span().is_none_or(|at| !lines.contains(&line_start(text, at.start))));
+    faults.extend(mended.faults);
+    ast.misspelt = mended.places;
     if faults.is_empty() {
         // The grammar refused what its pieces allow: say where it stopped.
         faults.extend(Grammar::parse(Rule::file, text).err().map(|error| refused(&tokens, text, 0, Rule::file, &error)));
     }
     faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
     (ast, faults)
+}
+
+fn line_start(text: &str, at: u32) -> usize {
+    text.as_bytes()[..(at as usize).min(text.len())].iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1)
+}
+
+/// Whether a fault says no more than that a line cannot be read, which a slip on the same line may be the reason of.
+fn follows(fault: &Diagnostic) -> bool {
+    matches!(fault.code, Code::Syntax | Code::BadNumber | Code::UnitWithoutBlank)
 }
 
 /// A sound file; `None` where there is any fault.
@@ -173,10 +194,19 @@ impl Pieces<'_> {
             self.no_item(statement);
             return None;
         }
+        let (start, end) = self.bounds(statement);
+        let nameless = self.tokens.is(statement.start, "require")
+            && statement.end > statement.start + 1
+            && self.tokens.kind(statement.start + 1) != Some(Kind::Text);
+        if nameless {
+            let second = self.tokens.list[statement.start + 1];
+            let span = self.tokens.span(second.start, second.end);
+            self.faults.push(faults::requirement_without_name(span, &self.tokens.text[second.start..end]));
+            return None;
+        }
         if let Some(item) = self.alone(statement, Rule::item_alone, Lowering::item) {
             return Some(item);
         }
-        let (start, end) = self.bounds(statement);
         let span = self.tokens.span(start, end);
         let value = Lowering::faulty(span);
         let second = (statement.start + 1 < statement.end).then_some(statement.start + 1)?;
@@ -199,10 +229,33 @@ impl Pieces<'_> {
         let key = self.word(statement.start).filter(|_| self.tokens.is(statement.start + 1, "="));
         if let Some(key) = key {
             self.faults.push(faults::field_outside(key.span, &key.node));
+        } else if let Some((word, help)) = self.other_language(statement) {
+            self.faults.push(faults::word_of_another_language(word.span, &word.node, &help));
         } else if self.alone(statement, Rule::head_alone, Lowering::head).is_some() {
             let (start, end) = self.bounds(statement);
             self.faults.push(faults::stray_words(self.tokens.span(start, end), &self.tokens.text[start..end]));
         }
+    }
+
+    /// A line that begins as it would in another language, and how it is said in this one.
+    fn other_language(&self, statement: Statement) -> Option<(Ident, String)> {
+        let word = self.word(statement.start)?;
+        let help = match word.node.as_str() {
+            "import" | "include" | "from" | "source" => {
+                "another file is named by `use`, as in `use \"lib/frame.psd\"`".to_owned()
+            }
+            "if" | "assert" | "expect" | "ensure" | "check" | "verify" => {
+                "what must hold is said by `require`, as in `require \"stays in travel\" hit.max_displacement < 9 mm`".to_owned()
+            }
+            "run" | "start" | "do" | "call" => {
+                "every procedure of a plan runs, in the order written: take this line away".to_owned()
+            }
+            _ => {
+                let name = self.word(statement.start + 1).filter(|_| self.tokens.is(statement.start + 2, "="))?;
+                format!("a value is named by `let`, as in `let {} = …`", name.node)
+            }
+        };
+        Some((word, help))
     }
 
     fn block(&mut self, head: Statement, open: usize, fields: &[Statement], close: Option<usize>) -> Option<Item> {
@@ -233,7 +286,8 @@ impl Pieces<'_> {
         if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
             return Some(entry);
         }
-        let key = self.word(statement.start)?;
+        // A word alone is no field.
+        let key = self.word(statement.start).filter(|_| statement.end > statement.start + 1)?;
         let (start, end) = self.bounds(statement);
         let value = self.tokens.span(end.min(key.span.end as usize), end);
         Some(Entry { span: self.tokens.span(start, end), key, value: Lowering::faulty(value) })

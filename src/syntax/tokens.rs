@@ -43,8 +43,11 @@ pub struct Tokens<'a> {
 impl<'a> Tokens<'a> {
     #[must_use]
     pub fn read(text: &'a str, file: FileId) -> Self {
-        let mut reader =
-            Reader { tokens: Tokens { text, file, list: Vec::new(), faults: Vec::new(), cut_short: false }, at: 0, depth: 0 };
+        let mut reader = Reader {
+            tokens: Tokens { text, file, list: Vec::new(), faults: Vec::new(), cut_short: false },
+            at: 0,
+            open: Vec::new(),
+        };
         reader.read();
         reader.tokens
     }
@@ -85,7 +88,8 @@ pub const JOINING_WORDS: [&str; 5] = ["and", "within", "of", "step", "between"];
 struct Reader<'a> {
     tokens: Tokens<'a>,
     at: usize,
-    depth: usize,
+    /// The brackets that are open here.
+    open: Vec<char>,
 }
 
 impl<'a> Reader<'a> {
@@ -142,7 +146,7 @@ impl<'a> Reader<'a> {
         let sign = after.trim_start_matches([' ', '\t']);
         let field = sign.starts_with('=') && !sign.starts_with("==");
         if !word.is_empty() && (field || ITEM_WORDS.contains(&word)) {
-            self.depth = 0;
+            self.open.clear();
         }
     }
 
@@ -205,10 +209,10 @@ impl<'a> Reader<'a> {
     }
 
     fn number(&mut self) {
-        let length = numbers::extent(self.rest(), self.depth == 0);
+        let length = numbers::extent(self.rest(), self.open.is_empty(), self.open.last() != Some(&'['));
         let written = &self.rest()[..length];
         if let Some(fault) = numbers::fault(written) {
-            self.fault(faults::bad_number(self.span(length), written, fault));
+            self.fault(faults::bad_number(self.span(length), written, &fault));
         }
         self.push(Kind::Number, length);
         self.unit();
@@ -219,7 +223,18 @@ impl<'a> Reader<'a> {
         let blanks = self.rest().len() - self.rest().trim_start_matches([' ', '\t']).len();
         let length = unit_extent(&self.rest()[blanks..]);
         let unit = &self.rest()[blanks..blanks + length];
-        if length == 0 || JOINING_WORDS.contains(&unit) {
+        if JOINING_WORDS.contains(&unit) {
+            return;
+        }
+        if let Some((more, flat)) = unit_in_parentheses(&self.rest()[blanks + length..], length == 0) {
+            self.at += blanks;
+            let number = self.tokens.list.last().map_or(self.at, |token| token.start);
+            let mended = format!("{} {unit}{flat}", self.tokens.text[number..self.at].trim_end());
+            self.fault(faults::unit_in_parentheses(self.span(length + more), &mended));
+            self.push(Kind::Unit, length + more);
+            return;
+        }
+        if length == 0 {
             return;
         }
         self.at += blanks;
@@ -229,6 +244,9 @@ impl<'a> Reader<'a> {
             // The operator in question is the one after the unit, else the last one in it.
             let operator = if member || after.starts_with('(') { unit.rfind(['*', '/']).unwrap_or(length) } else { length };
             let glued = after.find([' ', '\t', '\n', '\r', ',', ')', ']', '#']).unwrap_or(after.len());
+            // A parenthesis that opens there is closed there.
+            let closes = after[..glued].contains('(') && after[glued..].starts_with(')');
+            let glued = glued + usize::from(closes);
             let span = self.span(length + glued);
             let whole = &self.rest()[..length + glued];
             let number = self.tokens.list.last().filter(|token| token.kind == Kind::Number).map_or(self.at, |token| token.start);
@@ -255,21 +273,21 @@ impl<'a> Reader<'a> {
         }
         match first {
             '(' | '[' => {
-                self.depth += 1;
-                if self.depth == limits::NESTING + 1 {
+                self.open.push(first);
+                if self.open.len() == limits::NESTING + 1 {
                     self.fault(faults::nested_too_deep(self.span(1)));
                 }
                 self.push(Kind::Sign, 1);
             }
             ')' | ']' => {
-                self.depth = self.depth.saturating_sub(1);
+                self.open.pop();
                 self.push(Kind::Sign, 1);
                 if first == ']' {
                     self.unit();
                 }
             }
             '{' | '}' => {
-                self.depth = 0;
+                self.open.clear();
                 self.push(Kind::Sign, 1);
             }
             '=' | '<' | '>' | '+' | '-' | '*' | '/' | '^' | ',' | ':' | '.' => self.push(Kind::Sign, 1),
@@ -289,6 +307,25 @@ impl<'a> Reader<'a> {
             }
         }
     }
+}
+
+/// A unit in parentheses at the start of `text`, behind `*` or `/` unless it is `alone`: its bytes, the sign included, and
+/// the same without parentheses. What is no unit is an expression.
+fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
+    let sign = if alone { "" } else { text.get(..1).filter(|sign| matches!(*sign, "*" | "/"))? };
+    let inside = text[sign.len()..].strip_prefix('(')?;
+    let unit = inside.split([')', '\n']).next().filter(|unit| inside[unit.len()..].starts_with(')'))?;
+    let trimmed = unit.trim();
+    if unit_extent(trimmed) != trimmed.len() || crate::quantity::unit::parse(trimmed).is_err() {
+        return None;
+    }
+    let turned = |c: char| match c {
+        '*' if sign == "/" => '/',
+        '/' if sign == "/" => '*',
+        same => same,
+    };
+    let flat = sign.chars().chain(trimmed.chars().map(turned)).collect();
+    Some((sign.len() + 1 + unit.len() + 1, flat))
 }
 
 /// Bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`. 0 where there is none.

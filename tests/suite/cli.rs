@@ -322,6 +322,43 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
 }
 
 #[test]
+fn a_plan_that_cannot_be_read_is_an_error_with_its_place_among_the_others() {
+    let bench = Bench::new(&[("good.psd", SOUND)]);
+    std::fs::write(bench.path("latin.psd"), b"# a\nplan \"Pr\xfcfung\" { }\n").unwrap();
+    let json = bench.psd(&["check", "good.psd", "latin.psd", "--format", "json"]).with(2).json();
+    assert_eq!((&json["errors"], &json["warnings"]), (&1.into(), &0.into()), "{json}");
+    let found = &json["diagnostics"][0];
+    let told = ["code", "file", "line", "column"].map(|key| found[key].to_string());
+    assert_eq!(told, ["\"E106\"", "\"latin.psd\"", "2", "9"], "{found}");
+    assert!(found["message"].as_str().unwrap().contains("not UTF-8"), "{found}");
+
+    let json = bench.psd(&["check", "nothere.psd", "good.psd", "--format", "json"]).with(3).json();
+    assert_eq!((&json["errors"], &json["diagnostics"][0]["code"]), (&1.into(), &Value::Null), "{json}");
+    assert_eq!(json["diagnostics"][0]["file"], "nothere.psd");
+}
+
+#[test]
+fn a_file_that_is_not_there_ends_every_command_alike() {
+    let bench = Bench::new(&[]);
+    for command in ["check", "run", "fmt", "test"] {
+        let ended = bench.psd(&[command, "nothere.psd"]).with(3);
+        assert!(ended.stderr.contains("nothere.psd: no such file"), "{command}: {}", ended.stderr);
+    }
+}
+
+#[test]
+fn a_plan_without_a_procedure_is_not_run() {
+    let (specimen, _) = SOUND.split_once("striker hammer").unwrap();
+    let bench = Bench::new(&[("idle.psd", specimen), ("empty.psd", "")]);
+    for plan in ["idle.psd", "empty.psd"] {
+        let ended = bench.psd(&["run", plan, "--out", "here"]).with(2);
+        assert!(ended.stderr.contains("no procedure: nothing would run"), "{}", ended.stderr);
+        assert!(!bench.path("here").exists(), "nothing is left behind");
+        bench.psd(&["check", plan]).with(0);
+    }
+}
+
+#[test]
 fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
     let bench = Bench::new(&[("hit.psd", SOUND)]);
     assert_eq!(bench.psd(&["run", "hit.psd", "--out", "run"]).code, Some(0));
@@ -329,8 +366,10 @@ fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
     let again = bench.psd(&["report", "run", "--out", "again"]);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
     let mut diff = Command::new("diff");
-    let compared = diff.args(["-r", "-x", "journal.psdj", "run", "again"]).current_dir(bench.folder.path()).output().unwrap();
+    let compared = diff.args(["-r", "run", "again"]).current_dir(bench.folder.path()).output().unwrap();
     assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stdout));
+
+    assert_eq!(bench.psd(&["verify", "again"]).code, Some(0), "it is a run folder like the first");
 
     // A record cut off after its last step but one: said before anything else.
     let record = bench.read("run/journal.psdj");

@@ -145,8 +145,11 @@ pub fn missing_block(kind: &BlockKind, span: Span) -> Diagnostic {
         .help(format!("add one such as\n{}", kind.example))
 }
 
-pub fn unknown_name<'n>(name: &str, span: Span, known: impl Iterator<Item = &'n str>) -> Diagnostic {
-    let help = if name == "critical" {
+/// `before`: what stands before the name on its line. A name that is a unit was written apart from its number.
+pub fn unknown_name<'n>(name: &str, span: Span, before: &str, known: impl Iterator<Item = &'n str>) -> Diagnostic {
+    let help = if let Some(quantity) = quantity_apart(name, before) {
+        format!("`{name}` is a unit, and a unit is one word without blanks behind its number: write `{quantity}`")
+    } else if name == "critical" {
         "`critical` stands only in `time_step`; after the run it is the result `critical_time_step`".to_owned()
     } else if let Some(near) = crate::suggest::nearest(name, known) {
         format!("did you mean `{near}`?")
@@ -154,6 +157,31 @@ pub fn unknown_name<'n>(name: &str, span: Span, known: impl Iterator<Item = &'n 
         format!("declare it, as in `let {name} = …`, or correct the name")
     };
     Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`")).at(span, "unknown name").help(help)
+}
+
+/// `1 m/s` of `1 m / s`, and `10 mm` of `10 * mm`, where the last word is a unit.
+fn quantity_apart(name: &str, before: &str) -> Option<String> {
+    crate::quantity::unit::lookup(name)?;
+    let before = before.trim_end().trim_end_matches('(').trim_end();
+    let sign = before.chars().next_back().filter(|sign| matches!(sign, '*' | '/'))?;
+    let before = before[..before.len() - 1].trim_end();
+    let is_number = |word: &str| word.parse::<f64>().is_ok();
+    let first = before.rfind(|c: char| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':')).map_or(0, |at| at + 1);
+    let (head, last) = (before[..first].trim_end(), &before[first..]);
+    if is_number(last) {
+        return (sign == '*').then(|| format!("{last} {name}"));
+    }
+    let number = head.rsplit(|c: char| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':')).next()?;
+    let unit = crate::quantity::unit::parse(last).is_ok() && is_number(number);
+    unit.then(|| format!("{number} {last}{sign}{name}"))
+}
+
+/// A requirement's name is what its verdict is found by.
+pub fn requirement_twice(label: &str, span: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(Code::Duplicate, format!("two requirements are called \"{label}\""))
+        .at(span, "again here")
+        .at(first, "first here")
+        .help("give each a name of its own, or join their conditions with `and`")
 }
 
 pub fn unknown_block_name(kind: Kind, name: &str, span: Span, known: &[&str]) -> Diagnostic {
@@ -169,13 +197,50 @@ pub fn unknown_procedure(name: &str, span: Span, known: &[&str]) -> Diagnostic {
         .help(suggestion(name, known.iter().copied()))
 }
 
+/// Units as a sentence names them.
+const SPELT_OUT: &[(&str, &str)] = &[
+    ("percent pct", "%"),
+    ("meter metre meters metres", "m"),
+    ("millimeter millimetre millimeters millimetres", "mm"),
+    ("micron microns", "um"),
+    ("gram grams", "g"),
+    ("kilogram kilograms kgs", "kg"),
+    ("tonne tonnes ton tons", "t"),
+    ("sec secs second seconds", "s"),
+    ("msec millisecond milliseconds", "ms"),
+    ("minute minutes mins", "min"),
+    ("hour hours hr hrs", "h"),
+    ("newton newtons", "N"),
+    ("kilonewton kilonewtons", "kN"),
+    ("pascal pascals", "Pa"),
+    ("joule joules", "J"),
+    ("hertz cps", "Hz"),
+    ("inch inches", "in"),
+    ("foot feet", "ft"),
+    ("lbs pound pounds", "lb"),
+    ("degree degrees", "deg"),
+    ("mps", "m/s"),
+];
+
+/// `kN*m` of `kNm`.
+fn unit_product(name: &str) -> Option<String> {
+    let is_unit = |part: &str| crate::quantity::unit::lookup(part).is_some();
+    let (first, second) =
+        (1..name.len()).filter_map(|at| name.split_at_checked(at)).find(|(one, other)| is_unit(one) && is_unit(other))?;
+    Some(format!("{first}*{second}"))
+}
+
 pub fn unknown_unit(name: &str, span: Span) -> Diagnostic {
     let mut known: Vec<String> = UNITS.iter().map(|unit| unit.symbol.to_owned()).collect();
     for unit in UNITS.iter().filter(|unit| unit.prefixes) {
         known.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{}", unit.symbol)));
     }
-    let same_letters = known.iter().find(|unit| unit.eq_ignore_ascii_case(name));
-    let near = same_letters.map(String::as_str).or_else(|| crate::suggest::nearest(name, known.iter().map(String::as_str)));
+    let same_letters = known.iter().find(|unit| unit.eq_ignore_ascii_case(name)).map(String::as_str);
+    let spelt_out =
+        SPELT_OUT.iter().find(|(words, _)| words.split(' ').any(|word| word.eq_ignore_ascii_case(name))).map(|(_, unit)| *unit);
+    let product = unit_product(name);
+    let near = same_letters.or(spelt_out).or(product.as_deref());
+    let near = near.or_else(|| crate::suggest::nearest(name, known.iter().map(String::as_str)));
     let help = near.map_or_else(
         || format!("known units: {}; SI prefixes may stand before the SI ones", one_of(UNITS.iter().map(|unit| unit.symbol))),
         |near| format!("did you mean `{near}`?"),
@@ -260,6 +325,12 @@ pub fn unknown_result(kind: &BlockKind, name: Option<&Ident>, member: &str, span
         .help(suggestion(member, known))
 }
 
+pub fn minus_in_name(written: &str, meant: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownResult, format!("`{written}` is read as a difference: a `-` is a minus sign"))
+        .at(span, "no name has a `-`")
+        .help(format!("did you mean `{meant}`?"))
+}
+
 pub fn field_not_given(kind: &BlockKind, name: Option<&Ident>, field: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UnknownResult, format!("{} does not give `{field}`", owner(kind, name)))
         .at(span, "not given there")
@@ -309,7 +380,14 @@ pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Di
     let (message, help) = match name {
         Some(name) => (format!("`{}` has no argument `{name}`", variant.name), suggestion(name, known)),
         None if known.is_empty() => (format!("`{}` takes no arguments", variant.name), format!("write `{}` alone", variant.name)),
-        None => (format!("`{}` takes at most {} arguments", variant.name, known.len()), format!("they are {}", known.join(", "))),
+        None => {
+            let (arguments, they) = if known.len() == 1 {
+                ("one argument".to_owned(), "it is")
+            } else {
+                (format!("{} arguments", known.len()), "they are")
+            };
+            (format!("`{}` takes at most {arguments}", variant.name), format!("{they} {}", super::all_of(known)))
+        }
     };
     Diagnostic::new(Code::BadArgument, message).at(span, "not an argument of it").help(help)
 }

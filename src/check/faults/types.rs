@@ -65,14 +65,18 @@ pub fn wrong_dimension(
 
 pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {
     let (one, other) = (article(left.dimension), article(right.dimension));
+    let forgotten = left.bare != right.bare;
+    let wanted = if left.bare && forgotten { right.dimension } else { left.dimension };
+    let is = |side: &Typed, name: &str| {
+        if side.bare && forgotten { "this number has no unit".to_owned() } else { format!("this is {name}") }
+    };
+    let how = format!("{} is written as in `{}`", article(wanted), example(None, wanted));
+    let help =
+        if forgotten { format!("give the number its unit: {how}") } else { format!("both sides must be of one kind; {how}") };
     Diagnostic::new(Code::MismatchedDimensions, format!("`{operator}` joins {one} and {other}"))
-        .at(left.span, format!("this is {one}"))
-        .at(right.span, format!("this is {other}"))
-        .help(format!(
-            "both sides must be of one kind; a {} is written as in `{}`",
-            left.dimension.describe(),
-            example(None, left.dimension)
-        ))
+        .at(left.span, is(left, &one))
+        .at(right.span, is(right, &other))
+        .help(help)
 }
 
 pub fn list_for_number(span: Span) -> Diagnostic {

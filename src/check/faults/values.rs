@@ -184,12 +184,15 @@ pub fn step_does_not_divide(range: Span, step: Span, length: f64, count: f64, di
 }
 
 pub fn too_many_entries(span: Span, found: f64, most: usize) -> Diagnostic {
+    let found = if found < 1e12 { found.to_string() } else { format!("about {found:.0e}") };
     Diagnostic::new(Code::TooMany, format!("a list has at most {most} entries, this one {found}"))
         .at(span, "too many")
         .help("take a larger step")
 }
 
 pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Diagnostic {
+    // A count that a person can read, and of a larger one its size.
+    let found = if found < 1e12 { found.to_string() } else { format!("about {found:.0e}") };
     Diagnostic::new(Code::TooMany, format!("a procedure has at most {most} {what}, this one {found}"))
         .at(span, "too many")
         .help(help)

@@ -30,6 +30,24 @@ pub fn beyond_limits(field: &str, value: f64, dimension: Dimension, span: Span, 
         .help("stay inside the limits, or widen them if the rig and the specimen allow it")
 }
 
+/// A run whose limits stop it before it begins.
+pub fn start_beyond_limits(name: &str, limit: Interval, dimension: Dimension, at: Span) -> Diagnostic {
+    let (low, high) = (shown(limit.low, dimension), shown(limit.high, dimension));
+    let (zero, wider) = if limit.low > 0.0 { ("0", format!("0 .. {high}")) } else { ("0", format!("{low} .. 0")) };
+    Diagnostic::new(Code::BeyondLimits, format!("the run begins at {name} {zero}, outside the limits {low} .. {high}"))
+        .at(at, "leaves out the start")
+        .help(format!("let the limits hold the start too, as in `{name} = {wider}`"))
+}
+
+/// `gap` and `velocity` as lengths and speeds, `arrives` and `duration` in s.
+pub fn never_arrives(striker: &str, gap: f64, arrives: f64, duration: f64, gap_at: Span, duration_at: Span) -> Diagnostic {
+    let gap = shown(gap, Dimension::LENGTH);
+    Diagnostic::new(Code::NeverArrives, format!("`{striker}` never arrives: it needs {} for its gap of {gap}", time(arrives)))
+        .at(duration_at, format!("over after {}", time(duration)))
+        .at(gap_at, format!("{gap} before the specimen"))
+        .help("make the `gap` smaller, or the `duration` longer")
+}
+
 pub fn unknown_rig(name: &str, known: &[&str]) -> Diagnostic {
     let help = if known.is_empty() {
         "the plan declares no rig; leave `--rig` out for an ideal one".to_owned()
@@ -78,6 +96,20 @@ pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64
     Diagnostic::new(Code::LimitForceNotResolved, message)
         .at(span, format!("the step is {now}"))
         .help(format!("write `time_step = {resolved_text}` or less"))
+}
+
+/// `letters` are the first that no font of the paper has, `printed` what stands for them.
+pub fn not_printed(letters: &str, printed: &str, others: usize, span: Span) -> Diagnostic {
+    let also = match others {
+        0 => String::new(),
+        1 => ", here and in one more text".to_owned(),
+        more => format!(", here and in {more} more texts"),
+    };
+    Diagnostic::new(Code::NotPrinted, format!("on paper `{letters}` stands as `{printed}`{also}"))
+        .at(span, "holds letters that the fonts of the PDF certificate lack")
+        .help(
+            "they have Latin, Greek and Cyrillic letters: write the name in one of those as well; the HTML certificate shows all",
+        )
 }
 
 pub fn nothing_required(span: Span) -> Diagnostic {

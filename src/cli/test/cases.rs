@@ -75,7 +75,7 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
 }
 
 fn missing(path: &Path, error: &std::io::Error, nobody_said: bool) -> Failure {
-    let failure = Failure::command_line(format!("{}: {}", path.display(), plain(error)));
+    let failure = Failure::file(path, plain(error));
     if nobody_said { failure.help("name a plan, or a folder of plans") } else { failure }
 }
 

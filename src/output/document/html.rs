@@ -134,7 +134,7 @@ fn table(it: &Table) -> Markup {
         (false, false) => "words",
     };
     html! {
-        table.data {
+        div.scroll { table.data {
             thead {
                 tr {
                     @for column in &it.columns {
@@ -153,7 +153,7 @@ fn table(it: &Table) -> Markup {
                     }
                 }
             }
-        }
+        } }
     }
 }
 
@@ -161,7 +161,7 @@ fn table(it: &Table) -> Markup {
 fn figure(it: &Figure) -> Markup {
     html! {
         figure {
-            img alt=(plain(&it.caption)) src={ "data:image/svg+xml;base64," (STANDARD.encode(&it.svg)) };
+            div.scroll { img alt=(plain(&it.caption)) src={ "data:image/svg+xml;base64," (STANDARD.encode(&it.svg)) }; }
             figcaption { b { "Figure " (it.number) ". " } (line(&it.caption)) }
         }
     }

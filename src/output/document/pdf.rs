@@ -2,7 +2,6 @@
 //! document's own, the fonts the program's. Every text goes to the template as data, so that none of it is ever markup.
 
 use std::borrow::Cow;
-use std::fmt::Write as _;
 
 use serde_json::Value;
 use typst::diag::SourceDiagnostic;
@@ -11,8 +10,8 @@ use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards};
 
 use super::Document;
-use super::fonts::FONTS;
 use super::world::Sealed;
+use crate::legible;
 
 const TEMPLATE: &str = include_str!("certificate.typ");
 
@@ -71,10 +70,9 @@ fn set_in_our_fonts(value: &mut Value) {
 fn settable(text: &str) -> Cow<'_, str> {
     const LONGEST_WORD: usize = 40;
     const ZERO_WIDTH_SPACE: char = '\u{200b}';
-    let lacking = |c: char| !c.is_ascii() && !FONTS.have(c);
     let long = text.split(char::is_whitespace).any(|word| word.chars().count() > LONGEST_WORD);
-    if !long && !text.chars().any(lacking) {
-        return Cow::Borrowed(text);
+    if !long {
+        return legible::shown(text);
     }
     let mut settable = String::with_capacity(2 * text.len());
     for part in text.split_inclusive(char::is_whitespace) {
@@ -83,11 +81,7 @@ fn settable(text: &str) -> Cow<'_, str> {
             if breaks && index > 0 && index % 8 == 0 {
                 settable.push(ZERO_WIDTH_SPACE);
             }
-            if lacking(c) {
-                let _ = write!(settable, "[U+{:04X}]", u32::from(c));
-            } else {
-                settable.push(c);
-            }
+            legible::push(&mut settable, c);
         }
     }
     Cow::Owned(settable)

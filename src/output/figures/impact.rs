@@ -4,6 +4,7 @@ use super::super::number;
 use super::chart::{Band, Chart, DASH_DOT, DASHED, DOTTED, LONG, Quantity, Reference, SOLID, Series, Style, palette};
 use crate::formula::{Formula, Function, ProcedureId};
 use crate::output::Run;
+use crate::plan::{Contact, ProcedureKind};
 use crate::quantity::Dimension;
 use crate::record::{ImpactHistory, ImpactStep, StepState};
 use crate::verdict::Bound;
@@ -61,15 +62,29 @@ pub(super) fn force_displacement(history: &ImpactHistory) -> Chart {
 /// Name, reading and style of one energy.
 type Part = (&'static str, fn(&ImpactStep) -> f64, Style);
 
-/// The parts of the balance and their total; damping and the work of the contact only where there is any.
-pub(super) fn energy(history: &ImpactHistory) -> Chart {
+/// What became of the energy that the contact took: a spring gives back what it stored, every other law loses it.
+pub(super) fn taken_by_contact(run: &Run<'_>, procedure: ProcedureId) -> &'static str {
+    let contact = match run.plan.procedures.get(procedure.0).map(|procedure| &procedure.kind) {
+        Some(ProcedureKind::Impact(impact)) => &impact.contact,
+        Some(ProcedureKind::StoreyImpact(impact)) => &impact.contact,
+        _ => return "taken by the contact",
+    };
+    match contact {
+        Contact::Hertz { loss, force_limit: None, .. } if loss.constant() == Some(0.0) => "stored in the contact",
+        Contact::Hertz { .. } => "stored and lost in the contact",
+        Contact::Rigid | Contact::Limit { .. } | Contact::Restitution { .. } => "lost in the contact",
+    }
+}
+
+/// The parts of the balance and their total; damping and what the contact took only where there is any.
+pub(super) fn energy(history: &ImpactHistory, contact: &'static str) -> Chart {
     let mut chart = against_time(history, Quantity::of("Energy", Dimension::ENERGY));
     let parts: [Part; 5] = [
         ("striker", |step| step.energies.striker, Style::line(palette::VERMILION, 2.0, DASHED)),
         ("structure", |step| step.energies.structure, Style::line(palette::SKY, 1.6, SOLID)),
         ("restoring", |step| step.energies.restoring, Style::line(palette::BLUE, 2.0, LONG)),
         ("damping", |step| step.energies.damping, Style::line(palette::PURPLE, 2.0, DASH_DOT)),
-        ("contact work", |step| step.energies.contact_loss, Style::line(palette::GREEN, 2.2, DOTTED)),
+        (contact, |step| step.energies.contact_loss, Style::line(palette::GREEN, 2.2, DOTTED)),
     ];
     let drawn = parts.into_iter().filter(|(_, read, _)| history.steps.iter().any(|step| read(step) != 0.0));
     chart.series = drawn.map(|(label, read, style)| series(history, label, read, style)).collect();

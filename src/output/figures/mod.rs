@@ -104,7 +104,7 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
             format!("{name}: restoring force against computed displacement; the area below is the absorbed energy."),
         ),
         (History::Impact(history), FigureKind::Energy) => (
-            impact::energy(history),
+            impact::energy(history, impact::taken_by_contact(run, figure.procedure)),
             format!("{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."),
         ),
         (History::Impact(history), FigureKind::Tracking) => (

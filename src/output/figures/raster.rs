@@ -129,7 +129,7 @@ impl Canvas for Raster<'_> {
         let sinks = matches!(style.anchor.vertical, VPos::Center) && !style.upright;
         let at = if sinks { (at.0, at.1 + 0.17 * style.size) } else { at };
         let style = style.scaled(f64::from(FINE));
-        self.area.draw(&Text::new(text.to_owned(), fine(at), style)).map_err(|error| error.to_string())
+        self.area.draw(&Text::new(crate::legible::shown(text).into_owned(), fine(at), style)).map_err(|error| error.to_string())
     }
 }
 

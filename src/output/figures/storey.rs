@@ -70,7 +70,7 @@ pub(super) fn chart(
             format!("{name}: contact force, mean over each step, against virtual time."),
         ),
         FigureKind::Energy => (
-            impact::energy(&history.blow),
+            impact::energy(&history.blow, impact::taken_by_contact(run, figure.procedure)),
             format!(
                 "{name}: where the energy of the striker went, all storeys together; the total of the parts stays level where \
                  the balance closes."

@@ -115,10 +115,10 @@ fn hex((red, green, blue): Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// A text between tags; what XML cannot hold is replaced.
+/// A text between tags; what XML cannot hold is replaced, and what the fonts of paper lack is a code point, as on the raster.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in crate::output::document::printable(text).chars() {
+    for c in crate::legible::shown(&crate::output::document::printable(text)).chars() {
         match c {
             '&' => escaped.push_str("&amp;"),
             '<' => escaped.push_str("&lt;"),

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 
 use super::bytes::Bytes;
 use super::entry::{
-    AmendBody, EndBody, FaultBody, Header, IntentBody, OperatorBody, PlanBody, RecoverBody, ResumeBody, RigBody, SampleBody,
+    AmendBody, EndBody, FaultBody, Header, IntentBody, OperatorEntry, PlanBody, RecoverBody, ResumeBody, RigBody, SampleBody,
     StepBody, StrokeBody,
 };
 use super::played::{Played, body};
@@ -55,7 +55,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
         EntryKind::Sample => written::<SampleBody>(line, &[]),
         EntryKind::Stroke => written::<StrokeBody>(line, &[]),
         EntryKind::Step => written::<StepBody>(line, &[]),
-        EntryKind::Operator => written::<OperatorBody>(line, &[]),
+        EntryKind::Operator => written::<OperatorEntry>(line, &[]),
         EntryKind::Event => written::<Event>(line, &[]),
         EntryKind::Fault => written::<FaultBody>(line, &[]),
         EntryKind::Tally => written::<Tally>(line, &[]),

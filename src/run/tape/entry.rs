@@ -206,6 +206,16 @@ pub enum OperatorBody {
     },
 }
 
+/// OPERATOR as it stands in the record: what was said, and when.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OperatorEntry {
+    #[serde(flatten)]
+    pub said: OperatorBody,
+    /// Records of other builds may have none; a virtual run has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall: Option<String>,
+}
+
 /// FAULT: a call on the rig that failed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FaultBody {

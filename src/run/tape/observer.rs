@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use super::entry::{AxisBody, OperatorBody, StepBody};
+use super::entry::{AxisBody, OperatorBody, OperatorEntry, StepBody};
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
@@ -29,6 +29,12 @@ impl<'run> TapedObserver<'run> {
         if state.goes_on() {
             let _ = state.append(kind, body);
         }
+    }
+
+    /// Appends what a person or a client said, with the time of day.
+    fn append_said(&self, said: OperatorBody) {
+        let wall = self.state.borrow().wall();
+        self.append(EntryKind::Operator, &OperatorEntry { said, wall });
     }
 
     /// A record that has an end has everything: what the run calls for after it was taken out.
@@ -104,7 +110,7 @@ impl Observer for TapedObserver<'_> {
                 Err(_) => {}
             }
         } else if !self.beyond_the_end("a request of the client") {
-            self.append(EntryKind::Operator, &OperatorBody::Asked { request: request.clone() });
+            self.append_said(OperatorBody::Asked { request: request.clone() });
         }
         self.inner.asked(request);
     }
@@ -127,7 +133,7 @@ impl Observer for TapedObserver<'_> {
         let asked = self.inner.stop_requested();
         if asked {
             let asked = if self.inspecting { OperatorBody::AskedToStopInspecting } else { OperatorBody::AskedToStop };
-            self.append(EntryKind::Operator, &asked);
+            self.append_said(asked);
         }
         asked
     }
@@ -155,7 +161,7 @@ impl Observer for TapedObserver<'_> {
         }
         let next = self.inner.next();
         if let Next::Record(text) = &next {
-            self.append(EntryKind::Operator, &OperatorBody::Noted { text: text.clone() });
+            self.append_said(OperatorBody::Noted { text: text.clone() });
         }
         next
     }
@@ -186,7 +192,7 @@ impl Observer for TapedObserver<'_> {
         let answer = self.inner.inspect(note);
         self.inspecting = answer == Inspection::Wait;
         if answer != Inspection::Wait {
-            self.append(EntryKind::Operator, &OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });
+            self.append_said(OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });
         }
         answer
     }

@@ -154,8 +154,9 @@ fn told(resume: &ResumeBody) -> String {
         }
         _ => String::new(),
     };
+    let when = resume.wall.as_ref().map_or_else(String::new, |wall| format!(" at {wall}"));
     let assured: String = resume.assured.iter().map(|assured| format!("; {}", assured.told())).collect();
-    format!("resumed by {}: {}{assured}; {target}{relaxed}", resume.by, resume.reason)
+    format!("resumed{when} by {}: {}{assured}; {target}{relaxed}", resume.by, resume.reason)
 }
 
 /// A record's body, typed.

@@ -415,6 +415,21 @@ fn a_disk_that_fails_holds_the_rig_and_nothing_more_is_sent() {
 }
 
 #[test]
+fn what_a_person_said_has_its_time_of_day_and_plays_back_without_a_clock() {
+    let (plan, disk) = (plan(), PowerLoss::new());
+    let mut journal = journal(disk.clone());
+    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let wall: Wall = Box::new(|| Some("2026-05-31T10:00:00.000Z".to_owned()));
+    let whole = record(&plan, &mut Standing::new(&plan), &mut Witness, journal, wall);
+    let (recovered, played) = played(&disk.written());
+    let said: Vec<_> = recovered.lines.iter().filter(|line| line.kind == EntryKind::Operator).collect();
+    assert!(said.len() > 2 && said.iter().all(|line| line.body["wall"] == "2026-05-31T10:00:00.000Z"), "{said:?}");
+    agrees(&recovered, &played, &plan).unwrap();
+    let replayed = replay(&plan, played);
+    assert_eq!((replayed.mismatch, format!("{:?}", replayed.record)), (None, format!("{:?}", whole.record)));
+}
+
+#[test]
 fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
     let plan = plan();
     let (_, _, bytes) = recorded(&plan);

@@ -83,6 +83,24 @@ fn numbers_are_decimal_with_digits_on_both_sides() {
         let (_, found, _) = read(&format!("let x = {written}\n"));
         assert_eq!(found[0].help.as_deref(), Some(help), "{written}");
     }
+    for (written, help) in [
+        ("1 000", "write `1000`"),
+        ("12 345 678.5", "write `12345678.5`"),
+        ("1'000", "write `1000`"),
+        ("1,000", "write `1000` or `1.000`"),
+        ("1,000,000.5", "write `1000000.5`"),
+        ("1.000,5", "write `1000.5`"),
+    ] {
+        field(&format!("{written} kg"), BadNumber, written);
+        let (_, found, _) = read(&format!("let x = f({written} kg)\n"));
+        assert_eq!(
+            found.first().and_then(|fault| fault.help.as_deref()),
+            Some(help).filter(|_| !written.contains(',')),
+            "{written}"
+        );
+    }
+    // In a list it is a comma that is missing.
+    field("[100 200]", Syntax, "200");
     let long = "1".repeat(41);
     field(&long, BadNumber, &long);
     assert_eq!(faults(&format!("let x = {}\n", "1".repeat(40))), []);
@@ -93,7 +111,7 @@ fn numbers_are_decimal_with_digits_on_both_sides() {
 fn operators_keep_off_units() {
     for (written, glued, mended) in [
         ("2 kg*3", "kg*3", "kg * 3"),
-        ("2 kg*(x)", "kg*(x", "kg * (x"),
+        ("2 kg*(x)", "kg*(x)", "kg * (x)"),
         ("2 kg*k0.mass", "kg*k0.mass", "kg * k0.mass"),
         ("[1, 2] m/2", "m/2", "m / 2"),
         ("10 %*2", "%*2", "% * 2"),
@@ -121,6 +139,41 @@ fn characters_that_hide_are_refused_and_shown() {
     assert_eq!(faults("# \u{202e} in a comment\n"), []);
     let (_, found, _) = read("let x = \"a\u{202e}b\"\n");
     assert!(found[0].message.contains("\\u{202e}"));
+}
+
+/// Offsets stay those of the text as it is written, and what is read is what was meant.
+#[test]
+fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
+    for (written, meant, place) in [
+        ("b {\n  x\u{a0}= 1 kg\n}\n", "b\n  x = 1 kg\n", "\u{a0}"),
+        ("b {\n  x = −1 kg\n}\n", "b\n  x = (- 1 kg)\n", "−"),
+        ("b {\n  x = 2 × 3\n}\n", "b\n  x = (2 * 3)\n", "×"),
+        ("require \"r\" a ≤ 2\n", "require \"r\" (a <= 2)\n", "≤"),
+        ("require \"r\" a => 2\n", "require \"r\" (a >= 2)\n", "=>"),
+        ("b {\n  x = 2 m² # m²\n}\n", "b\n  x = 2 m^2\n", "²"),
+        ("b {\n  x = 2 s⁻¹\n}\n", "b\n  x = 2 s^-1\n", "⁻¹"),
+        ("b {\n  x = “é”\n}\n", "b\n  x = \"é\"\n", "“é”"),
+        ("b {\n  x = 'a'\n}\n", "b\n  x = \"a\"\n", "'a'"),
+        ("b {\n  x = \"a”\n}\n", "b\n  x = \"a\"\n", "\"a”"),
+        ("b {\n  x = 1; y = 2;\n}\n", "b\n  x = ?\n", ";"),
+        ("b {\n  x = 1; # c\n}\n", "b\n  x = 1\n", ";"),
+        ("let x = 1 // = one\n", "let x = 1\n", "//"),
+        ("/* a\n} */ let x = 1\n", "let x = 1\n", "/*"),
+        ("let hämmer = 1\nlet y = hämmer\n", "let hammer = 1\nlet y = hammer\n", "ä"),
+        ("l\u{456}mits {\n  x = 1\n}\n", "limits\n  x = 1\n", "\u{456}"),
+        ("impact hit\n{\n  x = 1\n}\n", "impact hit\n  x = 1\n", "{"),
+    ] {
+        let (ast, found, sources) = read(written);
+        assert_eq!(outline(&ast), meant, "{written}");
+        let places: Vec<&str> = found.iter().map(|fault| sources.text(fault.span().unwrap())).collect();
+        assert_eq!(places, [place], "{written}: {found:#?}");
+    }
+    for sound in ["# “x” − //\nlet x = 1\n", "let x = \"“a” − /* ; = < ²\"\n", "let x = 5 µm\nlet y = 5 μm\n"] {
+        assert_eq!(faults(sound), []);
+    }
+    let (_, found, _) = read("let a = 1\u{a0}m\nlet b = 2\u{a0}m\nlet c = 3\u{a0}m\n");
+    assert_eq!(found.len(), 1, "told once, however often");
+    assert!(found[0].message.ends_with("here and in 2 more places"), "{}", found[0].message);
 }
 
 #[test]
