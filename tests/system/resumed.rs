@@ -25,7 +25,9 @@ fn stepper(plan: &str) -> String {
 
 /// As a program that is dying holds the axis, or somebody else at the port.
 fn hold(stage: &Stage) {
-    fs::OpenOptions::new().write(true).open(stage.path("rig")).unwrap().write_all(b"!").unwrap();
+    // Open until it was heard: the kernel throws away what a side that closes said last.
+    let mut port = fs::OpenOptions::new().write(true).open(stage.path("rig")).unwrap();
+    port.write_all(b"!").unwrap();
     until("it is held", || stage.requests().last().is_some_and(|request| request.contains('!')));
 }
 
