@@ -122,6 +122,7 @@ impl<'a> DryRun<'a> {
             {
                 let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
                 section(&format!("{}, modes", procedure.name), modes);
+                section(&format!("{}, shapes", procedure.name), explain_shake::shapes(history.modes.as_ref()));
                 let heading = format!("{}, impact on storey {}", procedure.name, history.struck + 1);
                 let foretold = explain_tracking::storey_rows(self.plan, blow, history);
                 let energy = explain_tracking::energy(self.plan, index);
@@ -133,6 +134,7 @@ impl<'a> DryRun<'a> {
             if let (History::Shake(history), ProcedureKind::Shake(shake)) = (&procedure.history, &planned.kind) {
                 let modes = explain_shake::modes(history.modes.as_ref(), &history.damping_ratios);
                 section(&format!("{}, modes", procedure.name), modes);
+                section(&format!("{}, shapes", procedure.name), explain_shake::shapes(history.modes.as_ref()));
                 let foretold = explain_tracking::shake_rows(self.plan, shake, history);
                 let energy = explain_tracking::energy(self.plan, index);
                 section(&format!("{}, shake", procedure.name), [explain_shake::steps(history), foretold, energy].concat());
@@ -140,6 +142,12 @@ impl<'a> DryRun<'a> {
         }
         section("Limits", self.limits());
         section("Requirements, as predicted", self.requirements());
+        let undeclared = self.plan.rig.undeclared(self.plan.degrees_of_freedom());
+        if !undeclared.is_empty()
+            && self.assessment.requirements.iter().flat_map(|each| &each.conditions).any(|it| it.uncertainty.is_some())
+        {
+            let _ = writeln!(text, "Not in u, for the plan does not declare it: {}\n", undeclared.join(", "));
+        }
         if let Some(stopped) = self.stopped() {
             let _ = writeln!(text, "{}", settings.paint_heading(&stopped));
         }

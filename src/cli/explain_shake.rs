@@ -23,6 +23,36 @@ pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
     std::iter::once(head).chain(rows).collect()
 }
 
+/// The shapes of the first modes, drawn: one column a mode, the highest floor on top, the ground below. The largest entry
+/// of a shape stands at an end of its column.
+pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
+    const SHOWN: usize = 4;
+    /// Letters on either side of the middle.
+    const HALF: usize = 8;
+    const REACH: f64 = 8.0;
+    let Some(modes) = modes else { return Vec::new() };
+    let shown = modes.shapes.iter().take(SHOWN);
+    let line = |entry: f64| {
+        let mut letters = [' '; 2 * HALF + 1];
+        letters[HALF] = '│';
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an entry is between −1 and 1")]
+        let place = (REACH * (1.0 + entry.clamp(-1.0, 1.0))).round() as usize;
+        letters[place] = '●';
+        letters.iter().collect::<String>()
+    };
+    let head = shown.clone().enumerate().map(|(mode, _)| format!("mode {}", mode + 1));
+    let mut rows = vec![std::iter::once("floor".to_owned()).chain(head).collect::<Vec<_>>()];
+    let floors = modes.shapes.first().map_or(0, Vec::len);
+    rows.extend(
+        (0..floors)
+            .rev()
+            .map(|floor| std::iter::once((floor + 1).to_string()).chain(shown.clone().map(|shape| line(shape[floor]))).collect()),
+    );
+    let ground = format!("{0}┴{0}", "─".repeat(HALF));
+    rows.push(std::iter::once("ground".to_owned()).chain(shown.map(|_| ground.clone())).collect());
+    rows
+}
+
 /// The time step and the predicted peaks.
 pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
     if history.steps.is_empty() {
@@ -66,4 +96,31 @@ fn peaks<S>(steps: &[S], read: fn(&S) -> Vec<f64>, dimension: Dimension) -> Stri
     let (unit, factor) = unit(largest.iter().copied().fold(0.0, f64::max), dimension);
     let numbers: Vec<String> = largest.iter().map(|value| digits(*value, factor, dimension)).collect();
     join(&numbers.join(", "), &unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_stand_on_the_ground_with_their_largest_entry_at_an_end() {
+        let shapes = vec![vec![0.5, 1.0], vec![1.0, -0.7]];
+        let rows = super::shapes(Some(&Modes {
+            periods: vec![0.5, 0.2],
+            shapes,
+            participation: vec![1.2, 0.3],
+            effective_mass: vec![0.9, 0.1],
+        }));
+        let drawn: Vec<String> = rows.iter().map(|row| row.join("|")).collect();
+        assert_eq!(
+            drawn,
+            [
+                "floor|mode 1|mode 2",
+                "2|        │       ●|  ●     │        ",
+                "1|        │   ●    |        │       ●",
+                "ground|────────┴────────|────────┴────────",
+            ]
+        );
+        assert!(super::shapes(None).is_empty());
+    }
 }

@@ -38,8 +38,9 @@ pub fn limits() -> Result<Exit, Failure> {
         (plan::MOST_STEPS, "steps of one impact, or of a shake times its storeys"),
     ]
     .map(|(bound, what)| (format!("{bound:.0}"), what));
-    give(&counted.iter().chain(&reckoned).fold(String::new(), |mut text, (bound, what)| {
-        let _ = writeln!(text, "{bound:>9}  {what}");
+    let record = [(journal::MOST_BYTES.to_string(), "bytes of the record of one run")];
+    give(&counted.iter().chain(&reckoned).chain(&record).fold(String::new(), |mut text, (bound, what)| {
+        let _ = writeln!(text, "{bound:>10}  {what}");
         text
     }))?;
     Ok(Exit::Met)

@@ -206,7 +206,7 @@ fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provena
 
 /// What a real run's record says of people and place, and of itself.
 fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
-    let wall = |line: &Line| line.body.get("wall").and_then(|wall| wall.as_str()).map(str::to_owned);
+    let wall = |line: &Line| line.body().get("wall").and_then(|wall| wall.as_str()).map(str::to_owned);
     RealRun {
         operator: header.operator.clone(),
         host: header.host.clone(),

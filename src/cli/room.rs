@@ -8,7 +8,7 @@ use super::output::tell;
 use crate::diagnostic::Code;
 use crate::diagnostic::excerpt::escape;
 use crate::plan::Plan;
-use crate::record::journal::FileStorage;
+use crate::record::journal::{FileStorage, MOST_BYTES};
 use crate::run::need;
 
 /// The disk is too small for what the run may write.
@@ -40,6 +40,7 @@ impl NoRoom {
 /// It has no room, or does not say.
 pub fn enough(folder: &Path, storage: &FileStorage, plan: &Plan, written: u64) -> Result<(), Failure> {
     let need = need::of(plan);
+    can_be_read(folder, need.record)?;
     fits(folder, need.bytes.saturating_sub(written), storage.room()?)?;
     if !need.unknown.is_empty() {
         let names: Vec<String> = need.unknown.iter().map(|name| escape(name)).collect();
@@ -49,6 +50,17 @@ pub fn enough(folder: &Path, storage: &FileStorage, plan: &Plan, written: u64) -
         ));
     }
     Ok(())
+}
+
+/// A record that no command reads back proves nothing, and its run cannot be gone on with.
+fn can_be_read(folder: &Path, record: u64) -> Result<(), Failure> {
+    if record <= MOST_BYTES {
+        return Ok(());
+    }
+    let (record, most) = (amount(record), amount(MOST_BYTES));
+    let told = format!("the record of the run may take {record}, and none of more than {most} is read back; nothing has moved");
+    Err(Failure::file(folder, told)
+        .help("a shorter `duration` or a longer `time_step` makes it shorter; `psd limits` tells every bound"))
 }
 
 fn fits(folder: &Path, need: u64, room: u64) -> Result<(), NoRoom> {
@@ -80,6 +92,9 @@ mod tests {
         assert_eq!(refused.to_string(), "runs/beam-1: the run may write 12 MB, and its disk has 10 MB left; nothing has moved");
         assert!(refused.help().starts_with("free 2.4 MB, or name a folder"), "{}", refused.help());
         assert!(fits(folder, 1, 0).is_err());
+        assert!(can_be_read(folder, MOST_BYTES).is_ok());
+        let refused = can_be_read(folder, MOST_BYTES + 1).unwrap_err().to_string();
+        assert!(refused.contains("may take 4.3 GB, and none of more than 4.3 GB is read back"), "{refused}");
         assert_eq!(
             (amount(999), amount(999_600), amount(5_000_000_000_000)),
             ("1.0 kB".into(), "1.0 MB".into(), "5.0 TB".into())

@@ -34,9 +34,7 @@ pub fn jumps(lines: &[Line]) -> Vec<ClockJump> {
 
 /// Rig time (s) and wall clock of a reading.
 fn stamps(line: &Line) -> Option<(f64, Timestamp)> {
-    let time = line.body.get("t")?.as_f64()?;
-    let wall = line.body.get("wall")?.as_str()?.parse().ok()?;
-    Some((time, wall))
+    Some((line.time()?, line.body().get("wall")?.as_str()?.parse().ok()?))
 }
 
 #[cfg(test)]
@@ -46,7 +44,7 @@ mod tests {
     use super::*;
 
     fn line(kind: EntryKind, time: f64, wall: &str) -> Line {
-        Line { seq: 1, kind, body: json!({"t": time, "wall": wall}), offset: 0 }
+        Line::new(1, kind, &json!({"t": time, "wall": wall}), 0)
     }
 
     #[test]

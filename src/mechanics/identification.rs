@@ -4,8 +4,10 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFit {
     pub slope: f64,
+    /// Standard; in a record no less than what the rounding of the readings makes of the slope.
     pub slope_error: f64,
     pub intercept: f64,
+    /// The same of the intercept.
     pub intercept_error: f64,
     /// Of slope and intercept, −1 to 1: both turn about the middle of the points.
     pub correlation: f64,

@@ -14,6 +14,7 @@ mod integrator;
 mod portal;
 mod rig;
 mod stepping;
+mod undeclared;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};

@@ -157,7 +157,7 @@ fn a_blow_is_no_trend_to_go_on_with() {
     let lines = recover(&disk.written()).unwrap().lines;
     let number = |path: &serde_json::Value, name: &str| path[name].as_f64().unwrap();
     let paths: Vec<serde_json::Value> =
-        lines.into_iter().filter(|line| line.kind == EntryKind::Intent).map(|line| line.body["path"][0].clone()).collect();
+        lines.into_iter().filter(|line| line.kind == EntryKind::Intent).map(|line| line.body()["path"][0].clone()).collect();
     // Every other path is one ahead; the last is the brake.
     for ahead in paths.iter().step_by(2).take(paths.len() / 2) {
         let gained = (number(ahead, "end_velocity") - number(ahead, "start_velocity")).abs();
@@ -223,9 +223,10 @@ fn a_continuous_run_is_played_back_from_its_record() {
     assert_eq!(again.mismatch, None);
     assert_eq!(format!("{:?}", again.record), format!("{:?}", whole.record));
 
-    let path = recovered.lines.iter().rposition(|line| line.kind == EntryKind::Intent && !line.body["path"].is_null()).unwrap();
+    let path = recovered.lines.iter().rposition(|line| line.kind == EntryKind::Intent && !line.body()["path"].is_null()).unwrap();
     let mut forged = recovered;
-    let velocity = forged.lines[path].body["path"][0]["start_velocity"].as_f64().unwrap();
-    forged.lines[path].body["path"][0]["start_velocity"] = serde_json::json!(f64::from_bits(velocity.to_bits() ^ 1));
+    let velocity = forged.lines[path].body()["path"][0]["start_velocity"].as_f64().unwrap();
+    forged.lines[path]
+        .alter(|body| body["path"][0]["start_velocity"] = serde_json::json!(f64::from_bits(velocity.to_bits() ^ 1)));
     assert!(replay(&plan, Played::of(&forged).unwrap()).mismatch.is_some());
 }

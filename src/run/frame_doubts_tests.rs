@@ -1,7 +1,7 @@
 //! Uncertainty of the results of frames, shaken and struck: one storey is one degree of freedom, two elastic storeys are their
 //! modes, and the virtual rig itself, run again and again, scatters as one run foretells.
 
-use super::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
+use super::testing::{Uniform, elastic_plan, every, impact, number, run_unwatched, scatter, struck_frame};
 use crate::formula::{Formula, ResultValue};
 use crate::mechanics::rerun::OUTCOMES;
 use crate::plan::{
@@ -287,29 +287,6 @@ fn an_exact_frame_has_no_uncertainty() {
     }
 }
 
-/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator (Park and Miller 1988).
-struct Uniform(u64);
-
-impl Uniform {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0 * 48_271 % 2_147_483_647;
-        f64::from(u32::try_from(self.0).unwrap()) / 2_147_483_647.0
-    }
-
-    /// Standard normal by Box and Muller.
-    fn normal(&mut self) -> f64 {
-        let (radius, angle) = ((-2.0 * self.next().ln()).sqrt(), std::f64::consts::TAU * self.next());
-        radius * angle.cos()
-    }
-}
-
-/// Standard deviation of numbers about their mean.
-fn scatter(values: &[f64]) -> f64 {
-    let count = f64::from(u32::try_from(values.len()).unwrap());
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
-}
-
 const RUNS: u32 = 150;
 
 /// The virtual rig run `RUNS` times with inputs as they may be, against what one run of `doubtful` foretells. The standard
@@ -331,8 +308,7 @@ fn scatters_as_foretold(doubtful: &Plan, names: &[(&str, usize)], drawn: bool, d
         let (scatter, u) = (scatter(values), combined(&parts).unwrap());
         // Where the record leaves open how the storeys go on, the most of what they may do is told, and marked.
         let sure = parts.iter().all(|part| part.smooth || part.amount.abs() < 0.1 * u);
-        // Noise makes an elastic storey look as if it flowed a little: the most of what it may do is told of it too.
-        let most = if sure && !drawn { within } else { 1.0 };
+        let most = if sure { within } else { 1.0 };
         let told = u / scatter - 1.0;
         assert!((-within..most).contains(&told), "{name}[{place}]: {scatter} of runs, {u} foretold");
     }

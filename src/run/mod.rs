@@ -273,8 +273,9 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     for procedure in &plan.procedures {
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
-        let Performed { history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
+        let Performed { mut history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
         attribution::attribute(&procedure.kind, &history, plan, (&inputs, session.guard.declared_noise()), &mut results);
+        rounding_doubts::floor(&mut history, &results);
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),

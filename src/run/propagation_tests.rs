@@ -1,7 +1,7 @@
 //! Uncertainty of an impact's results: closed forms, the true virtual rig run again and again, the size of the move, results
 //! that share sources, requirements with a guard band.
 
-use super::testing::{elastic_plan, every, impact, number, ramp, result_of, run_unwatched};
+use super::testing::{Uniform, elastic_plan, every, impact, number, ramp, result_of, run_unwatched, scatter};
 use crate::formula::Formula;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Behaviour, Calibration, Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
@@ -121,29 +121,6 @@ fn the_size_of_the_move_converges() {
         assert!((ratio - 4.0).abs() < 0.1, "{errors:?}");
     }
     assert!((of(0.2 / 64.0) / by_hand - 1.0).abs() < 1e-4);
-}
-
-/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator (Park and Miller 1988).
-struct Uniform(u64);
-
-impl Uniform {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0 * 48_271 % 2_147_483_647;
-        f64::from(u32::try_from(self.0).unwrap()) / 2_147_483_647.0
-    }
-
-    /// Standard normal by Box and Muller.
-    fn normal(&mut self) -> f64 {
-        let (radius, angle) = ((-2.0 * self.next().ln()).sqrt(), std::f64::consts::TAU * self.next());
-        radius * angle.cos()
-    }
-}
-
-/// Standard deviation of numbers about their mean.
-fn scatter(values: &[f64]) -> f64 {
-    let count = f64::from(u32::try_from(values.len()).unwrap());
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
 }
 
 /// The rig itself, run again with inputs as they may be, against what one recorded run foretells: a specimen that yields and

@@ -48,7 +48,16 @@ pub(super) fn widen(
             let first = &outward[..asked.displacements.len().min(outward.len())];
             let bilinear = ramp.bilinear.as_ref().map(Curve::of_bilinear);
             if let Some(curve) = bilinear.or_else(|| ramp.multilinear.as_deref().map(Curve::of_multilinear)) {
-                doubts.give_curve(&curve, first, asked.samples, results);
+                let points: Vec<[f64; 2]> = first.iter().map(|step| [step.command, step.displacement]).collect();
+                doubts.give_curve(&curve, &points, asked.samples, results);
+            }
+        }
+        (ProcedureKind::Cycle(asked), History::Cycle(cycle)) => {
+            if let Some(mut curve) = cycle.backbone.as_ref().map(Curve::of_multilinear) {
+                // Its stiffness is that of its loops.
+                curve.told.retain(|(name, ..)| !["stiffness", "intercept_force"].contains(name));
+                let points: Vec<[f64; 2]> = cycle.backbone_points().iter().map(|(place, _)| [*place, *place]).collect();
+                doubts.give_curve(&curve, &points, if asked.rate.is_some() { 1 } else { asked.samples }, results);
             }
         }
         (ProcedureKind::DampingSweep(_), History::Sweep(sweep)) => {
@@ -56,6 +65,37 @@ pub(super) fn widen(
                 let real = plan.rig.link.as_real().is_some();
                 let found = doubts.sweep(fit, sweep, real);
                 doubts.give_line(["damping", "coulomb_force"], fit, found, results);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Lets the errors of the fits, as figures and reports tell them, be no less than what rounding makes of the results.
+pub(super) fn floor(history: &mut History, results: &[NamedResult]) {
+    let widened = |error: &mut f64, name: &str| {
+        let parts = results.iter().filter(|result| result.name == name).flat_map(|result| &result.contributions);
+        let rounding = parts.filter(|part| matches!(part.source, Source::Rounding { .. }));
+        *error = error.hypot(rounding.map(|part| part.amount * part.amount).sum::<f64>().sqrt());
+    };
+    match history {
+        History::Ramp(ramp) => {
+            if let Some(fit) = &mut ramp.fit {
+                widened(&mut fit.slope_error, "stiffness");
+                widened(&mut fit.intercept_error, "intercept_force");
+            }
+            if let Some(fit) = &mut ramp.bilinear {
+                widened(&mut fit.stiffness_error, "stiffness");
+                widened(&mut fit.yield_force_error, "yield_force");
+            }
+            if let Some((_, error)) = ramp.multilinear.as_mut().and_then(|fit| fit.stiffnesses.first_mut()) {
+                widened(error, "stiffness");
+            }
+        }
+        History::Sweep(sweep) => {
+            if let Some(fit) = &mut sweep.fit {
+                widened(&mut fit.slope_error, "damping");
+                widened(&mut fit.intercept_error, "coulomb_force");
             }
         }
         _ => {}
@@ -137,10 +177,10 @@ impl Doubts {
         );
     }
 
-    /// The same of every number of a curve, each by itself.
-    fn give_curve(&self, curve: &Curve, steps: &[&RampStep], samples: u32, results: &mut [NamedResult]) {
-        let places: Vec<f64> = steps.iter().map(|step| curve.way * step.command).collect();
-        let read: Vec<f64> = steps.iter().map(|step| curve.way * step.displacement).collect();
+    /// The same of every number of a curve, each by itself; its points are where the actuator was told to be, and was read, m.
+    fn give_curve(&self, curve: &Curve, points: &[[f64; 2]], samples: u32, results: &mut [NamedResult]) {
+        let places: Vec<f64> = points.iter().map(|[place, _]| curve.way * place).collect();
+        let read: Vec<f64> = points.iter().map(|[_, read]| curve.way * read).collect();
         let Some(weights) = curve.weights(&read) else { return };
         let forces: Vec<f64> = places.iter().map(|x| curve.force(*x)).collect();
         let [(force, newtons), (displacement, metres)] = self.rounded(&places, &forces, samples);

@@ -4,7 +4,7 @@ use super::testing::{elastic_plan, ramp, result_of, run_unwatched};
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::mechanics::testing::uniform;
 use crate::plan::{Behaviour, DampingSweep, Link, Plan, ProcedureKind, RampFit, StiffnessRamp, VirtualLink};
-use crate::record::Record;
+use crate::record::{History, Record};
 use crate::uncertainty::{Known, Source, known};
 
 const STIFFNESS: f64 = 3e5;
@@ -110,6 +110,9 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     assert!(parts.iter().any(|part| matches!(part.source, Source::Rounding { result: "stiffness", .. })));
     let ideal = run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, VirtualLink::default()));
     assert!(told(&ideal, 0, "stiffness").1.standard < 1e-6);
+    // Figures and reports tell the fit's error by the same.
+    let History::Ramp(ramp) = &record.procedures[0].history else { panic!() };
+    assert!((ramp.fit.unwrap().slope_error / known.standard - 1.0).abs() < 1e-9);
     // And noise that is larger than the quantum is told as the scatter that it is.
     let noisy = |force_resolution| VirtualLink { noise: 30.0, seed: 3, force_resolution, ..VirtualLink::default() };
     let [fine, none] =

@@ -132,3 +132,26 @@ pub(crate) fn number(record: &Record, procedure: usize, name: &str) -> (Option<f
         other => panic!("{name} is {other:?}"),
     }
 }
+
+/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator (Park and Miller 1988).
+pub(crate) struct Uniform(pub(crate) u64);
+
+impl Uniform {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0 * 48_271 % 2_147_483_647;
+        f64::from(u32::try_from(self.0).unwrap()) / 2_147_483_647.0
+    }
+
+    /// Standard normal by Box and Muller.
+    pub(crate) fn normal(&mut self) -> f64 {
+        let (radius, angle) = ((-2.0 * self.next().ln()).sqrt(), std::f64::consts::TAU * self.next());
+        radius * angle.cos()
+    }
+}
+
+/// Standard deviation of numbers about their mean.
+pub(crate) fn scatter(values: &[f64]) -> f64 {
+    let count = f64::from(u32::try_from(values.len()).unwrap());
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
+}

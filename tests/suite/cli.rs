@@ -278,6 +278,16 @@ fn limits_lists_the_bounds_of_every_stage() {
     assert!(has(format!("{:.0}", psd::check::MOST_READINGS), "stiffness ramp"), "{listed}");
     assert!(has(format!("{:.0}", psd::run::MOST_SAMPLES), "damping sweep"), "{listed}");
     assert!(has(format!("{:.0}", psd::plan::MOST_STEPS), "one impact"), "{listed}");
+    assert!(has(psd::record::journal::MOST_BYTES.to_string(), "the record of one run"), "{listed}");
+}
+
+#[test]
+fn a_run_whose_record_nobody_could_read_back_does_not_begin() {
+    let bench = Bench::new(&[("long.psd", &changed("time_step = 10 ms", "time_step = 0.1 us"))]);
+    bench.psd(&["check", "long.psd"]).with(0);
+    let told = bench.psd(&["run", "long.psd", "--out", "long"]).with(3).stderr;
+    assert!(told.contains("none of more than 4.3 GB is read back") && told.contains("a longer `time_step`"), "{told}");
+    assert!(!bench.folder.path().join("long").exists(), "nothing is left of it");
 }
 
 #[test]

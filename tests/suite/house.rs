@@ -18,6 +18,10 @@ const PURE: &[&str] = &[
     "source.rs",
     "suggest.rs",
     "inert.rs",
+    "digest.rs",
+    "uncertainty.rs",
+    "golden",
+    "comparison",
 ];
 
 /// What such code may not name: the clock, files, the environment, the terminal, processes and the network.

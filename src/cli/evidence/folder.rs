@@ -14,7 +14,7 @@ use crate::cli::exit::Failure;
 use crate::cli::loader::plain;
 use crate::cli::record_file::JOURNAL;
 use crate::digest::{hex, sha256};
-use crate::record::journal::is_part_of_a_reserve;
+use crate::record::journal::{MOST_BYTES, is_part_of_a_reserve};
 
 use super::amending::AMENDMENT;
 use super::signature;
@@ -22,8 +22,8 @@ use super::signature;
 /// Name of the manifest; it does not list itself.
 pub const MANIFEST: &str = "manifest.sha256";
 
-/// The largest file of a run folder that is read, bytes.
-const LISTED_BYTES: u64 = 1 << 30;
+/// The largest file of a run folder that is read, bytes: the record is the longest.
+const LISTED_BYTES: u64 = MOST_BYTES;
 
 /// The deepest that files of a run folder lie.
 const DEEPEST: usize = 64;

@@ -31,7 +31,7 @@ fn found(folder: &Folder) -> Vec<&'static str> {
 #[test]
 fn the_record_alone_tells_device_channels_and_limits() {
     let recovered = recover(&run()[JOURNAL]).unwrap();
-    let header = &recovered.lines[0].body;
+    let header = recovered.lines[0].body();
     assert_eq!(header["format"], 2);
     let equipment = &header["equipment"];
     assert_eq!(equipment["device"]["name"], "ideal");

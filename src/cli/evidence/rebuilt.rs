@@ -30,7 +30,9 @@ pub struct PlayedBack {
 impl PlayedBack {
     /// Plays a record back, and amends what it gives.
     pub fn of(read: ReadRecord, amendment: Option<&AmendmentFile>) -> Result<Self, String> {
-        let ReadRecord { mut plan, mut provenance, played, .. } = read;
+        let ReadRecord { mut plan, mut provenance, played, recovered } = read;
+        // What is played is done with line by line: nobody else holds them.
+        drop(recovered);
         let Replayed { mut record, mismatch, steps } = tape::replay(&plan, played);
         if let Outcome::Faulted { reason } | Outcome::Aborted { reason } = &mut record.outcome
             && reason.contains(CUT_OFF)

@@ -261,7 +261,7 @@ fn of_another_build(journal: &[u8]) -> Vec<u8> {
     let path = place.path().join(JOURNAL);
     let mut anew = Journal::create(Box::new(FileStorage::create(&path).unwrap()), Durability::Buffered);
     for line in recover(journal).unwrap().lines {
-        let mut body = line.body.clone();
+        let mut body = line.body();
         // These the journal writes itself.
         for own in ["format", "count", "head"] {
             body.as_object_mut().unwrap().shift_remove(own);

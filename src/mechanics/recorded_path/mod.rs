@@ -202,16 +202,20 @@ impl RecordedPath {
                 break;
             };
             let (near, far) = (reading(from), reading(next));
-            // Between the two, or at one of them.
-            if (place - near.target) * (place - far.target) <= 0.0 && near.target != far.target {
+            let off = |reading: Reading| (reading.target - here.target).abs();
+            // Between the two, or at one of them. Near by, the noise of this reading counts and not that of its neighbours, which
+            // the way as it was had at other places: the force goes on from here to the first that is far enough to tell a slope.
+            if off(far) >= (place - here.target).abs() && off(far) >= self.least && off(far) > off(near) {
+                let near = if off(near) < self.least { here } else { near };
                 let share = (place - near.target) / (far.target - near.target);
                 let between = |near: f64, far: f64| near + share * (far - near);
                 return (between(near.displacement, far.displacement), between(near.force, far.force));
             }
             from = next;
         }
-        let end = reading(from);
         let tangent = if from == count { piece.end_tangent } else { piece.start_tangent };
+        let end = reading(from);
+        let end = if (end.target - here.target).abs() < self.least { here } else { end };
         let beyond = place - end.target;
         (end.displacement + beyond, end.force + tangent * beyond)
     }

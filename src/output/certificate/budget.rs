@@ -23,7 +23,7 @@ pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, bo
     budgets.retain(|budget| asked.contains(&budget.result.name) && is_told(budget));
     if !budgets.is_empty() {
         body.extend(budgets.iter().map(one));
-        body.push(Block::note(note(&budgets)));
+        body.push(Block::note(note(run, &budgets)));
     }
 }
 
@@ -121,7 +121,7 @@ fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
     if unit.is_empty() { change } else { format!("{change} per {}", typeset(&unit)) }
 }
 
-fn note(budgets: &[Budget<'_>]) -> String {
+fn note(run: &Run<'_>, budgets: &[Budget<'_>]) -> String {
     let told: Vec<&Line> =
         budgets.iter().flat_map(|budget| budget.lines.iter().filter(|line| budget.share(line) >= SMALL)).collect();
     let more = budgets.iter().any(|budget| expansion::is_more(budget.known));
@@ -131,6 +131,12 @@ fn note(budgets: &[Budget<'_>]) -> String {
          its own recorded force–displacement path; half the difference of the results is the contribution, the root sum of squares is u \
          (JCGM 100:2008). The scheme of integration, the contact law and the slowness of the test are not among the inputs."
     );
+    let undeclared = run.plan.rig.undeclared(run.plan.degrees_of_freedom());
+    if !undeclared.is_empty() {
+        text += " Nor is what the plan does not declare: ";
+        text += &undeclared.join(", ");
+        text += ".";
+    }
     if more {
         text += " U = k·u holds 95.45\u{a0}% of the cases: k is Student's t of ν effective degrees of freedom, ν = u⁴/Σ uᵢ⁴/νᵢ (Welch and \
                  Satterthwaite; JCGM 100:2008, G.4), of a fit its readings less its numbers, of draws their number, of all else infinite.";

@@ -1,6 +1,8 @@
 //! Charts of blows of rising energy: each blow's path and motion over each other, and what came of each against its
 //! energy. In: the history. Out: [`Chart`]s in SI.
 
+use std::borrow::Cow;
+
 use super::chart::{Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette};
 use super::points::Points;
 use super::shake;
@@ -12,7 +14,7 @@ use crate::record::{Blow, EscalateHistory, ImpactStep};
 pub(super) fn force_displacement(history: &EscalateHistory) -> Chart {
     over_each_other(
         history,
-        Quantity::along("Displacement X", Dimension::LENGTH),
+        Quantity { name: displaced(history), ..Quantity::along("", Dimension::LENGTH) },
         Quantity::of("Restoring force R", Dimension::FORCE),
         |step| (step.command, step.restoring_force),
     )
@@ -21,7 +23,8 @@ pub(super) fn force_displacement(history: &EscalateHistory) -> Chart {
 /// Displacement against the time of each blow.
 pub(super) fn displacement(history: &EscalateHistory) -> Chart {
     let of = |step: &ImpactStep| (step.time, step.command);
-    over_each_other(history, Quantity::time(), Quantity::of("Displacement X", Dimension::LENGTH), of)
+    let displaced = Quantity { name: displaced(history), ..Quantity::of("", Dimension::LENGTH) };
+    over_each_other(history, Quantity::time(), displaced, of)
 }
 
 /// Largest displacement, and where the specimen then rested, against the energy of the blow.
@@ -52,7 +55,7 @@ pub(super) fn blows(history: &EscalateHistory) -> Chart {
     }
     Chart {
         x: Quantity::along("Energy of the blow", Dimension::ENERGY),
-        y: Quantity::of("Displacement X", Dimension::LENGTH),
+        y: Quantity { name: displaced(history), ..Quantity::of("", Dimension::LENGTH) },
         bands: Vec::new(),
         series,
         references: Vec::new(),
@@ -82,6 +85,14 @@ pub(super) fn drift(history: &EscalateHistory) -> Chart {
         bands: Vec::new(),
         series: series.collect(),
         references: Vec::new(),
+    }
+}
+
+/// What moves: the specimen, or the floor that is struck.
+fn displaced(history: &EscalateHistory) -> Cow<'static, str> {
+    match history.storeys().next() {
+        None => "Displacement X".into(),
+        Some(blow) => format!("Displacement of floor {}", blow.struck + 1).into(),
     }
 }
 

@@ -14,7 +14,10 @@ pub(super) fn loops(history: &CycleHistory) -> Chart {
     let before = history.steps.iter().rposition(|step| step.cycle < last);
     let of_last = before.map_or_else(Points::default, |from| history.steps[from..].iter().map(point).collect());
     let mut series = vec![Series {
-        label: format!("{} cycles", history.cycles.len()),
+        label: match history.cycles.len() {
+            1 => "1 cycle".to_owned(),
+            count => format!("{count} cycles"),
+        },
         points: all,
         style: Style::line(palette::BLUE, 1.3, SOLID),
     }];

@@ -129,6 +129,14 @@ impl Sheet<'_> {
         self.canvas.text(&self.y.title, (10.0, middle.1), &upright)
     }
 
+    /// How many of its lines, or marks, are in the rectangle between these corners.
+    fn crossings(&self, series: &Series, corners: (Point, Point)) -> usize {
+        let lines = series.points.windows(2).filter(|pair| series.style.line.is_some() && pair[0] != pair[1]);
+        let lines = lines.filter(|pair| crosses((self.point(pair[0]), self.point(pair[1])), corners)).count();
+        let marks = series.points.iter().filter(|_| series.style.marker.is_some());
+        lines + marks.filter(|point| crosses((self.point(**point), self.point(**point)), corners)).count()
+    }
+
     fn series(&self, series: &Series) -> Result<(), String> {
         let points: Vec<Point> =
             series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).map(|point| self.point(*point)).collect();
@@ -149,7 +157,7 @@ impl Sheet<'_> {
     /// Each line with its words where they cover the least data.
     fn references(&self, chart: &Chart) -> Result<(), String> {
         let mut written: Vec<(Point, Point)> = Vec::new();
-        for reference in &chart.references {
+        for (index, reference) in chart.references.iter().enumerate() {
             let place = self.y.place(reference.y);
             let label = match place {
                 above if above > 1.0 => format!("↑ {}", reference.label),
@@ -165,12 +173,13 @@ impl Sheet<'_> {
             }
             let style = Lettering { colour: LIMIT_INK, ..lettering(12.0, HPos::Left, VPos::Bottom) };
             let width = style.width(&label)?;
-            let above = y - 3.0;
-            let below = y + 18.0;
+            // Words may stand at either line of two that share them.
+            let other = chart.references.get(index + 1).filter(|other| other.label.is_empty());
+            let other = other.filter(|_| (0.0..=1.0).contains(&place)).map(|other| self.point((0.0, other.y)).1);
+            let bottoms = [Some(y), other].into_iter().flatten().flat_map(|y| [y - 3.0, y + 18.0]);
             let covered = |(left, bottom): &Point| {
-                let inside = |(x, y): Point| (*left..left + width).contains(&x) && (bottom - 16.0..*bottom).contains(&y);
-                let data =
-                    chart.series.iter().flat_map(|series| &series.points).filter(|point| inside(self.point(**point))).count();
+                let corners = ((*left, bottom - 16.0), (left + width, *bottom));
+                let data = chart.series.iter().map(|series| self.crossings(series, corners)).sum::<usize>();
                 // Words on words are worse than words on any curve; words on the line of another limit nearly so.
                 let (right, top) = (left + width, bottom - 16.0);
                 let words =
@@ -180,14 +189,32 @@ impl Sheet<'_> {
                 (words, lines, data)
             };
             let last = (RIGHT - width - 8.0).max(LEFT + 8.0);
-            let places = [above, below].into_iter().filter(|bottom| bottom - 17.0 >= self.top && *bottom <= BOTTOM);
+            let places = bottoms.filter(|bottom| bottom - 17.0 >= self.top && *bottom <= BOTTOM);
             let places = places.flat_map(|bottom| [last, 0.5 * (last + LEFT + 8.0), LEFT + 8.0].map(|left| (left, bottom)));
-            let (left, bottom) = places.min_by_key(covered).unwrap_or((last, below));
+            let (left, bottom) = places.min_by_key(covered).unwrap_or((last, y + 18.0));
             written.push(((left, bottom - 16.0), (left + width, bottom)));
             self.canvas.text(&label, (left, bottom), &style)?;
         }
         Ok(())
     }
+}
+
+/// Whether the straight line between two points passes through the rectangle between two corners (Liang and Barsky 1984:
+/// what is left of it, cut at each side in turn).
+fn crosses((from, to): (Point, Point), (low, high): (Point, Point)) -> bool {
+    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+    for (start, way, low, high) in [(from.0, to.0 - from.0, low.0, high.0), (from.1, to.1 - from.1, low.1, high.1)] {
+        if way == 0.0 {
+            if start < low || start > high {
+                return false;
+            }
+            continue;
+        }
+        let (one, other) = ((low - start) / way, (high - start) / way);
+        enters = enters.max(one.min(other));
+        leaves = leaves.min(one.max(other));
+    }
+    enters <= leaves
 }
 
 fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {
@@ -329,6 +356,15 @@ mod tests {
         let kept = columns(&points, 0.5);
         assert_eq!(kept.len(), 8);
         assert!(kept.contains(&(0.0, 0.0)) && kept.iter().any(|point| point.1 == 100.0) && kept.last() == points.last());
+    }
+
+    #[test]
+    fn a_line_crosses_words_that_neither_of_its_ends_is_in() {
+        let words = ((10.0, 10.0), (20.0, 14.0));
+        assert!(crosses(((0.0, 0.0), (30.0, 24.0)), words));
+        assert!(crosses(((15.0, 0.0), (15.0, 30.0)), words) && crosses(((12.0, 12.0), (12.0, 12.0)), words));
+        assert!(!crosses(((0.0, 0.0), (30.0, 9.0)), words) && !crosses(((0.0, 12.0), (9.0, 12.0)), words));
+        assert!(!crosses(((21.0, 0.0), (21.0, 30.0)), words) && !crosses(((15.0, 15.0), (15.0, 15.0)), words));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::super::number;
 use super::chart::{Band, Chart, DASH_DOT, DASHED, DOTTED, LONG, Quantity, Reference, SOLID, Series, Style, palette};
-use crate::formula::{Formula, Function, ProcedureId};
+use crate::formula::{Formula, Function, Part, ProcedureId};
 use crate::output::Run;
 use crate::plan::{Contact, ProcedureKind};
 use crate::quantity::Dimension;
@@ -12,12 +12,25 @@ use crate::verdict::Bound;
 /// Displacement of structure and striker, contact shaded, required bounds as lines.
 pub(super) fn displacement(history: &ImpactHistory, limits: &[Reference]) -> Chart {
     let mut chart = against_time(history, Quantity::of("Displacement", Dimension::LENGTH));
+    let places = || history.steps.iter().map(|step| step.computed);
     chart.series = vec![
         series(history, "structure X", |step| step.computed, Style::line(palette::BLUE, 2.0, SOLID)),
-        series(history, "striker Xs", |step| step.striker_displacement, Style::line(palette::VERMILION, 2.0, DASHED)),
+        striker_near(history, places(), Style::line(palette::VERMILION, 2.0, DASHED)),
     ];
     chart.references = limits.iter().map(|limit| Reference { label: limit.label.clone(), y: limit.y }).collect();
     chart
+}
+
+/// Where the striker is, as long as it is near `places`, those of the structure: one that flies away would leave no room
+/// to see them.
+pub(super) fn striker_near(history: &ImpactHistory, places: impl Iterator<Item = f64>, style: Style) -> Series {
+    let (low, high) = places.fold((0.0_f64, 0.0_f64), |(low, high), place| (low.min(place), high.max(place)));
+    let around = high - low;
+    let near = |place: f64| place >= low - around && place <= high + around;
+    let steps = &history.steps;
+    let shown = steps.iter().rposition(|step| near(step.striker_displacement)).map_or(steps.len(), |last| last + 1);
+    let points = steps.iter().take(shown).map(|step| (step.time, step.striker_displacement)).collect();
+    Series { label: "striker Xs".to_owned(), points, style }
 }
 
 pub(super) fn velocity(history: &ImpactHistory) -> Chart {
@@ -60,7 +73,7 @@ pub(super) fn force_displacement(history: &ImpactHistory) -> Chart {
 }
 
 /// Name, reading and style of one energy.
-type Part = (&'static str, fn(&ImpactStep) -> f64, Style);
+type EnergyPart = (&'static str, fn(&ImpactStep) -> f64, Style);
 
 /// What became of the energy that the contact took: a spring gives back what it stored, every other law loses it.
 pub(super) fn taken_by_contact(run: &Run<'_>, procedure: ProcedureId) -> &'static str {
@@ -79,7 +92,7 @@ pub(super) fn taken_by_contact(run: &Run<'_>, procedure: ProcedureId) -> &'stati
 /// The parts of the balance and their total; damping and what the contact took only where there is any.
 pub(super) fn energy(history: &ImpactHistory, contact: &'static str) -> Chart {
     let mut chart = against_time(history, Quantity::of("Energy", Dimension::ENERGY));
-    let parts: [Part; 5] = [
+    let parts: [EnergyPart; 5] = [
         ("striker", |step| step.energies.striker, Style::line(palette::VERMILION, 2.0, DASHED)),
         ("structure", |step| step.energies.structure, Style::line(palette::SKY, 1.6, SOLID)),
         ("restoring", |step| step.energies.restoring, Style::line(palette::BLUE, 2.0, LONG)),
@@ -119,7 +132,8 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
                 continue;
             }
             // A band is two lines with one text, so that two texts never stand on each other.
-            let label = format!("{}: {}", short(&requirement.label), number::bound(held));
+            let entry = entry(&condition.value).map_or_else(String::new, |entry| format!(" ({entry})"));
+            let label = format!("{}{entry}: {}", short(&requirement.label), number::bound(held));
             match held.bound {
                 Some(Bound::Compare { limit, .. }) => lines.push(Reference { label, y: limit }),
                 Some(Bound::Within { target, tolerance }) => {
@@ -134,9 +148,17 @@ pub(super) fn limits_on(run: &Run<'_>, procedure: ProcedureId, result: &str) -> 
     lines
 }
 
-/// Whether a condition is on this result, or on the largest entry of it where it is a list.
+/// Which entry of a list a condition is on, from 1; none where it is on all of them.
+fn entry(value: &Formula) -> Option<usize> {
+    if let Formula::Index(_, index) = value { Some(index + 1) } else { None }
+}
+
+/// Whether a condition is on the value of this result, or on the largest entry of it where it is a list. A bound on its
+/// uncertainty is none on what is drawn.
 fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
-    let is = |formula: &Formula| formula.as_result().is_some_and(|r| r.procedure == procedure && r.name == result);
+    let is = |formula: &Formula| {
+        formula.as_result().is_some_and(|r| r.procedure == procedure && r.name == result && r.part == Part::Value)
+    };
     match value {
         Formula::Call(Function::Max, arguments) => arguments.iter().all(is),
         Formula::Index(list, _) => is(list),
@@ -180,4 +202,22 @@ fn periods(steps: &[ImpactStep], state: StepState) -> Vec<(f64, f64)> {
 
 pub(super) fn series(history: &ImpactHistory, label: &str, read: fn(&ImpactStep) -> f64, style: Style) -> Series {
     Series { label: label.to_owned(), points: history.steps.iter().map(|step| (step.time, read(step))).collect(), style }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::ResultReference;
+
+    #[test]
+    fn a_bound_on_an_uncertainty_is_no_line_among_the_values() {
+        let (procedure, name) = (ProcedureId(0), "max_drift");
+        let result = |part| Formula::Result(ResultReference { procedure, name, part });
+        assert!(reads(&result(Part::Value), procedure, name));
+        assert!(!reads(&result(Part::Uncertainty), procedure, name));
+        assert!(!reads(&result(Part::Value), ProcedureId(1), name) && !reads(&result(Part::Value), procedure, "periods"));
+        let second = Formula::Index(Box::new(result(Part::Value)), 1);
+        assert!(reads(&second, procedure, name) && entry(&second) == Some(2) && entry(&result(Part::Value)).is_none());
+        assert!(!reads(&Formula::Index(Box::new(result(Part::Uncertainty)), 1), procedure, name));
+    }
 }

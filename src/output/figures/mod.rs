@@ -109,9 +109,13 @@ fn chart_of(run: &Run<'_>, procedure: &ProcedureRecord, figure: &Figure) -> Opti
         ),
         (History::Impact(history), FigureKind::Tracking) => (
             impact::tracking(history),
-            format!(
-                "{name}: what the actuator missed of its commands, and the tracking indicator over the largest command; an indicator that falls says that the lag feeds energy into the test."
-            ),
+            if history.steps.iter().all(|step| step.displacement == step.command) {
+                format!("{name}: what the actuator missed of its commands: nothing.")
+            } else {
+                format!(
+                    "{name}: what the actuator missed of its commands, and the tracking indicator over the largest command; an indicator that falls says that the lag feeds energy into the test."
+                )
+            },
         ),
         (History::Ramp(history), FigureKind::ForceDisplacement) if !history.steps.is_empty() => (
             identification::force_displacement(history),

@@ -81,17 +81,10 @@ pub(super) fn chart(
     })
 }
 
-/// Where the striker is, as long as it is near the floors: one that flies away would leave no room to see them.
+/// Where the striker is, as long as it is near the floors.
 fn striker(history: &StoreyImpactHistory) -> Series {
     let places = history.floors.iter().flat_map(|floors| floors.computed.iter().copied());
-    let (low, high) = places.fold((0.0_f64, 0.0_f64), |(low, high), place| (low.min(place), high.max(place)));
-    let around = 0.5 * (high - low);
-    let near = |place: f64| place >= low - around && place <= high + around;
-    let style = Style::line(palette::BLACK, 1.4, DASHED);
-    let steps = &history.blow.steps;
-    let shown = steps.iter().rposition(|step| near(step.striker_displacement)).map_or(steps.len(), |last| last + 1);
-    let points = steps.iter().take(shown).map(|step| (step.time, step.striker_displacement)).collect();
-    Series { label: "striker Xs".to_owned(), points, style }
+    impact::striker_near(&history.blow, places, Style::line(palette::BLACK, 1.4, DASHED))
 }
 
 /// The contact behind a chart over virtual time.

@@ -17,8 +17,8 @@ use crate::rig::failpoint::{Guarding, on};
 pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
 
-/// The largest journal that is read back, bytes.
-const READ_BYTES: u64 = 1 << 30;
+/// The largest journal that is read back, bytes: of some five million steps. What proves it holds all of it in memory.
+pub const MOST_BYTES: u64 = 4 << 30;
 
 /// Who may read and write what lies here: the operator.
 const MODE: u32 = 0o600;
@@ -90,7 +90,7 @@ impl FileStorage {
     /// # Errors
     /// They cannot be read, or are more than any run of ours writes.
     pub fn contents(&self) -> Result<Vec<u8>, FileFault> {
-        self.contents_up_to(READ_BYTES)
+        self.contents_up_to(MOST_BYTES)
     }
 
     fn contents_up_to(&self, most: u64) -> Result<Vec<u8>, FileFault> {

@@ -47,7 +47,7 @@ mod writer;
 
 pub use damage::{Damage, Wrong};
 pub use fault::{Doing, JournalFault, Refusal};
-pub use file::{FileFault, FileStorage, is_part_of_a_reserve};
+pub use file::{FileFault, FileStorage, MOST_BYTES, is_part_of_a_reserve};
 pub use kind::EntryKind;
 pub use line::{LINE_BYTES, Line};
 pub use recovery::{Recovered, recover};

@@ -32,13 +32,13 @@ impl Recovered {
     /// The version of the format, as the first record says; 0 where there is none.
     #[must_use]
     pub fn format(&self) -> u64 {
-        self.lines.first().and_then(|line| line.body["format"].as_u64()).unwrap_or(0)
+        self.lines.first().and_then(|line| line.body()["format"].as_u64()).unwrap_or(0)
     }
 
     /// The last field `step` of a record.
     #[must_use]
     pub fn last_step(&self) -> Option<u64> {
-        self.lines.iter().rev().find_map(|line| line.body.get("step")?.as_u64())
+        self.lines.iter().rev().find_map(|line| line.body().get("step")?.as_u64())
     }
 
     fn take(&mut self, line: Line, chain: Chain, next: u64) {
@@ -51,8 +51,8 @@ impl Recovered {
 
 /// Reads a journal. Without END it is of a run that did not come to its end; without any record, of one that did not
 /// begin. The end of the file is torn if the first bad line is followed by no line whose own checksum holds, and if from
-/// there on there is no LF, or a NUL (a block that was never written). Memory grows with the bytes:
-/// lists of short numbers take some thirty times theirs.
+/// there on there is no LF, or a NUL (a block that was never written). Memory grows with the bytes, and
+/// is little more than theirs.
 ///
 /// # Errors
 /// Any other bad line: the journal was altered.
@@ -122,7 +122,7 @@ fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
         return Err(Wrong::NotAnObject);
     }
     place(kind, &body, found)?;
-    Ok((Line { seq: parts.seq, kind, body, offset: found.whole }, chain))
+    Ok((Line::as_written(parts.seq, kind, &body, parts.json, found.whole), chain))
 }
 
 /// Whether a record may stand here.

@@ -1,13 +1,12 @@
 //! Several axes on one rig: a run of two storeys over the real driver and the simulated controller is the virtual run, each
 //! fault of one axis holds them all and is said of that axis, and killed at any write nothing is done twice.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
+use super::cut_off::{GoneOn, gone_on, killed};
 use super::stage::{Ended, link, open, run, run_watched, run_without, stand};
 use super::two_axes::{checked, ideal, results, shaken, upper};
 use crate::plan::{Interval, Plan};
-use crate::record::journal::testing::{Killed, PowerLoss};
-use crate::record::journal::{Durability, EntryKind, Journal, recover};
+use crate::record::journal::recover;
+use crate::record::journal::testing::PowerLoss;
 use crate::record::{EventKind, Outcome};
 use crate::rig::failpoint::Guarding;
 use crate::rig::{Reading, Rig as _, RigFault, Tally};
@@ -148,41 +147,20 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
     for call in 4.. {
         for after in [false, true] {
             let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
-            let ended = catch_unwind(AssertUnwindSafe(|| {
-                let mut rig = open(&plan, &stand).unwrap();
-                let storage = Killed::at(&disk, call, after);
-                let mut journal = Journal::create(Box::new(storage), Durability::EveryPromise);
-                tape::begin(&mut journal, &super::stage::header(), &["text".to_owned()]).unwrap();
-                tape::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
-            }));
-            if ended.is_ok() {
+            if !killed(&plan, &stand, &disk, (call, after)) {
                 assert!(kills > 80, "{kills}");
                 return;
             }
             kills += 1;
-            let (recovered, before) = played(&disk);
-            if before.ended {
-                continue;
-            }
-            let mut rig = open(&plan, &stand).unwrap();
-            let found = rig.read().unwrap();
-            let about = RigBody::of(&rig);
-            let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
-            let decision = match tape::decide(&before, &about, &found, &bands, false) {
-                Err(tape::Refusal::NothingRecorded) => {
+            let resumed = match gone_on(&plan, &stand, &disk, call) {
+                GoneOn::ToItsEnd(record) => record,
+                GoneOn::Ended => continue,
+                GoneOn::NeverBegun => {
                     assert!(moves(&stand).is_empty());
                     continue;
                 }
-                other => other.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
             };
-            let resumption = decision.resumption("A. Witness", "power", &found, before.time);
-            let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
-            journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
-            journal.append(EntryKind::Resume, &resumption).unwrap();
-            let again = played(&disk).1;
-            let resumed = tape::resume(&plan, again, &mut rig, &mut Unwatched, journal, Box::new(|| None));
-            assert_eq!((resumed.mismatch, resumed.record.outcome.clone()), (None, Outcome::Completed), "call {call}");
-            assert_eq!(results(&resumed.record), results(&whole.record), "call {call}");
+            assert_eq!(results(&resumed), results(&whole.record), "call {call}");
             assert_eq!(moves(&stand), once, "call {call}: no target twice, none left out");
             let (recovered, whole) = played(&disk);
             assert_eq!(tape::agrees(&recovered, &whole, &plan), Ok(()), "call {call}");
@@ -194,14 +172,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
 /// Cut off after so many calls of the disk: its record, and what the rig of the same stand says then.
 fn cut_off(plan: &Plan, call: usize) -> (Played, RigBody, Reading) {
     let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
-    let ended = catch_unwind(AssertUnwindSafe(|| {
-        let mut rig = open(plan, &stand).unwrap();
-        let storage = Killed::at(&disk, call, true);
-        let mut journal = Journal::create(Box::new(storage), Durability::EveryPromise);
-        tape::begin(&mut journal, &super::stage::header(), &["text".to_owned()]).unwrap();
-        tape::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
-    }));
-    assert!(ended.is_err(), "it was to be killed");
+    assert!(killed(plan, &stand, &disk, (call, true)), "it was to be killed");
     let mut rig = open(plan, &stand).unwrap();
     let found = rig.read().unwrap();
     (played(&disk).1, RigBody::of(&rig), found)

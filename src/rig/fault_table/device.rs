@@ -18,7 +18,7 @@ fn what_is_no_number_is_never_integrated() {
             assert_eq!(once.tally.reread, 1, "{word}");
             let said = format!(" {} ", word.trim_matches('"'));
             let samples = once.lines.iter().filter(|line| line.kind == EntryKind::Sample);
-            samples.filter(|line| line.body["raw"].to_string().contains(&said)).count() == 1
+            samples.filter(|line| line.body()["raw"].to_string().contains(&said)).count() == 1
         });
         assert!(kept.count() > 0, "the bytes of {word} are on record where they came in a reading that counts");
         let always = run(&plan(), &(20..60).map(bad).collect::<String>());
@@ -35,7 +35,7 @@ fn what_is_no_number_is_never_integrated() {
         let bad = format!("after {reading} readings: number 9.91E37");
         run(&unbounded, &bad).sound();
         let missed = run_without(Guarding::Invalid, &unbounded, &bad);
-        missed.lines.iter().any(|line| line.kind == EntryKind::Sample && line.body["r"][0].as_f64() == Some(9.91e37))
+        missed.lines.iter().any(|line| line.kind == EntryKind::Sample && line.body()["r"][0].as_f64() == Some(9.91e37))
     };
     assert!((20..32).any(integrated));
 }
@@ -74,7 +74,7 @@ fn a_spike_does_not_move_the_median() {
     let ended = run(&plan(), spikes);
     ended.sound();
     let raw = ended.lines.iter().filter(|line| line.kind == EntryKind::Sample);
-    assert!(raw.map(|line| line.body["raw"].as_array().unwrap().len()).all(|count| count >= 3), "all three are on record");
+    assert!(raw.map(|line| line.body()["raw"].as_array().unwrap().len()).all(|count| count >= 3), "all three are on record");
     let moved = run_without(Guarding::Median, &plan(), spikes);
     let spoilt = moved.forces().iter().filter(|(command, force)| (force - STIFFNESS * command).abs() > 100.0).count();
     assert!(spoilt > 0 || !moved.completed());

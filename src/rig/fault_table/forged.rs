@@ -13,7 +13,7 @@ use crate::run::tape::{self, Played};
 pub(super) fn found(plan: &Plan, ended: &Ended, kind: EntryKind, nth: usize, alter: impl Fn(&mut Value)) -> Result<(), String> {
     let mut forged = ended.recovered.clone();
     let line = forged.lines.iter_mut().filter(|line| line.kind == kind).nth(nth).unwrap();
-    alter(&mut line.body);
+    line.alter(alter);
     judged(plan, &forged)
 }
 

@@ -1,20 +1,17 @@
 //! A run that never stops over the real driver and the simulated controller: of two axes, and of one. It is the virtual run; what
 //! goes wrong on the way holds every axis; and cut off anywhere it goes on to the same end.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use super::axes::{played, stopped};
-use super::stage::{link, open, run, run_without, stand};
+use super::cut_off::{GoneOn, gone_on, killed};
+use super::stage::{link, run, run_without, stand};
 use super::two_axes::{checked, gliding_text, ideal, results, upper};
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
-use crate::record::journal::testing::{Killed, PowerLoss};
-use crate::record::journal::{Durability, EntryKind, Journal};
+use crate::record::journal::testing::PowerLoss;
+use crate::rig::Tally;
 use crate::rig::failpoint::Guarding;
 use crate::rig::port::Clock as _;
-use crate::rig::{Rig as _, Tally};
-use crate::run::Unwatched;
-use crate::run::tape::{self, Bands, ResumeBody, RigBody};
+use crate::run::tape;
 use crate::simulator::Log;
 
 fn plan(duration: &str) -> Plan {
@@ -138,45 +135,19 @@ fn cut_off_anywhere_it_is_brought_back_and_goes_on_to_the_same_end() {
     assert!(whole.completed(), "{}", whole.reason());
     for (kills, call) in (60..).step_by(3).enumerate() {
         let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
-        let ended = catch_unwind(AssertUnwindSafe(|| {
-            let mut rig = open(&plan, &stand).unwrap();
-            let mut journal = Journal::create(Box::new(Killed::at(&disk, call, call % 2 == 0)), Durability::EveryPromise);
-            tape::begin(&mut journal, &super::stage::header(), &["text".to_owned()]).unwrap();
-            tape::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
-        }));
-        if ended.is_ok() {
+        if !killed(&plan, &stand, &disk, (call, call % 2 == 0)) {
             assert!(kills > 10, "{kills}");
             return;
         }
         // Nobody speaks to it: it goes on for a moment, and holds by itself.
         stand.clock().sleep(4.0);
         assert!(!stand.stand().bench().moving());
-        let (recovered, before) = played(&disk);
-        if before.ended {
-            continue;
-        }
-        let mut rig = open(&plan, &stand).unwrap();
-        let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
-        let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
-        let decision =
-            tape::decide(&before, &about, &found, &bands, false).unwrap_or_else(|refusal| panic!("call {call}: {refusal}"));
-        let resumption = ResumeBody {
-            from: decision.from,
-            by: "A. Witness".to_owned(),
-            reason: "power".to_owned(),
-            doubt: decision.doubt,
-            assured: Vec::new(),
-            found: (found.displacement, found.force),
-            recorded: decision.recorded,
-            t: before.time,
-            wall: None,
+        let resumed = match gone_on(&plan, &stand, &disk, call) {
+            GoneOn::ToItsEnd(record) => record,
+            GoneOn::Ended => continue,
+            GoneOn::NeverBegun => panic!("call {call}: the rig was opened before it"),
         };
-        let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
-        journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
-        journal.append(EntryKind::Resume, &resumption).unwrap();
-        let resumed = tape::resume(&plan, played(&disk).1, &mut rig, &mut Unwatched, journal, Box::new(|| None));
-        assert_eq!((resumed.mismatch, resumed.record.outcome.clone()), (None, Outcome::Completed), "call {call}");
-        same(&results(&resumed.record), &results(&whole.record), 1e-6);
+        same(&results(&resumed), &results(&whole.record), 1e-6);
         assert_eq!(tape::replay(&plan, played(&disk).1).mismatch, None, "call {call}");
     }
 }

@@ -85,7 +85,7 @@ fn garbage_of_any_kind_is_counted_and_none_of_it_is_used() {
     assert!(megabyte.log.len() > 1 << 20);
     // At 115200 baud it takes a minute and a half to come: longer than any wait, so that the rig is held.
     assert!(megabyte.reason().contains("no usable answer"), "{}", megabyte.reason());
-    let raw = megabyte.lines.iter().map(|line| line.body.to_string().len()).max().unwrap();
+    let raw = megabyte.lines.iter().map(|line| line.body().to_string().len()).max().unwrap();
     assert!(raw < 8 * LONGEST_LINE, "{raw}");
 }
 

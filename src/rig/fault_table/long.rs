@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use super::stage::{STIFFNESS, header, link, open, plan_of, stand};
 use crate::formula::Formula;
 use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
-use crate::record::journal::{Durability, Journal, Storage};
+use crate::record::journal::{Durability, Journal, Line, Storage};
 use crate::record::{EventKind, History, Outcome};
 use crate::rig::Tally;
 use crate::run::testing::ramp;
@@ -121,8 +121,8 @@ fn a_wall_clock_that_jumps_changes_no_duration() {
         let record = tape::record(&plan, &mut rig, &mut Unwatched, journal, wall).record;
         assert_eq!(record.outcome, Outcome::Completed);
         let lines = crate::record::journal::recover(&disk.written()).unwrap().lines;
-        let stamps = lines.iter().filter(|line| line.body.get("wall").is_some_and(serde_json::Value::is_string)).count();
-        let times: Vec<f64> = lines.iter().filter_map(|line| line.body.get("t").and_then(serde_json::Value::as_f64)).collect();
+        let stamps = lines.iter().filter(|line| line.body().get("wall").is_some_and(serde_json::Value::is_string)).count();
+        let times: Vec<f64> = lines.iter().filter_map(Line::time).collect();
         assert!(times.windows(2).all(|pair| pair[0] <= pair[1]), "never back");
         (times, stamps)
     };

@@ -31,6 +31,7 @@
 
 mod axes;
 mod control_points;
+mod cut_off;
 mod device;
 mod drift;
 mod forged;

@@ -197,8 +197,8 @@ impl Ended {
     }
 
     /// What the `nth` record of a kind says.
-    pub(super) fn body(&self, kind: EntryKind, nth: usize) -> &serde_json::Value {
-        &self.lines.iter().filter(|line| line.kind == kind).nth(nth).unwrap().body
+    pub(super) fn body(&self, kind: EntryKind, nth: usize) -> serde_json::Value {
+        self.lines.iter().filter(|line| line.kind == kind).nth(nth).unwrap().body()
     }
 
     pub(super) fn count(&self, kind: EntryKind) -> usize {

@@ -70,7 +70,8 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
 fn written<T: DeserializeOwned + Serialize>(line: &Line, own: &[&str]) -> Result<(), Contradiction> {
     let read: T = body(line).map_err(|fault| at(line, fault.to_string()))?;
     let again = serde_json::to_value(&read).unwrap_or_default();
-    let (Some(again), Some(said)) = (again.as_object(), line.body.as_object()) else { return Ok(()) };
+    let said = line.body();
+    let (Some(again), Some(said)) = (again.as_object(), said.as_object()) else { return Ok(()) };
     let mut names = said.keys().filter(|name| !own.contains(&name.as_str()));
     if let Some(foreign) = names.find(|name| again.get(*name) != said.get(*name)) {
         return Err(at(line, format!("psd writes no `{}` like this", foreign.escape_debug())));
@@ -83,7 +84,7 @@ fn written<T: DeserializeOwned + Serialize>(line: &Line, own: &[&str]) -> Result
 fn runs_on<'a>(lines: impl Iterator<Item = &'a Line>) -> Result<(), Contradiction> {
     let mut before = f64::NEG_INFINITY;
     for line in lines {
-        let Some(time) = time_of(line) else { continue };
+        let Some(time) = line.time() else { continue };
         if time < before - ROUNDING * before.abs() {
             return Err(at(line, format!("it is of {time} s, and the record before it of {before} s")));
         }
@@ -107,12 +108,7 @@ fn counts_on(played: &Played) -> Result<(), Contradiction> {
                 return Err(at(line, format!("it is of {} s, and the record before it of {time} s", intent.t)));
             }
         }
-        time = time_of(line).unwrap_or(time);
+        time = line.time().unwrap_or(time);
     }
     runs_on(played.lines.iter())
-}
-
-/// Rig time, s.
-fn time_of(line: &Line) -> Option<f64> {
-    line.body.get("t")?.as_f64()
 }

@@ -281,7 +281,7 @@ pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
         lines.pop();
     }
     let unloading =
-        |line: &Line| line.kind == EntryKind::Event && line.body.get("text").and_then(|text| text.as_str()) == Some(UNLOADING);
+        |line: &Line| line.kind == EntryKind::Event && line.body().get("text").and_then(|text| text.as_str()) == Some(UNLOADING);
     if lines.iter().any(unloading) { Err(Refusal::Unloaded) } else { Ok(lines) }
 }
 

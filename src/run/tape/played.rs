@@ -82,7 +82,7 @@ impl Played {
     }
 
     fn take(&mut self, line: &Line) -> Result<(), Unplayable> {
-        if let Some(time) = line.body.get("t").and_then(serde_json::Value::as_f64) {
+        if let Some(time) = line.time() {
             self.time = time;
         }
         match line.kind {
@@ -161,5 +161,5 @@ fn told(resume: &ResumeBody) -> String {
 
 /// A record's body, typed.
 pub(super) fn body<T: DeserializeOwned>(line: &Line) -> Result<T, Unplayable> {
-    T::deserialize(&line.body).map_err(|error| Unplayable::Body { seq: line.seq, kind: line.kind, reason: error.to_string() })
+    line.read().map_err(|error| Unplayable::Body { seq: line.seq, kind: line.kind, reason: error.to_string() })
 }

@@ -124,7 +124,7 @@ impl State {
             (None, Some(line)) if line.kind == kind => body(line),
             (Some(mismatch), _) => return Err(RigFault::Device(mismatch.to_string())),
             (None, front) => {
-                let found = front.map_or("its end".to_owned(), |line| format!("{:?} {}", line.kind, line.body));
+                let found = front.map_or("its end".to_owned(), |line| format!("{:?} {}", line.kind, line.body()));
                 let seq = front.map_or(0, |line| line.seq);
                 return Err(self.differs(Mismatch { seq, called: called.to_owned(), found }));
             }
@@ -136,7 +136,7 @@ impl State {
     /// The next record has been played.
     pub(super) fn consume(&mut self) {
         if let Some(line) = self.lines.pop_front() {
-            if let Some(time) = line.body.get("t").and_then(serde_json::Value::as_f64) {
+            if let Some(time) = line.time() {
                 self.time = time;
             }
             if line.kind == EntryKind::Intent {
@@ -193,7 +193,7 @@ impl State {
     /// Whether the next record says that a pause failed.
     pub(super) fn front_is_pause_fault(&self) -> bool {
         let front = self.lines.front().filter(|line| line.kind == EntryKind::Fault);
-        front.is_some_and(|line| line.body.get("call").and_then(|call| call.as_str()) == Some("pause"))
+        front.is_some_and(|line| line.body().get("call").and_then(|call| call.as_str()) == Some("pause"))
     }
 
     /// The run and the record part ways here.
@@ -206,7 +206,7 @@ impl State {
     /// The run calls for something that the next record does not say.
     pub(super) fn disagrees(&mut self, called: String) -> RigFault {
         let front = self.lines.front();
-        let (seq, found) = front.map_or((0, "its end".to_owned()), |line| (line.seq, format!("{:?} {}", line.kind, line.body)));
+        let (seq, found) = front.map_or((0, "its end".to_owned()), |line| (line.seq, format!("{:?} {}", line.kind, line.body())));
         self.differs(Mismatch { seq, called, found })
     }
 

@@ -209,8 +209,8 @@ fn what_the_run_would_not_have_done_is_found_out() {
     let (recovered, _) = played(&bytes);
     for (at, line) in recovered.lines.iter().enumerate().filter(|(_, line)| line.kind == EntryKind::Sample) {
         let mut forged = recovered.clone();
-        let force = line.body["r"][0].as_f64().unwrap();
-        forged.lines[at].body["r"][0] = serde_json::json!(force + 1e-9 * force.abs().max(1.0));
+        let force = line.body()["r"][0].as_f64().unwrap();
+        forged.lines[at].alter(|body| body["r"][0] = serde_json::json!(force + 1e-9 * force.abs().max(1.0)));
         found += usize::from(replay(&plan, Played::of(&forged).unwrap()).mismatch.is_some());
     }
     // A reading before a move that no step reports can be anything: those few prove nothing.
@@ -218,8 +218,8 @@ fn what_the_run_would_not_have_done_is_found_out() {
     assert!(found > samples * 8 / 10, "{found} of {samples}");
     for (at, line) in recovered.lines.iter().enumerate().filter(|(_, line)| line.kind == EntryKind::Intent) {
         let mut forged = recovered.clone();
-        let target = line.body["to"][0].as_f64().unwrap();
-        forged.lines[at].body["to"][0] = serde_json::json!(f64::from_bits(target.to_bits() ^ 1));
+        let target = line.body()["to"][0].as_f64().unwrap();
+        forged.lines[at].alter(|body| body["to"][0] = serde_json::json!(f64::from_bits(target.to_bits() ^ 1)));
         let mismatch = replay(&plan, Played::of(&forged).unwrap()).mismatch.expect("one bit of a target");
         assert_eq!(mismatch.seq, line.seq);
     }
@@ -317,7 +317,7 @@ impl Suspicious {
     fn durable(&self) -> (EntryKind, Option<f64>) {
         let recovered = recover(&self.disk.synced()).unwrap();
         let last = recovered.lines.last().unwrap();
-        (last.kind, last.body["to"][0].as_f64())
+        (last.kind, last.body()["to"][0].as_f64())
     }
 
     fn last_reading_is_durable(&mut self) {
@@ -423,7 +423,7 @@ fn what_a_person_said_has_its_time_of_day_and_plays_back_without_a_clock() {
     let whole = record(&plan, &mut Standing::new(&plan), &mut Witness, journal, wall);
     let (recovered, played) = played(&disk.written());
     let said: Vec<_> = recovered.lines.iter().filter(|line| line.kind == EntryKind::Operator).collect();
-    assert!(said.len() > 2 && said.iter().all(|line| line.body["wall"] == "2026-05-31T10:00:00.000Z"), "{said:?}");
+    assert!(said.len() > 2 && said.iter().all(|line| line.body()["wall"] == "2026-05-31T10:00:00.000Z"), "{said:?}");
     agrees(&recovered, &played, &plan).unwrap();
     let replayed = replay(&plan, played);
     assert_eq!((replayed.mismatch, format!("{:?}", replayed.record)), (None, format!("{:?}", whole.record)));

@@ -326,6 +326,6 @@ fn no_label_is_another_record() {
     let bytes = std::fs::read(&path).unwrap();
     assert!(bytes.iter().all(|byte| (b' '..=b'~').contains(byte) || *byte == b'\n'));
     let found = recover(&bytes).unwrap();
-    let texts: Vec<&str> = found.lines[1..].iter().map(|line| line.body["text"].as_str().unwrap()).collect();
+    let texts: Vec<String> = found.lines[1..].iter().map(|line| line.body()["text"].as_str().unwrap().to_owned()).collect();
     assert_eq!(texts, labels);
 }

@@ -39,7 +39,7 @@ fn lines(journal: &[u8]) -> Vec<Vec<u8>> {
 
 /// Kinds and bodies read back.
 fn records(recovered: &Recovered) -> Vec<(EntryKind, Value)> {
-    recovered.lines.iter().map(|line| (line.kind, line.body.clone())).collect()
+    recovered.lines.iter().map(|line| (line.kind, line.body())).collect()
 }
 
 /// Whether a journal says that it is whole, from HEADER to END.

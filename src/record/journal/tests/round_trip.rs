@@ -66,8 +66,8 @@ proptest! {
         prop_assert_eq!(found.head(), journal.head());
         for (line, (kind, body)) in found.lines[1..].iter().zip(&bodies) {
             prop_assert_eq!(line.kind, EntryKind::ALL[*kind]);
-            prop_assert_eq!(&line.body, body);
-            prop_assert_eq!(bits(&line.body), bits(body));
+            prop_assert_eq!(&line.body(), body);
+            prop_assert_eq!(bits(&line.body()), bits(body));
             let before = lines(&written[..usize::try_from(line.offset).unwrap()]).len();
             prop_assert_eq!(line.seq, before as u64 + 1);
         }

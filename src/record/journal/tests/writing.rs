@@ -142,7 +142,7 @@ fn last_words_fit_on_a_full_disk_thanks_to_the_reserve() {
         let found = recover(&disk.written()).unwrap();
         assert_eq!(found.torn, None);
         assert_eq!(found.lines.len() as u64, journal.len(), "the record that did not fit is there too");
-        assert_eq!(found.lines.last().unwrap().body, json!({"text": "disk full"}));
+        assert_eq!(found.lines.last().unwrap().body(), json!({"text": "disk full"}));
         assert_eq!(found.head(), journal.head());
         assert_eq!(journal.fault(), Some(&fault));
     }

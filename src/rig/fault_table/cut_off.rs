@@ -1,0 +1,57 @@
+//! A run killed at one write of its record, and gone on with. In: a plan, a stand, the disk of the record. Out: whether psd died
+//! there; the run as it was brought to its end, on the same stand.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::axes::played;
+use super::stage::{header, open};
+use crate::plan::Plan;
+use crate::record::journal::testing::{Killed, PowerLoss};
+use crate::record::journal::{Durability, EntryKind, Journal};
+use crate::record::{Outcome, Record};
+use crate::rig::Rig as _;
+use crate::run::Unwatched;
+use crate::run::tape::{self, Bands, RigBody};
+use crate::simulator::InProcess;
+
+/// Runs the plan until this write or sync of its record, at which psd dies, before it or `after` it; whether it did.
+pub(super) fn killed(plan: &Plan, stand: &InProcess, disk: &PowerLoss, (call, after): (usize, bool)) -> bool {
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        let mut rig = open(plan, stand).unwrap();
+        let mut journal = Journal::create(Box::new(Killed::at(disk, call, after)), Durability::EveryPromise);
+        tape::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        tape::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
+    }));
+    ended.is_err()
+}
+
+/// What became of a run that was cut off.
+pub(super) enum GoneOn {
+    ToItsEnd(Record),
+    /// The record had its end.
+    Ended,
+    /// Of the rig nothing was recorded.
+    NeverBegun,
+}
+
+/// Goes on with the run that this disk holds, as its record and the rig say.
+pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: usize) -> GoneOn {
+    let (recovered, before) = played(disk);
+    if before.ended {
+        return GoneOn::Ended;
+    }
+    let mut rig = open(plan, stand).unwrap();
+    let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
+    let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
+    let decision = match tape::decide(&before, &about, &found, &bands, false) {
+        Err(tape::Refusal::NothingRecorded) => return GoneOn::NeverBegun,
+        decided => decided.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
+    };
+    let resumption = decision.resumption("A. Witness", "power", &found, before.time);
+    let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
+    journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
+    journal.append(EntryKind::Resume, &resumption).unwrap();
+    let resumed = tape::resume(plan, played(disk).1, &mut rig, &mut Unwatched, journal, Box::new(|| None));
+    assert_eq!((resumed.mismatch, resumed.record.outcome.clone()), (None, Outcome::Completed), "call {call}");
+    GoneOn::ToItsEnd(resumed.record)
+}
