@@ -27,7 +27,7 @@ pub(super) fn take(place: SocketAddr) -> io::Result<Option<Taken>> {
     }
     let name = format!("psd rig at {}:{}", place.ip().to_canonical(), place.port());
     let taken = net::SocketAddr::from_abstract_name(name).and_then(|name| net::UnixListener::bind_addr(&name));
-    taken.map(|_name| Some(Taken { _name })).map_err(|error| match error.kind() {
+    taken.map(|name| Some(Taken { _name: name })).map_err(|error| match error.kind() {
         io::ErrorKind::AddrInUse => io::Error::new(
             io::ErrorKind::ResourceBusy,
             "another program on this machine speaks with it: end that one, for two cannot drive one rig",
