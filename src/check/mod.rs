@@ -124,9 +124,11 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     let mut diagnostics = checker.faults;
     let misspelt: Vec<Span> = imports.asts.iter().flat_map(|ast| ast.misspelt.iter().copied()).collect();
     // What follows from a fault that was told at the same place is not told again.
-    let at = |fault: &Diagnostic, places: &[Span]| fault.span().is_some_and(|at| places.iter().any(|place| touch(at, *place)));
+    let at = |fault: &Diagnostic, places: &[Span]| fault.span().is_some_and(|at| touches(at, places));
     diagnostics.retain(|fault| is_of_the_text(fault) || !at(fault, &misspelt));
-    diagnostics.retain(|fault| fault.code != Code::UnknownName || !at(fault, &checker.explained));
+    let mut explained = checker.explained;
+    explained.sort_unstable();
+    diagnostics.retain(|fault| fault.code != Code::UnknownName || !at(fault, &explained));
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
     let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
     Checked { plan, diagnostics, sources, rig_links }
@@ -136,9 +138,10 @@ fn is_of_the_text(fault: &Diagnostic) -> bool {
     fault.code.id().starts_with("E1")
 }
 
-/// Whether two places have a character in common.
-fn touch(one: Span, other: Span) -> bool {
-    one.file == other.file && one.start < other.end && other.start < one.end
+/// Whether a place has a character in common with one of those, which are in order.
+fn touches(place: Span, places: &[Span]) -> bool {
+    let before = places.partition_point(|other| (other.file, other.start) < (place.file, place.end));
+    before.checked_sub(1).and_then(|last| places.get(last)).is_some_and(|last| last.file == place.file && place.start < last.end)
 }
 
 /// The lines at which the text could not be read.

@@ -43,6 +43,10 @@ impl<'a> Checker<'a> {
             }
             None if self.may_be_lost(name) => None,
             None => {
+                let owner = self.scope.procedures().find(|(_, block)| block.kind.result(name).is_some());
+                if let Some(owner) = owner.and_then(|(_, block)| block.name).filter(|_| matches!(place.reads, Reads::All)) {
+                    return self.fail(fault::result_without_procedure(name, &owner.node, span));
+                }
                 let siblings = place.entry.map_or(&[][..], |(block, _)| &self.scope.blocks[block].block.fields);
                 let known =
                     siblings.iter().map(|entry| entry.key.node.as_str()).filter(|key| *key != name).chain(self.scope.names());

@@ -309,7 +309,7 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         if let (Some(device), Some((_, entry))) = (device, checker.given(block, field))
             && unpinned(device)
         {
-            checker.faults.push(fault::device_not_pinned(field, &device.port, entry.value.span));
+            checker.faults.push(fault::device_not_pinned(field, "", &device.port, entry.value.span));
         }
     }
     let Some((_, written)) = checker.given(block, "axes") else { return };
@@ -317,7 +317,7 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         for (field, device) in [("actuator", &own.actuator), ("load_cell", &own.load_cell)] {
             if let Some(device) = device.as_ref().filter(|device| unpinned(device)) {
                 let at = own_device_at(&written.value, axis, field);
-                checker.faults.push(fault::device_not_pinned(&format!("{field} of axis {}", axis + 1), &device.port, at));
+                checker.faults.push(fault::device_not_pinned(field, &format!(" of axis {}", axis + 1), &device.port, at));
             }
         }
     }

@@ -145,7 +145,9 @@ impl<'a> Scope<'a> {
         let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
         let Some(kind) = schema::block_of_words(&words) else {
             faults.push(fault::unknown_block(block));
-            self.poison(&block.words[1..], faults);
+            // Kind and name may stand in each other's place.
+            let turned = block.words.len() == 2 && schema::block_of_words(&[block.words[1].node.as_str(), "_"]).is_some();
+            self.poison(if turned { &block.words[..1] } else { &block.words[1..] }, faults);
             return;
         };
         let rest = &block.words[kind.keyword.len()..];

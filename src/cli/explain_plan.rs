@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use super::columns::columns;
 use super::dry_rig::{Reach, Watched};
 use super::exit::Exit;
+use super::explain_drift;
 use super::explain_shake;
 use super::explain_tracking;
 use super::settings::Settings;
@@ -141,6 +142,7 @@ impl<'a> DryRun<'a> {
             }
         }
         section("Limits", self.limits());
+        section("Zeros", explain_drift::rows(self.plan, &self.record));
         section("Requirements, as predicted", self.requirements());
         let undeclared = self.plan.rig.undeclared(self.plan.degrees_of_freedom());
         if !undeclared.is_empty()

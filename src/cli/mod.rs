@@ -12,6 +12,7 @@ mod dry_rig;
 mod evidence;
 mod exit;
 mod explain;
+mod explain_drift;
 mod explain_plan;
 mod explain_shake;
 mod explain_tracking;

@@ -230,3 +230,28 @@ fn a_continuous_run_is_played_back_from_its_record() {
         .alter(|body| body["path"][0]["start_velocity"] = serde_json::json!(f64::from_bits(velocity.to_bits() ^ 1)));
     assert!(replay(&plan, Played::of(&forged).unwrap()).mismatch.is_some());
 }
+
+/// An actuator that is late by 0.35 rad of a free swing is behind by a third of its energy twice a cycle, and gets there: under the
+/// correction by the spring's own K nothing is an error, and the run goes on as if there were no lag; without it, it is held.
+#[test]
+fn a_lag_that_is_taken_back_holds_no_run() {
+    let with = |lag: f64, i_modification: bool| {
+        let mut plan = let_go(CONTINUOUS, 0.0, 0.0, 1e-3);
+        plan.strikers[0].mass = 1e-6;
+        plan.rig.link = Link::Virtual(VirtualLink { lag, ..VirtualLink::default() });
+        // It begins where it was sent to.
+        plan.rig.settle.band = 1e-10;
+        let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind else { panic!() };
+        blow.stepping.i_modification = i_modification;
+        run_unwatched(&plan)
+    };
+    let (late, prompt) = (with(2.0, true), with(0.0, true));
+    let behind = steps(&late).iter().map(|step| (step.displacement - step.computed).abs()).fold(0.0, f64::max);
+    assert!(behind > 3e-3, "{behind} m");
+    for (late, prompt) in steps(&late).iter().zip(steps(&prompt)) {
+        assert!((late.computed - prompt.computed).abs() < 1e-9);
+        // Of ½K(10 mm)².
+        assert!(late.tracking.energy_error.abs() < 1e-6 * 0.015, "{:?}", late.tracking);
+    }
+    assert!(matches!(&with(2.0, false).outcome, Outcome::Aborted { reason } if reason.contains("tracking energy")));
+}

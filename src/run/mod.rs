@@ -17,6 +17,8 @@ mod damping_sweep;
 #[cfg(test)]
 mod degrees_tests;
 pub mod driven;
+#[cfg(test)]
+mod driven_tests;
 mod escalate;
 #[cfg(test)]
 mod escalate_tests;

@@ -1,7 +1,7 @@
 //! Every fault of the text, as a diagnostic: the code, the sentence, the place and the way out. Found elsewhere, worded
 //! here.
 
-use super::{letters, misspelt::Slip, numbers};
+use super::{letters, limits, misspelt::Slip, numbers};
 use crate::{
     diagnostic::{Code, Diagnostic},
     source::Span,
@@ -19,6 +19,9 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         .at(span, format!("expected {expected}"))
         .help(match found {
         "`}`" => "each `}` closes one `{`: take this one away, or open the block it should close".to_owned(),
+        "`between`" if expected.contains("an operator") => {
+            "a band is two comparisons joined with `and`, as in `x > 1 mm and x < 2 mm`, or `x within 5 % of 2 mm`".to_owned()
+        }
         "`use`" | "`param`" | "`let`" | "`require`" | "`and`" | "`within`" | "`of`" | "`step`" | "`between`" => {
             format!("{found} is a word of the language: names are other words")
         }
@@ -30,10 +33,13 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         }
         "`-`" if expected == "`=`" => "a name has `_` where others have `-`, as in `drop_height`".to_owned(),
         "`=`" | "`:`" if expected == "`{`" => "a block is its kind, its name and `{`, as in `striker hammer {`".to_owned(),
+        "`=`" if expected.contains("`)`") => "an argument is given with `:`, as in `elastic(stiffness: 300 kN/m)`".to_owned(),
         "`=`" if expected.contains("an operator") => {
             format!("`=` gives a field its value; {COMPARED}")
         }
-        "`,`" if expected.contains("the end of the line") => "a field ends with its line: take the `,` away".to_owned(),
+        "`,`" if expected.contains("the end of the line") => {
+            "a field ends with its line: take the `,` away, or put several values into `[ ]`".to_owned()
+        }
         "`+`" if expected == "a value" => "a number without a sign is positive: take the `+` away".to_owned(),
         _ if expected == "a field" => "write `key = value`".to_owned(),
         _ if expected == "a value" => "a value is a number with its unit, a text, a name, a list or a range".to_owned(),
@@ -85,6 +91,12 @@ pub fn operator_begins_line(span: Span, operator: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("this line begins with `{operator}`"))
         .at(span, "belongs to the line before")
         .help("an expression goes on behind an operator: put it at the end of the line before, or join the lines")
+}
+
+pub fn brace_missing(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, "this block lacks its `{`")
+        .at(span, "fields and a `}` follow")
+        .help("write the `{` at the end of this line, as in `striker hammer {`")
 }
 
 pub fn brace_on_next_line(span: Span) -> Diagnostic {
@@ -168,7 +180,7 @@ pub fn stray(span: Span, found: &str) -> Diagnostic {
         "'" | "“" | "”" | "‘" | "’" | "„" | "«" | "»" => "texts stand in straight double quotes: \"text\"",
         "&" | "&&" => "two conditions are joined by `and`",
         "|" | "||" => EITHER,
-        "±" => "write both ends, as in `-5 mm .. 5 mm`, or the size alone where it holds for both signs",
+        "±" => "write both ends, as in `-5 mm .. 5 mm`; in a requirement, `within 5 % of 8 mm`",
         "!" => "a condition is turned round by its sign: `!=`, `>` for `<=`",
         "°" | "º" => "a degree of arc is written `deg`",
         "½" => "write `0.5`",
@@ -250,6 +262,7 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
         }
         Slip::Superscript(written) => {
             let meant = "as in `mm^2` or `1/s`";
+            let written: String = written.chars().take(12).collect();
             fault(
                 Code::Syntax,
                 format!("`{written}` is no exponent of the language"),
@@ -299,7 +312,7 @@ fn foreign_word(word: &str, span: Span, often: &str) -> Diagnostic {
         }
         None => (format!("`{short}` holds {point}, which no name or unit may hold"), "not a letter from a to z".to_owned()),
     };
-    let help = match letters::written_plainly(word) {
+    let help = match letters::written_plainly(word).filter(|plain| plain.len() <= limits::NAME_CHARS) {
         Some(plain) => format!("write `{plain}`: names are made of a–z, 0–9 and _"),
         None => "names are made of a–z, 0–9 and _; other letters stand in texts and comments".to_owned(),
     };

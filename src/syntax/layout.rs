@@ -36,7 +36,7 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
         }
         let statement = cutter.statement();
         cutter.brace_below(statement);
-        if cutter.is("{") {
+        if cutter.is("{") || cutter.lacks_its_brace(statement) {
             let block = cutter.block(statement);
             let closed = matches!(block, Piece::Block { close: Some(_), .. });
             pieces.push(block);
@@ -52,6 +52,9 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
 
 /// Words a top-level item starts with, other than a block.
 pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
+
+/// Words and signs of the fields of a block that lacks its `{`, at most.
+const FIELDS_WITHOUT_BRACE: usize = 500;
 
 /// Signs between two values.
 const OPERATORS: [&str; 12] = ["+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!="];
@@ -163,6 +166,28 @@ impl Cutter<'_> {
         }
     }
 
+    /// Whether these are the words of a block that is closed and never opened, which is told: fields follow, and a `}`.
+    fn lacks_its_brace(&mut self, head: Statement) -> bool {
+        let words = (head.start..head.end).all(|at| matches!(self.tokens.kind(at), Some(Kind::Word | Kind::Text)));
+        let item = ITEM_WORDS.iter().any(|word| self.tokens.is(head.start, word));
+        let mut next = self.at;
+        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
+            next += 1;
+        }
+        let field = self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "=");
+        // Looked for so far only: reading a file takes as long as the file is.
+        let closed = || {
+            let brace = (next..next + FIELDS_WITHOUT_BRACE).find(|at| self.tokens.is(*at, "{") || self.tokens.is(*at, "}"));
+            brace.is_some_and(|at| self.tokens.is(at, "}"))
+        };
+        let lacks = head.end > head.start && words && !item && field && closed();
+        if lacks {
+            let (first, last) = (self.tokens.list[head.start], self.tokens.list[head.end - 1]);
+            self.faults.push(faults::brace_missing(self.tokens.span(first.start, last.end)));
+        }
+        lacks
+    }
+
     /// Whether the token before `end` wants a value after it.
     fn continues(&self, end: usize) -> bool {
         let Some(last) = end.checked_sub(1) else { return false };
@@ -204,9 +229,10 @@ impl Cutter<'_> {
 
     /// The block whose `{` is here.
     fn block(&mut self, head: Statement) -> Piece {
-        let open = self.at;
+        // One that lacks its brace opens behind its last word.
+        let open = if self.is("{") { self.at } else { head.end - 1 };
         let mut fields = Vec::new();
-        self.at += 1;
+        self.at += usize::from(self.is("{"));
         loop {
             if !self.skip_lines() {
                 self.unclosed(open);

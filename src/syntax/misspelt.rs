@@ -3,6 +3,7 @@
 //! every place in it stays what it was, and one fault for each sort of slip. It knows no grammar.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::{faults, letters, limits};
@@ -19,7 +20,7 @@ pub struct Mended<'a> {
 }
 
 /// What was written for something else. The same slip is told once, however often it was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Slip<'a> {
     /// A byte order mark at the start.
     ByteOrderMark,
@@ -44,6 +45,7 @@ const SIGNS: &[(&str, &str)] = &[
     ("===", "=="),
     ("!==", "!="),
     ("...", ".."),
+    ("->", "."),
     ("=<", "<="),
     ("=>", ">="),
     ("<>", "!="),
@@ -120,7 +122,7 @@ const fn is_odd_blank(c: char) -> bool {
 /// Reads a text as it was meant.
 #[must_use]
 pub fn mend(text: &str, file: FileId) -> Mended<'_> {
-    let mut mender = Mender { text, at: 0, mended: Vec::new(), slips: Vec::new() };
+    let mut mender = Mender { text, at: 0, mended: Vec::new(), slips: Vec::new(), known: BTreeMap::new() };
     while mender.at < text.len() {
         mender.at += mender.turn();
     }
@@ -139,6 +141,8 @@ struct Mender<'a> {
     /// Empty while nothing is to be mended.
     mended: Vec<u8>,
     slips: Vec<(Slip<'a>, Vec<Range<usize>>)>,
+    /// Where each is among them.
+    known: BTreeMap<Slip<'a>, usize>,
 }
 
 impl<'a> Mender<'a> {
@@ -186,7 +190,8 @@ impl<'a> Mender<'a> {
     }
 
     fn note(&mut self, slip: Slip<'a>, place: Range<usize>) {
-        match self.slips.iter_mut().find(|(known, _)| *known == slip) {
+        let at = *self.known.entry(slip).or_insert(self.slips.len());
+        match self.slips.get_mut(at) {
             Some((_, places)) => places.push(place),
             None => self.slips.push((slip, vec![place])),
         }
@@ -224,7 +229,9 @@ impl<'a> Mender<'a> {
     fn quoted(&mut self, rest: &'a str, open: char) -> usize {
         let begin = open.len_utf8();
         let closing = QUOTES.iter().find(|(known, _)| *known == open).map_or("", |(_, closing)| closing);
-        let inside = &line(rest)[begin..];
+        // A longer one is refused anyway; and each is looked through for so far only.
+        let inside = rest[begin..].split_at_checked(rest[begin..].floor_char_boundary(limits::TEXT_BYTES));
+        let inside = line(inside.map_or("", |(inside, _)| inside));
         let close = inside.char_indices().find(|(_, c)| closing.contains(*c) || *c == '"');
         let Some((length, close)) = close.filter(|(length, _)| !inside[..*length].contains('\\')) else { return begin };
         let whole = begin + length + close.len_utf8();

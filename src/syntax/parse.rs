@@ -57,8 +57,10 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     }
     let (items, mut faults) = piecewise(&mut tokens);
     ast.items = items;
-    let lines: BTreeSet<usize> = mended.places.iter().map(|place| line_start(text, place.start)).collect();
-    faults.retain(|fault| !follows(fault) || fault.span().is_none_or(|at| !lines.contains(&line_start(text, at.start))));
+    let ends: Vec<usize> = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at).collect();
+    let line = |at: Span| ends.partition_point(|end| *end < at.start as usize);
+    let lines: BTreeSet<usize> = mended.places.iter().copied().map(line).collect();
+    faults.retain(|fault| !follows(fault) || fault.span().is_none_or(|at| !lines.contains(&line(at))));
     faults.extend(mended.faults);
     ast.misspelt = mended.places;
     if faults.is_empty() {
@@ -67,10 +69,6 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     }
     faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
     (ast, faults)
-}
-
-fn line_start(text: &str, at: u32) -> usize {
-    text.as_bytes()[..(at as usize).min(text.len())].iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1)
 }
 
 /// Whether a fault says no more than that a line cannot be read, which a slip on the same line may be the reason of.

@@ -89,7 +89,12 @@ fn the_columns_of_the_tables_are_those_of_the_schema() {
             let owner = procedures
                 .iter()
                 .find(|(name, _)| stem == **name || stem.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('_')));
-            let kind = owner.expect("a table has its procedure").1["kind"].as_str().expect("a kind");
+            let Some((_, owner)) = owner else {
+                // What the zeros of the rig did is of no procedure.
+                assert!(stem == "drift" && summary["drift"].is_object(), "{}: a table has its procedure", table.display());
+                continue;
+            };
+            let kind = owner["kind"].as_str().expect("a kind");
             let words: Vec<&str> = kind.split(' ').collect();
             let known: Vec<_> = columns(schema::block_of_words(&words).expect("a block").kind).collect();
             let text = fs::read_to_string(&table).expect("readable");

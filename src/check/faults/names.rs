@@ -20,6 +20,13 @@ pub fn unknown_block(block: &Block) -> Diagnostic {
         let written = words[..count].join(" ");
         crate::suggest::nearest(&written, known()).map(|near| (count, near))
     });
+    let turned = words.len() == 2 && keywords.iter().any(|keyword| keyword == words[1]);
+    if turned {
+        let help = format!("its kind stands first: write `{} {}`", words[1], words[0]);
+        return Diagnostic::new(Code::UnknownBlock, format!("no block is called `{}`", words[0]))
+            .at(block.head, "unknown block")
+            .help(help);
+    }
     let begun = keywords.iter().find(|keyword| keyword.split(' ').next() == words.first().copied());
     let (count, help) = match (near, begun) {
         (Some((count, near)), _) => (count, format!("did you mean `{near}`?")),
@@ -157,6 +164,13 @@ pub fn unknown_name<'n>(name: &str, span: Span, before: &str, known: impl Iterat
         format!("declare it, as in `let {name} = …`, or correct the name")
     };
     Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`")).at(span, "unknown name").help(help)
+}
+
+/// A result without the procedure that it is of.
+pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`"))
+        .at(span, "unknown name")
+        .help(format!("a result is read from its procedure: did you mean `{procedure}.{name}`?"))
 }
 
 /// `1 m/s` of `1 m / s`, and `10 mm` of `10 * mm`, where the last word is a unit.

@@ -223,10 +223,11 @@ pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Dia
     .help(format!("add to the rig\n{lines}"))
 }
 
-pub fn device_not_pinned(field: &str, port: &PortPlan, span: Span) -> Diagnostic {
+/// `of`: ` of axis 2`, where it is one axis's own.
+pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::DeviceNotPinned,
-        format!("`{field}` takes whatever device answers on `{}`", port.to_string().escape_debug()),
+        format!("`{field}`{of} takes whatever device answers on `{}`", port.to_string().escape_debug()),
     )
     .at(span, "no `serial_number`")
     .help("write the serial number that must answer, as in `serial_number: \"PSD-0001\"`")

@@ -98,8 +98,10 @@ pub fn block_for_number(name: &str, kind: &BlockKind, span: Span) -> Diagnostic 
         .chain(kind.exports)
         .next()
         .map_or_else(|| "a number".to_owned(), |result| format!("`{name}.{}`", result.name));
-    Diagnostic::new(Code::WrongType, format!("`{name}` is a {}, not a number", kind.words()))
-        .at(span, format!("a {}", kind.words()))
+    let words = kind.words();
+    let article = if words.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    Diagnostic::new(Code::WrongType, format!("`{name}` is {article} {words}, not a number"))
+        .at(span, format!("{article} {words}"))
         .help(format!("read a value of it, such as {member}"))
 }
 

@@ -70,8 +70,8 @@ pub struct ReportArguments {
     /// The run folder
     #[arg(value_name = "RUN")]
     pub run: PathBuf,
-    /// Where the results go, a new or empty folder [default: the run folder, if it has none; of an amendment
-    /// RUN-amended-N]
+    /// Where the results go, with a copy of the record: a new or empty folder [default: the run folder, if it has none; of an
+    /// amendment RUN-amended-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Makes a report that takes the place of the one in RUN and says so

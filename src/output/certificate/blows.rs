@@ -22,7 +22,7 @@ pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, hi
         body.push(Block::paragraph(struck(impact, first)));
         body.extend(first.modes.as_ref().map(|modes| frames::mode_table(modes, &first.damping_ratios)));
     }
-    body.push(rows(blows));
+    body.push(rows(procedure, blows));
     if blows.len() > PRINTED {
         body.push(Block::note(format!("{} more blows are in the table of this procedure.", blows.len() - PRINTED)));
     }
@@ -72,10 +72,10 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
         Column::numbers("Energy it took"),
     ];
     let row = |storey: usize| -> Vec<Text> {
-        let length = |values: &[f64]| {
-            values
-                .get(storey)
-                .map_or_else(|| "—".to_owned(), |value| number::text_beside(*value, whole(largest), Dimension::LENGTH))
+        let length = |name: &str, values: &[f64]| {
+            let text = |value: &f64| number::text_beside(*value, whole(largest), Dimension::LENGTH);
+            let plain = || values.get(storey).map_or_else(|| "—".to_owned(), text).into();
+            frames::known_entry(procedure, name, storey).unwrap_or_else(plain)
         };
         let share = |values: &[f64]| {
             let share = height(storey).zip(values.get(storey)).map(|(height, drift)| results::percent(drift / height));
@@ -84,18 +84,19 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
         let took = energy.get(storey).map_or(0.0, |energy| *energy);
         vec![
             (storey + 1).to_string().into(),
-            length(largest).into(),
+            length("max_drift", largest),
             share(largest).into(),
-            length(stayed).into(),
+            length("residual_drift", stayed),
             share(stayed).into(),
-            number::text_beside(took, whole(energy), Dimension::ENERGY).into(),
+            frames::known_entry(procedure, "storey_energy", storey)
+                .unwrap_or_else(|| number::text_beside(took, whole(energy), Dimension::ENERGY).into()),
         ]
     };
     Block::Table(Table { columns, rows: (0..largest.len()).map(row).collect() })
 }
 
-/// Every number of a column in the unit of its largest.
-fn rows(blows: &[Blow]) -> Block {
+/// Every number with its standard uncertainty where it has one, else of a column in the unit of its largest.
+fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
     let energy = blows.iter().map(|blow| blow.energy).fold(0.0, f64::max);
     let travel = blows.iter().filter_map(|blow| blow.number("max_displacement")).fold(0.0, |most: f64, x| most.max(x.abs()));
     let shown = |value: Option<f64>, beside: f64, dimension| {
@@ -107,13 +108,15 @@ fn rows(blows: &[Blow]) -> Block {
             Some(false) => "no longer held",
             None => "not complete",
         };
+        let known = |list: &str, other: Text| frames::known_entry(procedure, list, index).unwrap_or(other);
+        let rest = blow.rest_of_struck().map(|(displacement, _)| displacement);
         vec![
             Text::from((index + 1).to_string()),
-            number::text(blow.velocity, Dimension::VELOCITY).into(),
-            shown(Some(blow.energy), energy, Dimension::ENERGY),
-            shown(blow.number("max_displacement"), travel, Dimension::LENGTH),
-            shown(blow.number("absorbed_energy"), energy, Dimension::ENERGY),
-            shown(blow.rest_of_struck().map(|(displacement, _)| displacement), travel, Dimension::LENGTH),
+            known("velocities", number::text(blow.velocity, Dimension::VELOCITY).into()),
+            known("blow_energies", shown(Some(blow.energy), energy, Dimension::ENERGY)),
+            known("max_displacements", shown(blow.number("max_displacement"), travel, Dimension::LENGTH)),
+            known("absorbed_energies", shown(blow.number("absorbed_energy"), energy, Dimension::ENERGY)),
+            known("residual_displacements", shown(rest, travel, Dimension::LENGTH)),
             Text::from(held),
         ]
     };

@@ -213,8 +213,14 @@ pub(super) fn entry(result: &NamedResult, place: usize) -> Text {
     number::text_beside(*value, whole, result.dimension).into()
 }
 
+/// The same where its uncertainty is known.
+pub(super) fn known_entry(procedure: &ProcedureRecord, name: &str, place: usize) -> Option<Text> {
+    let result = procedure.result(name)?;
+    result.entry_uncertainties().get(place).copied().flatten().map(|_| entry(result, place))
+}
+
 /// Where the storeys of a frame came to rest: what stayed of it is permanent.
-pub(super) fn unloaded(run: &Run<'_>, index: usize, steps: &[UnloadStep], body: &mut Vec<Block>) {
+pub(super) fn unloaded(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, steps: &[UnloadStep], body: &mut Vec<Block>) {
     let (Some(first), Some(last)) = (steps.first(), steps.last()) else { return };
     let specimen = run.plan.procedures.get(index).and_then(|planned| planned.kind.specimen());
     let frame = specimen.and_then(|specimen| run.plan.specimens.get(specimen)?.frame.as_ref());
@@ -241,14 +247,15 @@ pub(super) fn unloaded(run: &Run<'_>, index: usize, steps: &[UnloadStep], body: 
     let row = |storey: usize| -> Vec<Text> {
         let length = |value, beside| number::part_of(value, beside, 4, Dimension::LENGTH);
         let force = |value| number::part_of(value, whole(&loaded), 4, Dimension::FORCE);
+        let known = |name: &str, other: String| known_entry(procedure, name, storey).unwrap_or_else(|| other.into());
         vec![
             (storey + 1).to_string().into(),
-            length(last.displacement[storey], whole(&last.displacement).max(travel)).into(),
+            known("floor_displacement", length(last.displacement[storey], whole(&last.displacement).max(travel))),
             length(before[storey], travel).into(),
-            length(drift[storey], travel).into(),
+            known("residual_drift", length(drift[storey], travel)),
             height(storey).map_or_else(|| "—".to_owned(), |height| results::percent(drift[storey] / height)).into(),
             force(loaded[storey]).into(),
-            force(left[storey]).into(),
+            known("residual_shear", force(left[storey])),
         ]
     };
     body.push(Block::Table(Table { columns, rows: (0..drift.len()).map(row).collect() }));

@@ -53,7 +53,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::Cycle(history) => cycles::table(history, body),
             History::Shake(history) => frames::shaken(run, index, procedure, history, body),
             History::Escalate(history) => blows::table(run, index, procedure, history, body),
-            History::FrameUnload(steps) => frames::unloaded(run, index, steps, body),
+            History::FrameUnload(steps) => frames::unloaded(run, index, procedure, steps, body),
             History::Move(_) | History::Inspect => {}
         }
     }

@@ -48,9 +48,10 @@ pub(super) struct Lettering {
 const MEASURED_AT: f64 = 8.0;
 
 impl Lettering {
-    /// Width of a text in reference pixels.
+    /// Width of a text as it is drawn, in reference pixels.
     pub fn width(&self, text: &str) -> Result<f64, String> {
-        let (width, _) = self.scaled(MEASURED_AT).font.box_size(text).map_err(|error| error.to_string())?;
+        let (width, _) =
+            self.scaled(MEASURED_AT).font.box_size(&crate::legible::shown(text)).map_err(|error| error.to_string())?;
         Ok(f64::from(width) / MEASURED_AT)
     }
 

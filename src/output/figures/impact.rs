@@ -169,6 +169,8 @@ fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
 /// A label that fits into a picture, on one line.
 fn short(label: &str) -> String {
     const LONGEST: usize = 40;
+    // As it is drawn, so that its room is that of what is drawn.
+    let label = crate::legible::shown(label);
     let mut text: String = label.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if label.chars().count() > LONGEST {
         text.push('…');

@@ -27,7 +27,7 @@ pub(super) fn killed(plan: &Plan, stand: &InProcess, disk: &PowerLoss, (call, af
 
 /// What became of a run that was cut off.
 pub(super) enum GoneOn {
-    ToItsEnd(Record),
+    ToItsEnd(Box<Record>),
     /// The record had its end.
     Ended,
     /// Of the rig nothing was recorded.
@@ -53,5 +53,5 @@ pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
     journal.append(EntryKind::Resume, &resumption).unwrap();
     let resumed = tape::resume(plan, played(disk).1, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     assert_eq!((resumed.mismatch, resumed.record.outcome.clone()), (None, Outcome::Completed), "call {call}");
-    GoneOn::ToItsEnd(resumed.record)
+    GoneOn::ToItsEnd(Box::new(resumed.record))
 }

@@ -48,6 +48,10 @@ fn hostile_files_are_refused_quickly() {
     refused(&"x = f(\n".repeat(35_000), UnclosedBracket);
     refused(&"\u{1}a".repeat(100_000), BadText);
     refused(&"1 1\n".repeat(60_000), Syntax);
+    refused(&"«".repeat(500_000), Syntax);
+    refused(&"a\nx = 1\n".repeat(30_000), Syntax);
+    let words: String = (0..60_000).map(|word| format!("б{word} ")).collect();
+    refused(&words, BadText);
 }
 
 #[test]

@@ -162,6 +162,8 @@ fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
         ("let hämmer = 1\nlet y = hämmer\n", "let hammer = 1\nlet y = hammer\n", "ä"),
         ("l\u{456}mits {\n  x = 1\n}\n", "limits\n  x = 1\n", "\u{456}"),
         ("impact hit\n{\n  x = 1\n}\n", "impact hit\n  x = 1\n", "{"),
+        ("impact hit\n  x = 1\n}\nlet y = 2\n", "impact hit\n  x = 1\nlet y = 2\n", "impact hit"),
+        ("let y = a->b\n", "let y = (a . b)\n", "->"),
     ] {
         let (ast, found, sources) = read(written);
         assert_eq!(outline(&ast), meant, "{written}");

@@ -1,0 +1,120 @@
+//! A served rig that watches its zeros. In: a client on a virtual rig whose cell drifts. Out: zeros before the first client and
+//! after the last, on record, and the same from the record alone; none after where a person ended it.
+
+use std::cell::Cell;
+
+use super::driven::{Driver, Specimen};
+use super::tape::{self, Header, HeaderFile, Played};
+use super::testing::elastic_plan;
+use super::{Inspection, Observer, Parting, StepReport};
+use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, Journal, recover};
+use crate::record::{Outcome, Record};
+use crate::rig::{RigFault, virtual_rig};
+
+/// 0.1 N/s on a cell that may drift by so much, N.
+fn plan(force: f64, after: ZeroAfter) -> Plan {
+    let mut plan = elastic_plan(1e5, Vec::new());
+    plan.rig.link = crate::plan::Link::Virtual(VirtualLink { drift: 0.1, ..VirtualLink::default() });
+    plan.rig.drift = Some(DriftCheck { force, displacement: None, over: 2.0, after });
+    plan
+}
+
+/// Goes out by half a millimetre, stays, and takes its leave.
+fn client(specimen: &mut Specimen<'_, '_>) {
+    let mut talk = || -> Result<(), RigFault> {
+        specimen.come("127.0.0.1:1".to_owned())?;
+        specimen.propose(&[5e-4])?;
+        specimen.execute()?;
+        specimen.commit();
+        Ok(())
+    };
+    talk().unwrap();
+    specimen.leave(Parting::Closed, "closed by the client".to_owned());
+    specimen.close();
+}
+
+/// Wants the end, or not.
+struct Person {
+    wants: Cell<bool>,
+}
+
+impl Observer for Person {
+    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
+    fn step_done(&mut self, _: &StepReport) {}
+    fn procedure_finished(&mut self, _: &str) {}
+    fn stop_requested(&self) -> bool {
+        self.wants.replace(false)
+    }
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::go_on()
+    }
+}
+
+fn header() -> Header {
+    let files = vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }];
+    let text = || "0".to_owned();
+    Header {
+        run_id: "0123456789abcdef".to_owned(),
+        psd: text(),
+        build: text(),
+        toolchain: String::new(),
+        files,
+        settings: Vec::new(),
+        rig: None,
+        equipment: None,
+        rehearsal: false,
+        served: Some("nees".to_owned()),
+        date: None,
+        operator: None,
+        host: None,
+        began: None,
+    }
+}
+
+/// The record of a served rig; the same from the journal alone says the same.
+fn served(plan: &Plan, wants: bool) -> Record {
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    tape::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let (mut person, mut rig) = (Person { wants: Cell::new(wants) }, virtual_rig(plan));
+    let wall = Box::new(|| None);
+    let (recorded, steps) =
+        tape::record_driven(plan, rig.as_mut(), &mut person, journal, wall, Driver::Client, &mut |specimen| client(specimen));
+    let played = Played::of(&recover(&disk.written()).unwrap()).unwrap();
+    let again = tape::replay(plan, played);
+    assert_eq!(again.mismatch, None);
+    assert_eq!(format!("{:?}", again.record), format!("{:?}", recorded.record));
+    assert_eq!(again.steps, Some(steps));
+    recorded.record
+}
+
+#[test]
+fn the_zeros_are_read_before_the_first_client_and_after_the_last() {
+    let record = served(&plan(5.0, ZeroAfter::Start), false);
+    assert_eq!(record.outcome, Outcome::Completed);
+    let drift = record.drift.unwrap();
+    let axis = drift.axes[0];
+    let (after, seconds) = (axis.after.unwrap(), axis.after.unwrap().time - axis.before.time);
+    assert!((axis.before.force_slope - 0.1).abs() < 1e-9 && (after.force - axis.before.force - 0.1 * seconds).abs() < 1e-9);
+    assert_eq!(drift.beyond(), None);
+    let strict = served(&plan(0.15, ZeroAfter::Start), false).drift.unwrap();
+    assert!(strict.beyond().unwrap().reason.starts_with("the zero of the force drifted by"), "{:?}", strict.beyond());
+}
+
+#[test]
+fn who_ends_the_serving_has_the_rig_held_where_it_is() {
+    let record = served(&plan(5.0, ZeroAfter::Start), true);
+    assert_eq!(record.outcome, Outcome::Completed);
+    assert_eq!(record.drift.unwrap().axes[0].after, None);
+    assert!(record.events.iter().any(|event| event.text.contains("stopped on request")), "{:?}", record.events);
+}
+
+#[test]
+fn a_rig_that_does_not_say_is_not_asked() {
+    let mut plan = plan(5.0, ZeroAfter::Nowhere);
+    assert!(served(&plan, false).drift.unwrap().axes[0].after.is_none());
+    plan.rig.drift = None;
+    assert_eq!(served(&plan, false).drift, None);
+}
