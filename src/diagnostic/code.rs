@@ -158,6 +158,7 @@ codes! {
     W722 FewDegreesOfFreedom Warning;
     W726 FewDecades Warning;
     W728 NoEffect Warning;
+    W727 GateWithinNoise Warning;
 }
 
 impl std::fmt::Display for Code {
