@@ -1,7 +1,8 @@
 //! Requirements against the record. In: a [`Plan`] and a [`Record`]. Out: an [`Assessment`], every requirement with
 //! value, limit, margin and, under the guarded rule, guard band. A missed requirement is a verdict, never an error.
 
-use crate::formula::{Formula, FormulaError, Operator, ResultReference, Results};
+use crate::formula::{Formula, FormulaError, Operator, ResultReference, ResultValue, Results};
+use crate::mechanics::energy::WORTHLESS;
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
 use crate::record::{Beyond, History, Outcome, ProcedureRecord, Record};
@@ -125,7 +126,7 @@ fn unless_doubtful(condition: &Condition, outcome: ConditionOutcome, record: &Re
     let procedure = |reference: &ResultReference| Some((record.procedures.get(reference.procedure.0)?, reference.name));
     let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
     let unfinished = || {
-        let why = cut_short(&read).or_else(|| no_peak(&read, &outcome))?;
+        let why = cut_short(&read).or_else(|| unbalanced(&read)).or_else(|| no_peak(&read, &outcome))?;
         Some(outcome.reason.clone().unwrap_or(why))
     };
     match drifted(&read, record).or_else(unfinished) {
@@ -138,6 +139,28 @@ fn unless_doubtful(condition: &Condition, outcome: ConditionOutcome, record: &Re
 fn cut_short(read: &[Read<'_>]) -> Option<String> {
     let (procedure, _) = read.iter().find(|(procedure, _)| !procedure.complete)?;
     Some(format!("{} did not run to its end", procedure.name))
+}
+
+/// Results that a balance of energy says nothing of: what is given, and the balance itself.
+const BESIDE_THE_BALANCE: [&str; 7] =
+    ["energy_error", "energy_errors", "time_step", "critical_time_step", "steps", "periods", "levels"];
+
+/// What a scheme made of a run whose energy does not close by half of what was put in is no motion of the specimen.
+fn unbalanced(read: &[Read<'_>]) -> Option<String> {
+    let told = |(procedure, result): &&Read<'_>| !BESIDE_THE_BALANCE.contains(result) && off(procedure);
+    let (procedure, _) = read.iter().find(told)?;
+    Some(format!("the energy balance of {} is off by more than half of what was put in", procedure.name))
+}
+
+/// Whether the balance of a procedure, or of one of its blows, is off by more than it may be.
+fn off(procedure: &ProcedureRecord) -> bool {
+    let found = |name| procedure.results.iter().find(|result| result.name == name).map(|result| &result.value);
+    let beyond = |error: &f64| error.is_nan() || error.abs() > WORTHLESS;
+    match found("energy_error").or_else(|| found("energy_errors")) {
+        Some(ResultValue::Number { value, .. }) => value.as_ref().is_some_and(beyond),
+        Some(ResultValue::List(errors)) => errors.iter().any(beyond),
+        None => false,
+    }
 }
 
 /// Results of an impact that would be larger had it gone on.

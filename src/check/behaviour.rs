@@ -2,13 +2,14 @@
 
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
-use super::faults::specimens as fault;
+use super::faults::{shown, specimens as fault, values};
 use super::table_file;
 use crate::mechanics::beam;
 use crate::mechanics::logarithmic::lost_after_long;
 use crate::plan::{
     Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading,
 };
+use crate::quantity::Dimension;
 use crate::schema::Variant;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind};
@@ -304,7 +305,15 @@ fn fracture<'a>(checker: &mut Checker<'a>, written: &Written<'a>, chosen: &Chose
             return checker.fail(fault::one_way_only(takes, "force: 5 kN", span, given));
         }
     };
-    Some(Behaviour::Fracture { of: Box::new(of?), at })
+    let of = of?;
+    if let (Breaks::Force(force), Some(span)) = (at, chosen.span("force"))
+        && force > of.capacity()
+    {
+        let (force, most) = (shown(force, Dimension::FORCE), shown(of.capacity(), Dimension::FORCE));
+        let message = format!("the fracture at {force} never comes: what is to break carries no more than {most}");
+        checker.faults.push(values::no_effect(message, span, "is never reached", "let it break at a `displacement`, or at less"));
+    }
+    Some(Behaviour::Fracture { of: Box::new(of), at })
 }
 
 /// Midspan or tip stiffness of a beam; the formulas stand in `mechanics/beam.rs`.

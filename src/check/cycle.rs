@@ -107,6 +107,10 @@ fn protocol(checker: &mut Checker, block: usize, place: Place) -> Option<(Vec<Fo
     Some(match chosen.variant.name {
         "ramped" => {
             let (first, last) = (checker.argument(&chosen, "first", place)?, checker.argument(&chosen, "last", place)?);
+            if let (1, Some(span)) = (levels, chosen.span("last")) {
+                let message = "a ramp of one level has its first amplitude alone".to_owned();
+                checker.faults.push(values::no_effect(message, span, "is never reached", "take `levels` of 2 or more"));
+            }
             let amplitude = |level: u32| {
                 // The ends are what was written, with no rounding.
                 match (level, levels - 1) {

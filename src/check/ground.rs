@@ -34,5 +34,5 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
         let reason = format!("sample {} is no finite acceleration in its unit and scale", sample + 1);
         return checker.fail(fault::bad_record(&file.name, &reason, at));
     }
-    Some(Ground { name: name?.node.clone(), file: file.name, scale, scale_uncertainty, times: record.times, accelerations })
+    Some(Ground { name: name?.node.clone(), file: file.name, unit, scale, scale_uncertainty, times: record.times, accelerations })
 }

@@ -74,7 +74,7 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     }
     let (points, step) = counts_of(&upper(counts)).ok_or_else(|| format!("line {at} does not say NPTS and DT as numbers"))?;
     not_too_long(points)?;
-    let unit = head().take_while(|(line, _)| *line <= at).any(|(_, line)| upper(line).contains("UNITS OF G"));
+    let unit = head().take_while(|(line, _)| *line <= at).find_map(|(_, line)| unit_said(&upper(line)));
     let mut values = Vec::new();
     for (line, row) in (1..).zip(text.lines()).skip(at) {
         for cell in row.split_whitespace() {
@@ -89,7 +89,17 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     }
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_SAMPLES")]
     let times = (0..points).map(|sample| sample as f64 * step).collect();
-    Ok(GroundRecord { times, values, unit: unit.then_some(STANDARD_GRAVITY) })
+    Ok(GroundRecord { times, values, unit })
+}
+
+/// What one of the numbers is worth (m/s²) by a line that ends `UNITS OF G`, or `… GAL`; None where it says no unit, or another.
+fn unit_said(line: &str) -> Option<f64> {
+    let (_, unit) = line.split_once("UNITS OF ")?;
+    match unit.split([' ', ',', ';', '\t']).find(|word| !word.is_empty())?.trim_end_matches('.') {
+        "G" => Some(STANDARD_GRAVITY),
+        "GAL" | "GALS" => Some(0.01),
+        _ => None,
+    }
 }
 
 /// Whether a line of the head says that the samples are velocities or displacements, as those of `.VT2` and `.DT2` files are.
@@ -157,6 +167,16 @@ mod tests {
             let told = refused(&format!("{other}NPTS= 2, DT= .005\n1 2"));
             assert_eq!(told, format!("line 3 says `{what}`, and a record of accelerations is wanted"));
         }
+    }
+
+    /// 1 Gal is 1 cm/s²; what is no unit that is known is for the plan to say.
+    #[test]
+    fn a_header_in_gal_is_not_one_in_g() {
+        let file = |says: &str| format!("PEER\nACCELERATION IN UNITS OF {says}\nNPTS= 2, DT= .005\n1 2\n");
+        let unit = |says: &str| read("a.AT2", &file(says)).unwrap().unit;
+        assert_eq!((unit("GAL"), unit("gals"), unit("Gal. ")), (Some(0.01), Some(0.01), Some(0.01)));
+        assert_eq!((unit("G"), unit(" g, FILTERED")), (Some(STANDARD_GRAVITY), Some(STANDARD_GRAVITY)));
+        assert_eq!((unit("G/10"), unit("CM/S/S"), unit("GRAMS")), (None, None, None));
     }
 
     #[test]

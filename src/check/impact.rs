@@ -4,9 +4,10 @@ use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::values;
 use super::fields::whole;
-use super::{integrator, specimen, stepping, storey_impact};
+use super::{integrator, mode, specimen, stepping, storey_impact, warnings};
+use crate::diagnostic::Code;
 use crate::formula::Formula;
-use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Until, steps_in};
+use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Specimen, Striker, Until, steps_in};
 use crate::schema::Kind;
 
 /// The step of a blow that names none: the critical one over this.
@@ -53,13 +54,6 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
         duration: duration?,
         until: until?,
     };
-    if let (Some(time_step), Some(duration)) = (time_step_before_the_run(&impact), impact.duration.constant())
-        && steps_in(duration, time_step) > MOST_STEPS
-    {
-        let at = checker.given(block, "duration").map_or(head, |(_, entry)| entry.value.span);
-        let steps = steps_in(duration, time_step);
-        return checker.fail(values::too_many("steps", steps, MOST_STEPS, at, "shorten `duration` or take a longer `time_step`"));
-    }
     no_frame?;
     integrator::meets_the_contact(checker, block, impact.stepping.integrator, &impact.contact)?;
     Some(impact)
@@ -73,15 +67,44 @@ pub fn until(checker: &mut Checker, block: usize) -> Option<Until> {
     })
 }
 
-/// Δtc = (2π/10)·√(M/K) (Melo et al. 2006, eq. 7), where mass and stiffness are known before the run.
-pub fn critical_before_the_run(impact: &Impact) -> Option<f64> {
-    let (mass, stiffness) = (impact.mass.constant()?, impact.stiffness.constant()?);
-    Some(std::f64::consts::TAU / 10.0 * (mass / stiffness).sqrt())
+/// What the steps of a blow of this striker (of several, of the fastest) must be held against, as far as they are known before
+/// the run: their number, stability, the critical step, what a limit force needs.
+pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker, specimen: Option<&Specimen>) {
+    if let (Some(time_step), Some(duration)) = (time_step_before_the_run(impact, striker), impact.duration.constant())
+        && steps_in(duration, time_step) > MOST_STEPS
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker.given(block, "duration").map_or(head, |(_, entry)| entry.value.span);
+        let steps = steps_in(duration, time_step);
+        let help = "shorten `duration` or take a longer `time_step`";
+        checker.faults.push(values::too_many("steps", steps, MOST_STEPS, at, help));
+        return;
+    }
+    returns(checker, block, impact.until, striker);
+    let before = checker.faults.len();
+    mode::damping_twice(checker, block, impact, specimen);
+    integrator::stable(checker, block, impact, striker, specimen);
+    let allowed = checker.faults[before..].iter().any(|fault| fault.code == Code::BeyondStability);
+    warnings::impact(checker, block, impact, striker, allowed);
+}
+
+/// A run that waits for a striker to have left for good, which one that falls never has.
+pub fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker) {
+    if let (Until::Rebound, true, Some((_, entry))) = (until, striker.gravity > 0.0, checker.given(block, "until")) {
+        let message = "a striker that falls always comes back: `rebound` never ends this run".to_owned();
+        let help = "write `until = striker_stop` or `until = duration`, or leave `gravity` out";
+        checker.faults.push(values::no_effect(message, entry.value.span, "goes on to its `duration`", help));
+    }
+}
+
+/// Δtc of a blow of this striker, where all that it needs is known before the run.
+pub fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
+    impact.critical_time_step(striker, Formula::constant)
 }
 
 /// Δt, where it is known before the run.
-pub fn time_step_before_the_run(impact: &Impact) -> Option<f64> {
-    let critical = critical_before_the_run(impact);
+pub fn time_step_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
+    let critical = critical_before_the_run(impact, striker);
     impact.stepping.time_step.evaluate(&crate::formula::NoResults, critical).ok().map(|estimate| estimate.value)
 }
 

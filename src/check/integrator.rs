@@ -2,10 +2,10 @@
 //! integrator, or why it cannot be.
 
 use super::checker::Checker;
-use super::faults::methods as fault;
+use super::faults::{frames, methods as fault};
 use super::impact::time_step_before_the_run;
-use crate::mechanics::method::longest_stable_step;
-use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen};
+use crate::mechanics::stability::{Met, longest_stable_step};
+use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen, Striker};
 
 /// The integrator a block names. Else the tangent form; in continuous mode, where the secant of two readings would take
 /// what a damper does for stiffness, explicit Newmark, as far as the contact law can do without the tangent.
@@ -43,15 +43,15 @@ pub fn meets_the_contact(checker: &mut Checker, block: usize, integrator: Integr
 
 /// The longest stable step against the plan's, as far as both are known before the run: of the stiffness the procedure
 /// starts from, and of what a virtual specimen is.
-pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Option<&Specimen>) {
-    let (Some(step), Some(mass)) = (time_step_before_the_run(impact), impact.mass.constant()) else { return };
+pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker, specimen: Option<&Specimen>) {
+    let (Some(step), Some(mass)) = (time_step_before_the_run(impact, striker), impact.mass.constant()) else { return };
     let virtual_rig = checker.real_rig.is_none();
     let specimen = specimen.filter(|_| virtual_rig).and_then(|specimen| specimen.behaviour.as_ref());
     let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);
     let assumed = impact.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
-    let shortfall = assumed.map_or(0.0, |assumed| behaves - assumed);
-    let limit = longest_stable_step(impact.stepping.integrator, stiffest / mass, shortfall / mass);
+    let met = Met::one(mass, impact.damping.constant().unwrap_or(0.0), stiffest, assumed.unwrap_or(stiffest));
+    let limit = longest_stable_step(impact.stepping.integrator, &met);
     if let (Integrator::AlphaOs { .. }, Some(assumed)) = (impact.stepping.integrator, assumed)
         && behaves > assumed * (1.0 + 1e-9)
         && step <= limit
@@ -68,10 +68,14 @@ pub fn stable(checker: &mut Checker, block: usize, impact: &Impact, specimen: Op
         let at = checker.given(block, "stiffness").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
     }
-    if step <= limit || impact.stepping.allow_unstable {
+    if step <= limit {
         return;
     }
     let head = checker.scope.blocks[block].block.head;
     let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
-    checker.faults.push(fault::unstable(at, impact.stepping.integrator, step, limit));
+    checker.faults.push(if impact.stepping.allow_unstable {
+        frames::unstable_though(at, step, limit)
+    } else {
+        fault::unstable(at, impact.stepping.integrator, step, limit)
+    });
 }

@@ -183,14 +183,18 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         limits::hold_cycles(checker, &procedures, limits);
     }
     for (block, procedure) in &procedures {
-        if let Some(Procedure { kind: ProcedureKind::Impact(impact), .. }) = procedure {
-            let striker = strikers.get(impact.striker).and_then(Option::as_ref);
-            warnings::impact(checker, *block, impact, striker);
-            mode::damping_twice(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
-            integrator::stable(checker, *block, impact, specimens.get(impact.specimen).and_then(Option::as_ref));
-            if let Some(striker) = striker {
-                arrival::hold(checker, *block, striker, impact.duration.constant());
-            }
+        if let Some(Procedure { kind: ProcedureKind::Impact(impact), .. }) = procedure
+            && let Some(Some(striker)) = strikers.get(impact.striker)
+        {
+            impact::judge(checker, *block, impact, striker, specimens.get(impact.specimen).and_then(Option::as_ref));
+            arrival::hold(checker, *block, striker, impact.duration.constant());
+        }
+        if let Some(Procedure { kind: ProcedureKind::Escalate(escalate), .. }) = procedure
+            && let BlowOn::Specimen(impact) = &escalate.blow
+            && let Some(Some(striker)) = strikers.get(impact.striker)
+        {
+            let specimen = specimens.get(impact.specimen).and_then(Option::as_ref);
+            impact::judge(checker, *block, impact, &escalate.fastest(striker), specimen);
         }
         if let Some(Procedure { kind: ProcedureKind::StoreyImpact(impact), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
@@ -230,7 +234,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(report) = &report {
             print::warn(checker, report);
         }
-        warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), head);
+        warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), &grounds, head);
     }
     let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();
     settings.extend(options.settings.iter().cloned());

@@ -295,6 +295,14 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         let at = checker.given(block, "resolution").map_or(head, |(_, entry)| entry.value.span);
         checker.faults.push(fault::resolution_unknown(&rig.plan.name, at));
     }
+    let drowned = axes.clone().map(|axis| (link.gate_of(axis), link.readings_of(axis).noise)).find(|(gate, noise)| {
+        // What is written as ten times must be ten times.
+        gate.probe.abs() * gate.stiffness.low < fault::GATE_OVER_NOISE * noise * (1.0 - 1e-9)
+    });
+    let given = checker.given(block, "gate").or_else(|| checker.given(block, "axes"));
+    if let (Some((gate, noise)), Some((_, entry))) = (drowned, given) {
+        checker.faults.push(fault::gate_within_noise(gate.probe.abs(), gate.stiffness.low, noise, entry.value.span));
+    }
     let unpinned = |device: &DeviceLink| device.dialect == Dialect::Native && device.serial_number.is_none();
     let fields = if checker.given(block, "link").is_some() { ["link", "load_cell"] } else { ["actuator", "load_cell"] };
     for (field, device) in fields.into_iter().zip([Some(&link.actuator), link.load_cell.as_ref()]) {

@@ -5,8 +5,9 @@ use super::checker::Checker;
 use super::faults::{frames as fault, methods, values, whole};
 use super::{impact, integrator, mode};
 use crate::formula::{Formula, NoResults, Operator};
+use crate::mechanics::frame::storeys_of;
 use crate::mechanics::frame_properties::FrameProperties;
-use crate::plan::{Contact, Frame, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
+use crate::plan::{Contact, Frame, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
 
 /// The fields of a block that steps; where it gives no time step, the critical one over `finer`.
 pub fn stepping(checker: &mut Checker, block: usize, contact: Option<&Contact>, finer: f64) -> Option<Stepping> {
@@ -21,6 +22,18 @@ pub fn stepping(checker: &mut Checker, block: usize, contact: Option<&Contact>, 
     };
     let pause = checker.quantity(block, "pause");
     let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
+    if let (Some(Integrator::Explicit | Integrator::AlphaOs { .. }), Some((_, entry))) =
+        (integrator, checker.given(block, "max_tangent_ratio"))
+    {
+        let name = integrator.map_or("", Integrator::name);
+        let message = format!("`max_tangent_ratio` bounds the tangent that is measured, and `{name}` measures none");
+        checker.faults.push(values::no_effect(
+            message,
+            entry.key.span,
+            "has no effect",
+            "leave it out, or write `integrator = tangent`",
+        ));
+    }
     let inspect = impact::triggers(checker, block);
     Some(Stepping {
         integrator: integrator?,
@@ -66,6 +79,13 @@ pub fn judge(
         Ok(properties) => properties,
         Err(reason) => return checker.fail(fault::damping_impossible(&reason.to_string(), ratios)),
     };
+    if let (Integrator::Tangent, None, Some((_, entry))) =
+        (stepping.integrator, storeys_of(&properties.matrices.stiffness), checker.given(block, "max_tangent_ratio"))
+    {
+        let message =
+            "`max_tangent_ratio` bounds the tangent that each storey shows, and full matrices keep the initial stiffness";
+        checker.faults.push(values::no_effect(message.to_owned(), entry.key.span, "has no effect", "leave it out"));
+    }
     let critical = critical(&properties);
     let step = stepping.time_step.evaluate(&NoResults, critical).ok()?.value;
     let step_at = at(checker, "time_step");

@@ -8,7 +8,8 @@ use super::faults::frames as fault;
 use super::fields::whole;
 use super::stepping::FrameSteps;
 use super::{frame, impact, integrator, shake, stepping, warnings};
-use crate::mechanics::frame_properties::{Approach, FrameProperties};
+use crate::formula::Formula;
+use crate::mechanics::frame_properties::FrameProperties;
 use crate::plan::{Contact, Frame, StoreyImpact, Striker};
 use crate::schema::Kind;
 
@@ -83,22 +84,15 @@ fn storey(checker: &mut Checker, block: usize, specimen: usize, frame: Option<&R
     storey.checked_sub(1)
 }
 
-/// What is known of a blow before the run: the striker as it meets the floor, under this law.
-fn approach(impact: &StoreyImpact, striker: &Striker) -> Option<Approach> {
-    let hertz = match &impact.contact {
-        Contact::Hertz { stiffness, .. } => Some(stiffness.constant()?),
-        _ => None,
-    };
-    Some(Approach::of(striker, hertz))
-}
-
 /// What the time step must be held against, as far as it is known before the run: what that of any frame must be, and what a
 /// limit force needs.
 pub fn judge(checker: &mut Checker, block: usize, impact: &StoreyImpact, frame: &Frame, striker: &Striker) {
     let StoreyImpact { specimen, damping, stepping, .. } = impact;
+    impact::returns(checker, block, impact.until, striker);
     let steps = FrameSteps { specimen: *specimen, frame, damping, stepping, duration: impact.duration.constant() };
     let critical = |properties: &FrameProperties| {
-        approach(impact, striker).map(|approach| properties.critical_on_impact(impact.struck, &approach))
+        let approach = impact.contact.approach(striker, Formula::constant);
+        approach.map(|approach| properties.critical_on_impact(impact.struck, &approach))
     };
     let Some((properties, step)) = stepping::judge(checker, block, &steps, critical) else { return };
     if let Contact::Limit { force } = &impact.contact

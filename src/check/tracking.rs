@@ -5,12 +5,13 @@ use super::checker::Checker;
 use super::faults::methods as fault;
 use super::impact::time_step_before_the_run;
 use crate::formula::{Formula, NoResults};
+use crate::mechanics::approach::Approach;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::following::{Manner, Pace};
 use crate::mechanics::forecast::{self, Foretold, Scope};
 use crate::mechanics::frame::impact::FrameImpactInput;
 use crate::mechanics::frame::{FrameInput, Tangents, storeys_of};
-use crate::mechanics::frame_properties::{Approach, FrameProperties};
+use crate::mechanics::frame_properties::FrameProperties;
 use crate::mechanics::ground::{acceleration_at, peak_velocity};
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::monitor;
@@ -84,27 +85,26 @@ fn scope(
 }
 
 fn of_impact(plan: &Plan, impact: &Impact, link: &VirtualLink) -> Option<Forecast> {
-    of_blows(plan, impact, &[plan.strikers.get(impact.striker)?.velocity], link)
+    let striker = plan.strikers.get(impact.striker)?;
+    of_blows(plan, impact, striker, &[striker.velocity], link)
 }
 
 /// Blow by blow, each as on a specimen that none has struck: the worst of them, at the time in its own blow.
 fn of_escalate(plan: &Plan, escalate: &Escalate, link: &VirtualLink) -> Option<Forecast> {
     let velocities = escalate.velocities.iter().map(Formula::constant).collect::<Option<Vec<f64>>>()?;
+    let fastest = escalate.fastest(plan.strikers.get(escalate.striker())?);
     match &escalate.blow {
-        BlowOn::Specimen(impact) => of_blows(plan, impact, &velocities, link),
-        BlowOn::Storey(impact) => {
-            let fastest = escalate.fastest(plan.strikers.get(impact.striker)?);
-            of_storey_blows(plan, impact, &fastest, &velocities, link)
-        }
+        BlowOn::Specimen(impact) => of_blows(plan, impact, &fastest, &velocities, link),
+        BlowOn::Storey(impact) => of_storey_blows(plan, impact, &fastest, &velocities, link),
     }
 }
 
-fn of_blows(plan: &Plan, impact: &Impact, velocities: &[f64], link: &VirtualLink) -> Option<Forecast> {
-    let (specimen, striker) = (plan.specimens.get(impact.specimen)?, plan.strikers.get(impact.striker)?);
-    let behaviour = specimen.behaviour.as_ref()?;
+/// With the time step that the blow of `striker` needs.
+fn of_blows(plan: &Plan, impact: &Impact, striker: &Striker, velocities: &[f64], link: &VirtualLink) -> Option<Forecast> {
+    let behaviour = plan.specimens.get(impact.specimen)?.behaviour.as_ref()?;
     // An earlier procedure's stiffness is near the specimen's own.
     let stiffness = impact.stiffness.constant().unwrap_or_else(|| behaviour.initial_stiffness());
-    let time_step = time_step_before_the_run(impact)?;
+    let time_step = time_step_before_the_run(impact, striker)?;
     let scope = scope(plan, link, &impact.stepping, (time_step, impact.duration.constant()?), behaviour.initial_stiffness())?;
     let structure = Structure {
         mass: impact.mass.constant()?,
@@ -209,8 +209,7 @@ fn of_storey_blows(
     let frame = plan.specimens.get(impact.specimen)?.frame.as_ref()?;
     let properties = FrameProperties::of(frame, &impact.damping.known()?).ok()?;
     let law = law(&impact.contact)?;
-    let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
-    let critical = properties.critical_on_impact(impact.struck, &Approach::of(striker, hertz));
+    let critical = properties.critical_on_impact(impact.struck, &Approach::of(striker, law.stiffness()));
     let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
     let scope = scope(plan, link, &impact.stepping, (time_step, impact.duration.constant()?), stiffest(frame))?;
     let zero = vec![0.0; properties.matrices.order()];

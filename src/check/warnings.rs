@@ -3,22 +3,28 @@
 use super::checker::Checker;
 use super::faults::{cyclic, values, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::plan::{BlowOn, Contact, Escalate, Impact, Procedure, ProcedureKind, Requirement, StoreyImpact, Striker, Until};
+use crate::formula::Formula;
+use crate::mechanics::frame::Damping;
+use crate::plan::{
+    Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake, StoreyImpact,
+    Striker, Until,
+};
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
 use crate::uncertainty::{FEW, Source};
 
-/// Warnings of one impact: its step against eq. 7, and against what the limit force needs.
-pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: Option<&Striker>) {
+/// Warnings of one impact: its step against eq. 7, unless more was said of it, and against what the limit force needs.
+pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker, allowed_beyond_stability: bool) {
     let head = checker.scope.blocks[block].block.head;
     let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
-    let Some(step) = time_step_before_the_run(impact) else { return };
-    if let Some(critical) = critical_before_the_run(impact)
+    let Some(step) = time_step_before_the_run(impact, striker) else { return };
+    if let Some(critical) = critical_before_the_run(impact, striker)
         && step > critical
+        && !allowed_beyond_stability
     {
         checker.faults.push(fault::step_above_critical(at, step, critical));
     }
-    if let (Contact::Limit { force }, Some(mass), Some(striker)) = (&impact.contact, impact.mass.constant(), striker)
+    if let (Contact::Limit { force }, Some(mass)) = (&impact.contact, impact.mass.constant())
         && let Some(force) = force.constant()
     {
         limit_force(checker, at, step, (mass, force), striker);
@@ -36,9 +42,15 @@ pub fn limit_force(checker: &mut Checker, at: Span, step: f64, (mass, force): (f
 }
 
 /// Warnings of the whole plan; asked for only where no error stands.
-pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement], plan: Span) {
+pub fn whole_plan(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    requirements: &[Requirement],
+    grounds: &[Option<Ground>],
+    plan: Span,
+) {
     peak_forces(checker, procedures, requirements);
-    blows_on_blows(checker, procedures);
+    blows_on_blows(checker, procedures, grounds);
     unused_uncertainties(checker, procedures, requirements);
     few_degrees_of_freedom(checker, procedures, requirements);
     match procedures.last() {
@@ -56,17 +68,28 @@ pub fn whole_plan(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
     }
 }
 
-/// An impact straight after another starts from the peak of that one, which no specimen stays at. A frame that is damped comes
-/// to rest by itself, where its run goes on for long enough.
-fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
-    let mut before: Option<usize> = None;
+/// A run that integrates straight after another starts from where that one ended, under load, which no specimen stays at. A frame that
+/// is damped comes to rest by itself, where its run goes on for long enough.
+fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], grounds: &[Option<Ground>]) {
+    const UNLOAD: &str = "take the load off in between: `unload rest { }`";
+    const OR_REST: &str = "take the load off in between: `unload rest { }`, or let the first run on until the frame rests: \
+                           `until = duration`, with a `damping_ratio`";
+    const OR_STILL: &str = "take the load off in between: `unload rest { }`, or let the ground rest until the frame does: a longer \
+                            `duration`, with a `damping_ratio`";
+    const PEAK: &str = "ends near its largest displacement";
+    let mut before: Option<(usize, &str, &str)> = None;
     for (block, procedure) in procedures {
-        let (help, rests) = match procedure.as_ref().map(|procedure| &procedure.kind) {
-            Some(ProcedureKind::Impact(_)) => ("take the load off in between: `unload rest { }`", false),
-            Some(ProcedureKind::StoreyImpact(impact)) => (
-                "take the load off in between: `unload rest { }`, or let the first run on until the frame rests: `until = duration`, \
-                 with a `damping_ratio`",
-                impact.until == Until::Duration,
+        let (what, ends, help, rests) = match procedure.as_ref().map(|procedure| &procedure.kind) {
+            Some(ProcedureKind::Impact(_)) => ("blow", PEAK, UNLOAD, false),
+            Some(ProcedureKind::StoreyImpact(impact)) => ("blow", PEAK, OR_REST, impact.until == Until::Duration),
+            Some(ProcedureKind::Shake(shake)) => {
+                ("shake", "ends wherever its last step is", OR_STILL, comes_to_rest(shake, grounds))
+            }
+            Some(ProcedureKind::Escalate(escalate)) => (
+                "row of blows",
+                PEAK,
+                "write `between = unload`, or `unload rest { }` in between",
+                escalate.between != Between::Stay,
             ),
             // A look moves nothing.
             Some(ProcedureKind::Inspect { .. }) => continue,
@@ -75,14 +98,21 @@ fn blows_on_blows(checker: &mut Checker, procedures: &[(usize, Option<Procedure>
                 continue;
             }
         };
-        if let Some(first) = before {
+        if let Some((first, ended, way_out)) = before {
             let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
             let name = first.name.map_or("", |name| name.node.as_str());
-            let fault = cyclic::blow_on_blow(this.block.head, name, first.block.head, help);
+            let fault = cyclic::blow_on_blow((what, this.block.head), (name, first.block.head, ended), way_out);
             checker.faults.push(fault);
         }
-        before = Some(*block).filter(|_| !rests);
+        before = Some((*block, ends, help)).filter(|_| !rests);
     }
+}
+
+/// Whether the ground rests before a damped frame's run ends.
+fn comes_to_rest(shake: &Shake, grounds: &[Option<Ground>]) -> bool {
+    let still = grounds.get(shake.ground).and_then(Option::as_ref).map(Ground::duration);
+    let longer = shake.duration.as_ref().and_then(Formula::constant).zip(still).is_some_and(|(all, moving)| all > moving);
+    longer && shake.damping.known() != Some(Damping::None)
 }
 
 /// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own, and the damping ratio of a sweep.
@@ -145,20 +175,42 @@ const FITTED: [&str; 6] =
     ["stiffness", "intercept_force", "yield_force", "yield_displacement", "hardened_stiffness", "hardening"];
 
 fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
-    for (index, requirement) in requirements.iter().enumerate() {
+    let rigid = |procedure: &Procedure| match &procedure.kind {
+        ProcedureKind::Impact(Impact { contact, .. })
+        | ProcedureKind::StoreyImpact(StoreyImpact { contact, .. })
+        | ProcedureKind::Escalate(Escalate {
+            blow: BlowOn::Specimen(Impact { contact, .. }) | BlowOn::Storey(StoreyImpact { contact, .. }),
+            ..
+        }) => {
+            matches!(contact, Contact::Rigid)
+        }
+        _ => false,
+    };
+    let read = |checker: &mut Checker, conditions: &[Condition], span: Span| {
         let mut references = Vec::new();
-        for condition in &requirement.conditions {
+        for condition in conditions {
             condition.collect_references(&mut references);
         }
-        for reference in references.iter().filter(|reference| reference.name == "max_contact_force") {
+        for reference in
+            references.iter().filter(|reference| matches!(reference.name, "max_contact_force" | "max_contact_forces"))
+        {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
-                && let ProcedureKind::Impact(Impact { contact: Contact::Rigid, .. })
-                | ProcedureKind::StoreyImpact(StoreyImpact { contact: Contact::Rigid, .. }) = procedure.kind
+                && rigid(procedure)
             {
-                let (condition, head) =
-                    (checker.scope.requirements[index].condition.span, checker.scope.blocks[*block].block.head);
-                checker.faults.push(fault::peak_force_under_rigid_law(condition, head));
+                let head = checker.scope.blocks[*block].block.head;
+                checker.faults.push(fault::peak_force_under_rigid_law(span, head));
             }
+        }
+    };
+    for (index, requirement) in requirements.iter().enumerate() {
+        let span = checker.scope.requirements[index].condition.span;
+        read(checker, &requirement.conditions, span);
+    }
+    for (block, procedure) in procedures {
+        if let Some(ProcedureKind::Escalate(escalate)) = procedure.as_ref().map(|procedure| &procedure.kind) {
+            let head = checker.scope.blocks[*block].block.head;
+            let span = checker.given(*block, "while").map_or(head, |(_, entry)| entry.value.span);
+            read(checker, &escalate.condition, span);
         }
     }
 }

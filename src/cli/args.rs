@@ -124,6 +124,9 @@ pub struct JogArguments {
     /// Answers the question before a move with yes
     #[arg(long)]
     pub yes: bool,
+    /// Lets go of an axis that is found held, where it stands; it is recorded
+    #[arg(long)]
+    pub let_go: bool,
     /// Whose hand it is [default: the plan's `operator`]
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,
@@ -265,10 +268,16 @@ pub struct ResumeArguments {
     /// Accepts that the plan or the program is another one; the difference is recorded
     #[arg(long)]
     pub amend: bool,
-    /// The rig started anew, and has been referenced since
+    /// The rig started anew, and has been referenced since; it is recorded
     #[arg(long)]
     pub re_referenced: bool,
-    /// The force changed beyond its band since, and someone has looked at the specimen
+    /// The rig cannot say whether it was switched off since, and it was not; it is recorded
+    #[arg(long)]
+    pub same_power_up: bool,
+    /// Lets go of an axis that is found held, where it stands; it is recorded
+    #[arg(long)]
+    pub let_go: bool,
+    /// The force changed beyond its band since, and someone has looked at the specimen; it is recorded
     #[arg(long)]
     pub accept_relaxation: bool,
     /// Answers routine questions with yes

@@ -50,9 +50,8 @@ pub struct Opened {
     pub watcher: Watcher,
 }
 
-/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on.
-pub fn open(plan: &Plan, attendance: &Attendance, settings: Settings) -> Result<Opened, Failure> {
-    let wish = Wish::default();
+/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on, and become `wish`.
+pub fn open(plan: &Plan, attendance: &Attendance, wish: Wish, settings: Settings) -> Result<Opened, Failure> {
     // Caught before the first byte: to be killed in the middle of a word is no way to leave a rig.
     let early = Signals::caught(&wish).map_err(Failure::Signals)?;
     let connected = connect(&plan.rig, &plan.limits, &wish)?;

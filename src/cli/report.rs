@@ -1,6 +1,7 @@
 //! `psd report RUN`: the results anew, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
-//! for byte, into a folder that has none, with a copy of the record where that is another folder; with an amendment, a report of its own beside the one it takes the place of. It
-//! opens no rig, changes no record and overwrites nothing.
+//! for byte, into a folder that has none, with a copy of the record where that is another folder; with an amendment, a report
+//! of its own beside the one it takes the place of. It opens no rig, changes no record and overwrites nothing; of a run that is
+//! still going on it makes nothing.
 
 use std::path::{Path, PathBuf};
 
@@ -11,10 +12,11 @@ use super::evidence::{AMENDMENT, AmendmentFile, Folder, PlayedBack};
 use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::{give, tell};
-use super::record_file::{self, JOURNAL};
+use super::record_file::{self, JOURNAL, journal_of};
 use super::run_folder::RunFolder;
 use super::settings::Settings;
 use crate::output::{self, Run};
+use crate::record::journal::FileStorage;
 
 /// Makes the results of one run.
 pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -22,6 +24,8 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
         return amend(arguments, settings);
     }
     let run = &arguments.run;
+    let journal = journal_of(run);
+    let _still = journal.exists().then(|| FileStorage::keep_still(&journal)).transpose()?;
     let kept = Folder::read(run)?;
     let amendment = kept.bytes(AMENDMENT).map(AmendmentFile::read).transpose();
     let amendment = amendment.map_err(|fault| Failure::file(run.join(AMENDMENT), fault))?;

@@ -18,8 +18,8 @@ use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
-use crate::rig::Rig;
-use crate::run::tape::{self, AmendBody, Bands, Header, Played, RecoverBody, ResumeBody, RigBody};
+use crate::rig::{Rig, Wish};
+use crate::run::tape::{self, AmendBody, Assurance, Bands, Header, Played, RecoverBody, ResumeBody, RigBody};
 
 /// Goes on with one run.
 pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -53,20 +53,21 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     tape::rehearse(&plan, &read.played)?;
     room::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
 
+    let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
+    let wish = Wish::default().letting_go(arguments.let_go);
+    let mut opened = real_rig::open(&plan, &attendance, wish, settings)?;
+    let resumption = settle(arguments, &plan, &link, &read.played, &mut opened.connected.rig)?;
+
+    // From here on the run goes on: until now the record has not changed.
     let torn = storage.truncate_to(read.recovered.whole)?;
     let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
-    if let Some(torn) = torn {
+    if let Some(torn) = &torn {
         let name = torn.file_name().unwrap_or_default().to_string_lossy().into_owned();
         journal.append(EntryKind::Recover, &RecoverBody { t: read.played.time, put_aside: name })?;
-        tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
     }
     if let Some((amendment, texts)) = &amendment {
         tape::amend(&mut journal, amendment, texts)?;
     }
-
-    let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
-    let mut opened = real_rig::open(&plan, &attendance, settings)?;
-    let resumption = settle(arguments, &plan, &link, &read.played, &mut opened.connected.rig)?;
     let about = RigBody { t: read.played.time, ..RigBody::of(&opened.connected.rig) };
     journal.append(EntryKind::Rig, &about)?;
     journal.append(EntryKind::Resume, &resumption)?;
@@ -77,6 +78,9 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let wall = real_rig::wall_clock();
     let recorded = tape::resume(&plan, played, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
     opened.watcher.finish();
+    if let Some(torn) = torn {
+        tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
+    }
     let exit = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
     give(&format!("{}\n", arguments.run.display()))?;
     Ok(exit)
@@ -164,13 +168,25 @@ fn settle(
     rig: &mut dyn Rig,
 ) -> Result<ResumeBody, Failure> {
     let recorded = played.last_rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
-    tape::same_rig(&recorded.identity, &rig.identity(), arguments.re_referenced)?;
+    let assured = assured(arguments);
+    tape::same_rig(&recorded.identity, &rig.identity(), &assured)?;
     tape::same_resolution(recorded.noise, rig.declared_noise())?;
     let found = rig.read()?;
     let bands = Bands::of(&plan.rig, link);
     let decision = tape::decide(played, &RigBody::of(rig), &found, &bands, arguments.accept_relaxation)?;
     let resumption = decision.resumption(&arguments.operator, &arguments.reason, &found, played.time);
-    Ok(ResumeBody { wall: real_rig::wall_clock()(), ..resumption })
+    Ok(ResumeBody { assured, wall: real_rig::wall_clock()(), ..resumption })
+}
+
+/// What the person who resumes the run takes upon themselves.
+fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
+    let said = [
+        (arguments.same_power_up, Assurance::SamePowerUp),
+        (arguments.re_referenced, Assurance::ReReferenced),
+        (arguments.accept_relaxation, Assurance::AcceptedRelaxation),
+        (arguments.let_go, Assurance::LetGo),
+    ];
+    said.into_iter().filter(|(said, _)| *said).map(|(_, assured)| assured).collect()
 }
 
 /// The record as it counts now, with the resumption in it.

@@ -101,7 +101,7 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
 
 /// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
 fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
-    let mut opened = real_rig::open(plan, attendance, settings)?;
+    let mut opened = real_rig::open(plan, attendance, Wish::default(), settings)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     tell(&provenance::told_of_another_day(plan, circumstances.began.as_deref()));

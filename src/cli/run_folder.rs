@@ -71,7 +71,16 @@ impl RunFolder {
 /// Creates one file under `folder`, which must not have it.
 pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
     let path = inside(folder, &file.path)?;
-    written(&path, &mut |out| out.write_all(&file.bytes)).map_err(|error| Failure::file(&path, plain(&error)))
+    written(&path, &mut |out| out.write_all(&file.bytes)).map_err(|error| unwritten(&path, &error))
+}
+
+/// Why a file was not written; where one is there already, also what is left to do.
+fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::AlreadyExists => Failure::file(path, "is there already: somebody else wrote it")
+            .help("a record beside it is whole: make its results in a new folder with `psd report RUN --out FOLDER`"),
+        _ => Failure::file(path, plain(error)),
+    }
 }
 
 /// Where a file of the folder lies.
@@ -127,7 +136,7 @@ impl Shelf for FolderShelf<'_> {
                 return Err(ErrorKind::InvalidInput.into());
             }
         };
-        written(&place, write).inspect_err(|error| self.failure = Some(Failure::file(&place, plain(error))))?;
+        written(&place, write).inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
         self.created.push(place);
         Ok(())
     }

@@ -157,6 +157,8 @@ codes! {
     W721 LevelsDoNotRise Warning;
     W722 FewDegreesOfFreedom Warning;
     W726 FewDecades Warning;
+    W728 NoEffect Warning;
+    W727 GateWithinNoise Warning;
 }
 
 impl std::fmt::Display for Code {

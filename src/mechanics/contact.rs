@@ -31,3 +31,14 @@ pub enum ContactLaw {
     /// F = k δ^1.5 (1 + loss·δ̇), k in N/m^1.5, loss in s/m; past `force_limit` (N) the surface is dented for good.
     Hertz { stiffness: f64, loss: f64, force_limit: Option<f64> },
 }
+
+impl ContactLaw {
+    /// k of a law of finite stiffness, N/m^1.5.
+    #[must_use]
+    pub const fn stiffness(&self) -> Option<f64> {
+        match self {
+            Self::Hertz { stiffness, .. } => Some(*stiffness),
+            Self::Rigid | Self::Limit { .. } | Self::Restitution { .. } => None,
+        }
+    }
+}

@@ -1,5 +1,11 @@
 //! The energy balance of an impact (physics: every dynamic run, every step).
 
+/// Share of the energy put in that a scheme may make or lose before a reader is told: an unstable run is off by far more.
+pub const UNBALANCED: f64 = 0.1;
+
+/// Share beyond which a run says more of its scheme than of its specimen: nothing is decided by it.
+pub const WORTHLESS: f64 = 0.5;
+
 /// Energies at the end of a step, all in J. They add up:
 /// `striker + structure + restoring + damping + contact_loss + error = ½ Ms V0² + weight`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

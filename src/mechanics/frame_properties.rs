@@ -3,38 +3,19 @@
 
 use thiserror::Error;
 
+use super::approach::Approach;
 use super::frame::BandFactor;
 use super::frame::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand, damping_matrix, modes, storey_stiffness,
 };
-use super::method::longest_stable_step;
-use crate::plan::{Frame, Integrator, Striker};
+use super::stability::{Met, longest_stable_step};
+use crate::plan::{Frame, Integrator};
 
 /// A frame, ready to be integrated.
 #[derive(Clone, Debug)]
 pub struct FrameProperties {
     pub matrices: FrameMatrices,
     pub modes: Modes,
-}
-
-/// A striker as it meets a floor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
-    /// Ms, kg
-    pub striker_mass: f64,
-    /// m/s
-    pub speed: f64,
-    /// k of a contact of finite stiffness, N/m^1.5.
-    pub hertz: Option<f64>,
-}
-
-impl Approach {
-    /// The striker of a plan where its gap is closed: it may have fallen on the way.
-    #[must_use]
-    pub fn of(striker: &Striker, hertz: Option<f64>) -> Self {
-        let squared = striker.velocity * striker.velocity + 2.0 * striker.gravity * striker.gap;
-        Self { striker_mass: striker.mass, speed: squared.max(0.0).sqrt(), hertz }
-    }
 }
 
 /// Why a frame has no motion.
@@ -78,16 +59,12 @@ impl FrameProperties {
     }
 
     /// A tenth of the shortest period there is while a striker touches a floor, s. Under a contact of finite stiffness that is
-    /// the period of frame and striker with the contact's tangent at its deepest, k_c = 1.5 k √δ with δ of a blow between
-    /// free masses, (5/4 μu²/k)^(2/5): a longer step would not show the blow. A contact without stiffness of its own has none.
+    /// the period of frame and striker with the contact's tangent at its deepest ([`Approach::contact_stiffness`]): a longer step
+    /// would not show the blow. A contact without stiffness of its own has none.
     #[must_use]
     pub fn critical_on_impact(&self, struck: usize, approach: &Approach) -> f64 {
         let alone = self.critical_time_step();
-        let Some(hertz) = approach.hertz.filter(|_| approach.speed > 0.0) else { return alone };
-        let floor = self.struck_mass(struck);
-        let reduced_mass = floor * approach.striker_mass / (floor + approach.striker_mass);
-        let deepest = (1.25 * reduced_mass * approach.speed * approach.speed / hertz).powf(0.4);
-        let contact = 1.5 * hertz * deepest.sqrt();
+        let Some(contact) = approach.contact_stiffness(self.struck_mass(struck)) else { return alone };
         let order = self.matrices.order();
         let mut mass = SymmetricBand::zero(order + 1, self.matrices.mass.half_bandwidth());
         let mut stiffness = SymmetricBand::zero(order + 1, self.matrices.stiffness.half_bandwidth().max(order - struck));
@@ -122,20 +99,21 @@ impl FrameProperties {
     /// bend, which may be stiffer than what the plan integrates with.
     #[must_use]
     pub fn longest_stable_step(&self, integrator: Integrator, virtual_specimen: Option<&Frame>) -> f64 {
-        let mut highest = self.highest(&self.matrices.stiffness);
-        let mut shortfall = 0.0;
+        let own = self.highest(&self.matrices.stiffness);
+        let mut met = Met { highest: own, shortfall: 0.0, share: 0.0, damping_ratio: 0.0 };
         if let Some(frame) = virtual_specimen.filter(|frame| !frame.storeys.is_empty()) {
             let behaves: Vec<f64> = frame.storeys.iter().map(|storey| storey.behaviour.largest_stiffness()).collect();
-            highest = highest.max(self.highest(&storey_stiffness(&behaves)));
-            if frame.storeys.iter().zip(&behaves).any(|(storey, behaves)| *behaves > storey.stiffness) {
+            met.highest = own.max(self.highest(&storey_stiffness(&behaves)));
+            let storeys = || frame.storeys.iter().zip(&behaves);
+            met.share = storeys().map(|(storey, behaves)| 1.0 - storey.stiffness / behaves).fold(0.0, f64::max);
+            if met.share > 0.0 {
                 // Storeys that are softer count as a trifle: the bound is then a little low, never high.
                 let trifle = |behaves: f64| 1e-12 * behaves;
-                let beyond = frame.storeys.iter().zip(&behaves);
-                let beyond: Vec<f64> = beyond.map(|(storey, b)| (b - storey.stiffness).max(trifle(*b))).collect();
-                shortfall = self.highest(&storey_stiffness(&beyond));
+                let beyond: Vec<f64> = storeys().map(|(storey, b)| (b - storey.stiffness).max(trifle(*b))).collect();
+                met.shortfall = self.highest(&storey_stiffness(&beyond));
             }
         }
-        longest_stable_step(integrator, highest, shortfall)
+        longest_stable_step(integrator, &met)
     }
 
     /// ω² of the highest mode with another stiffness, rad²/s².

@@ -1,5 +1,4 @@
-//! Coefficients and stability limits of the integrators, for one degree of freedom and for many. In: an integrator by
-//! name, frequencies. Out: numbers. It integrates nothing.
+//! Coefficients of the integrators, for one degree of freedom and for many. In: an integrator by name. Out: numbers. It integrates nothing.
 //!
 //! All three are members of one family. With `d̃` the place that is imposed on the specimen and r̃ the force read there,
 //!
@@ -38,44 +37,9 @@ impl Coefficients {
     }
 }
 
-/// Longest stable Δt, s; infinite where there is none.
-///
-/// - Explicit Newmark: Δt ≤ T/π = 2/ω for the highest frequency of the structure (Mahin and Williams 1980).
-/// - α-OS: none while `K_I ≥ K_t`; else Δt ≤ 2/√λ, λ the highest of M⁻¹(`K_t` − `K_I`), for α = 0 and C = 0 (Combescure
-///   and Pegon 1997).
-/// - Tangent: constant average acceleration has none.
-///
-/// `highest` is ω² of the structure as it is stiffest, `shortfall` is λ, both in rad²/s²; for one degree of freedom K/M
-/// and (`K_t` − `K_I`)/M.
-#[must_use]
-pub fn longest_stable_step(integrator: Integrator, highest: f64, shortfall: f64) -> f64 {
-    let limit = |squared: f64| if squared > 0.0 { 2.0 / squared.sqrt() } else { f64::INFINITY };
-    match integrator {
-        Integrator::Tangent => f64::INFINITY,
-        Integrator::Explicit => limit(highest),
-        Integrator::AlphaOs { .. } => limit(shortfall),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn explicit_newmark_is_stable_up_to_the_period_over_pi() {
-        let omega: f64 = 2.0 * std::f64::consts::PI / 0.5;
-        let limit = longest_stable_step(Integrator::Explicit, omega * omega, 0.0);
-        assert!((limit - 0.5 / std::f64::consts::PI).abs() < 1e-15);
-    }
-
-    #[test]
-    fn splitting_needs_a_limit_only_where_the_specimen_is_stiffer_than_its_operator() {
-        let splitting = Integrator::AlphaOs { alpha: -0.05 };
-        assert_eq!(longest_stable_step(splitting, 400.0, -1.0), f64::INFINITY);
-        assert_eq!(longest_stable_step(splitting, 400.0, 0.0), f64::INFINITY);
-        assert!((longest_stable_step(splitting, 400.0, 100.0) - 0.2).abs() < 1e-15);
-        assert_eq!(longest_stable_step(Integrator::Tangent, 400.0, 100.0), f64::INFINITY);
-    }
 
     /// γ = ½ − α makes every member of second order; without α it is Newmark's constant average acceleration.
     #[test]

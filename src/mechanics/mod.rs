@@ -1,5 +1,6 @@
 //! Pure numerics: integrator, contact, specimen models, identification, energy. SI throughout; no rig, no plan text.
 
+pub mod approach;
 pub mod backbone;
 pub mod beam;
 pub mod breaks;
@@ -40,6 +41,8 @@ pub mod scheme;
 pub mod self_test;
 pub mod specimen;
 pub mod split;
+pub mod stability;
+pub mod strokes;
 pub mod structure;
 pub mod student;
 pub mod summary;

@@ -22,7 +22,16 @@ pub struct Escalate {
 }
 
 impl Escalate {
-    /// The striker of the fastest blow, as far as the velocities are known before the run: all blows on a frame have its time step.
+    /// Its place in the plan.
+    #[must_use]
+    pub const fn striker(&self) -> usize {
+        match &self.blow {
+            BlowOn::Specimen(blow) => blow.striker,
+            BlowOn::Storey(blow) => blow.striker,
+        }
+    }
+
+    /// The striker of the fastest blow, as far as the velocities are known before the run: all blows have its time step.
     #[must_use]
     pub fn fastest(&self, striker: &Striker) -> Striker {
         let known = self.velocities.iter().filter_map(Formula::constant).reduce(f64::max);

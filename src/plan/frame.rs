@@ -114,6 +114,8 @@ impl Frame {
 pub struct Ground {
     pub name: String,
     pub file: String,
+    /// What one of the record's numbers is worth, m/s², already in `accelerations`.
+    pub unit: f64,
     /// Factor of the plan, already in `accelerations`.
     pub scale: f64,
     /// Standard, of the accelerations, relative; 0 where none is stated.

@@ -1,6 +1,7 @@
 //! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
 //! it; nobody after `check` sees text but what the plan carries for the certificate.
 
+mod approach;
 mod axis;
 mod behaviour;
 mod cycle;

@@ -188,6 +188,8 @@ pub struct SweepHistory {
     pub middles: Vec<[f64; 2]>,
     /// K that the damping forces were told with, N/m.
     pub stiffness: Option<f64>,
+    /// K of the strokes and its standard error, N/m, where it contradicts that one: the damping ratio is told with it.
+    pub own_stiffness: Option<(f64, f64)>,
     /// F_d = intercept·sign v + slope·v: intercept is the Coulomb force.
     pub fit: Option<LineFit>,
 }

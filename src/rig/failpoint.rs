@@ -19,6 +19,8 @@ pub enum Guarding {
     Frozen,
     Median,
     Reboot,
+    /// Whether a rig that cannot say it was switched off since.
+    PowerUp,
     Sequence,
     Checksum,
     Resend,

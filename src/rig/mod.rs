@@ -61,6 +61,12 @@ pub fn virtual_rig(plan: &Plan) -> Box<dyn Rig> {
     }
 }
 
+/// What stands for the word of a power-up where a device that has none was seen to start anew.
+pub const JUST_STARTED: &str = "just started";
+
+/// What stands for the word of a power-up of one device of several that has none.
+pub const NO_POWER_UP: &str = "-";
+
 /// One reading: measured displacement (m) and restoring force (N) of each degree of freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {

@@ -2,7 +2,7 @@
 //! wish, for whoever waits on a rig. It knows no rig and does nothing itself.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 const NOTHING: u8 = 0;
 const STOP_AFTER_STEP: u8 = 1;
@@ -12,41 +12,57 @@ const HEEDED: u8 = 3;
 
 /// A wish that all clones share.
 #[derive(Clone, Debug, Default)]
-pub struct Wish(Arc<AtomicU8>);
+pub struct Wish {
+    what: Arc<AtomicU8>,
+    letting_go: Arc<AtomicBool>,
+}
 
 impl Wish {
+    /// A rig that is found held when it is opened is to be let go of: a person has looked at it, and says so.
+    #[must_use]
+    pub fn letting_go(self, wanted: bool) -> Self {
+        self.letting_go.store(wanted, Ordering::SeqCst);
+        self
+    }
+
+    /// Whether a rig that is found held may be let go of.
+    #[must_use]
+    pub fn lets_go(&self) -> bool {
+        self.letting_go.load(Ordering::SeqCst)
+    }
+
     /// The run is to end when the step under way is done.
     pub fn stop_after_step(&self) {
         // A stronger wish stays.
-        self.0.compare_exchange(NOTHING, STOP_AFTER_STEP, Ordering::SeqCst, Ordering::SeqCst).ok();
+        self.what.compare_exchange(NOTHING, STOP_AFTER_STEP, Ordering::SeqCst, Ordering::SeqCst).ok();
     }
 
     /// The rig is to hold at once: every wait on it ends.
     pub fn hold_now(&self) {
-        self.0.store(HOLD_NOW, Ordering::SeqCst);
+        self.what.store(HOLD_NOW, Ordering::SeqCst);
     }
 
     /// Says that the wish to hold was seen, so that the words that hold the rig can be said and answered.
     pub fn heed(&self) {
-        self.0.compare_exchange(HOLD_NOW, HEEDED, Ordering::SeqCst, Ordering::SeqCst).ok();
+        self.what.compare_exchange(HOLD_NOW, HEEDED, Ordering::SeqCst, Ordering::SeqCst).ok();
     }
 
     /// Whether a hold is wanted that nobody has seen yet.
     #[must_use]
     pub fn wants_hold(&self) -> bool {
-        self.0.load(Ordering::SeqCst) == HOLD_NOW
+        self.what.load(Ordering::SeqCst) == HOLD_NOW
     }
 
     /// Whether the run is to end, now or after the step.
     #[must_use]
     pub fn wants_end(&self) -> bool {
-        self.0.load(Ordering::SeqCst) != NOTHING
+        self.what.load(Ordering::SeqCst) != NOTHING
     }
 
     /// The number itself, for a signal handler that stores [`Wish::HOLD`] or [`Wish::STOP`].
     #[must_use]
     pub fn cell(&self) -> Arc<AtomicU8> {
-        Arc::clone(&self.0)
+        Arc::clone(&self.what)
     }
 
     pub const STOP: u8 = STOP_AFTER_STEP;
@@ -71,5 +87,6 @@ mod tests {
         assert!(!clone.wants_hold() && clone.wants_end());
         clone.cell().store(Wish::HOLD, Ordering::SeqCst);
         assert!(wish.wants_hold(), "a second wish is a new one");
+        assert!(!wish.lets_go() && Wish::default().letting_go(true).clone().lets_go());
     }
 }

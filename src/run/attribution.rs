@@ -50,10 +50,15 @@ pub(super) fn attribute(
         of_lists(procedure, fit, calibration, results);
     }
     rounding_doubts::widen(kind, history, plan, (procedure, declared), results);
-    if let (ProcedureKind::DampingSweep(sweep), History::Sweep(_)) = (kind, history) {
+    if let (ProcedureKind::DampingSweep(sweep), History::Sweep(found)) = (kind, history) {
         let specimen = plan.specimens.get(sweep.specimen);
         let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);
-        damping_ratio(results, &sweep.stiffness, (Source::SpecimenMass(sweep.specimen), uncertain), inputs);
+        damping_ratio(
+            results,
+            (&sweep.stiffness, found.own_stiffness),
+            (Source::SpecimenMass(sweep.specimen), uncertain),
+            inputs,
+        );
     }
     for result in results.iter_mut() {
         // A fit alone keeps its standard error as it is, to the bit.
@@ -146,16 +151,24 @@ fn of_calibration(result: &NamedResult, value: f64, calibration: &Calibration) -
 
 /// ζ = c/(2√(KM)): by first order, ζ/c of what is in c, −ζ/(2K) of what is in K and −ζ/(2M) of what is in M; `mass` is what
 /// the mass hangs on and its relative uncertainty.
-fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, mass: (Source, f64), inputs: &Inputs<'_>) {
+fn damping_ratio(
+    results: &mut [NamedResult],
+    (stiffness, own): (&Formula, Option<(f64, f64)>),
+    mass: (Source, f64),
+    inputs: &Inputs<'_>,
+) {
     let number = |name: &str| match results.iter().find(|result| result.name == name)?.value {
         ResultValue::Number { value, .. } => value,
         ResultValue::List(_) => None,
     };
     let (Some(ratio), Some(damping)) = (number("damping_ratio"), number("damping")) else { return };
-    let (Ok(known), Ok(in_stiffness)) =
-        (stiffness.evaluate(inputs.results(), None), stiffness.contributions(inputs.results(), None))
-    else {
-        return;
+    let (known, in_stiffness) = if let Some((stiffness, error)) = own {
+        let fitted = Source::Fit { procedure: inputs.procedure(), result: "damping_ratio" };
+        (stiffness, vec![Contribution::new(fitted, error)])
+    } else {
+        let found = (stiffness.evaluate(inputs.results(), None), stiffness.contributions(inputs.results(), None));
+        let (Ok(known), Ok(in_stiffness)) = found else { return };
+        (known.value, in_stiffness)
     };
     let of_damping = results.iter().find(|result| result.name == "damping").map(|found| found.contributions.clone());
     let mut parts: Vec<Contribution> = of_damping.unwrap_or_default();
@@ -163,7 +176,7 @@ fn damping_ratio(results: &mut [NamedResult], stiffness: &Formula, mass: (Source
         part.amount *= ratio / damping;
     }
     for part in in_stiffness {
-        share(&mut parts, Contribution::new(part.source, -0.5 * ratio / known.value * part.amount));
+        share(&mut parts, Contribution::new(part.source, -0.5 * ratio / known * part.amount));
     }
     if mass.1 > 0.0 {
         share(&mut parts, Contribution::new(mass.0, -0.5 * ratio * mass.1));

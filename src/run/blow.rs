@@ -37,19 +37,19 @@ impl<'a> Struck<'a> {
         inputs: &mut Inputs<'record>,
         session: &Session<'_>,
     ) -> Result<(Self, Vec<f64>), Stop> {
+        let velocities = velocities(plan, inputs)?;
+        // One time step for all blows: the fastest is the shortest under a contact of finite stiffness.
+        let striker = &whole.strikers[plan.striker()];
+        let velocity = velocities.iter().copied().fold(0.0, f64::max);
+        let fastest = Striker { velocity, ..striker.clone() };
         match &plan.blow {
             BlowOn::Specimen(blow) => {
                 let noise = session.guard.declared_noise();
-                let setting = impact::Setting::evaluate(blow, &whole.strikers[blow.striker], inputs, noise)?;
+                let setting = impact::Setting::evaluate(blow, &fastest, inputs, noise)?;
                 let doubts = Doubts::new(blow, whole, inputs, noise);
-                Ok((Self::Specimen { plan: blow, setting, doubts }, velocities(plan, inputs)?))
+                Ok((Self::Specimen { plan: blow, setting, doubts }, velocities))
             }
             BlowOn::Storey(blow) => {
-                let velocities = velocities(plan, inputs)?;
-                // One time step for all blows: the fastest is the shortest under a contact of finite stiffness.
-                let striker = &whole.strikers[blow.striker];
-                let velocity = velocities.iter().copied().fold(0.0, f64::max);
-                let fastest = Striker { velocity, ..striker.clone() };
                 // `check` has seen that the specimen is a frame.
                 let frame = whole.specimens[blow.specimen].frame.as_ref().ok_or_else(storey_impact::no_frame)?;
                 let setting = storey_impact::Setting::evaluate(blow, frame, &fastest, inputs, session)?;

@@ -3,7 +3,8 @@
 //!
 //! X and R are as measured, X from the rig's zero. An offset of the cell, or an error of K, adds the same to both
 //! directions at one place: the fit is of half the difference between a reading and the one at the same place on the way
-//! back, so that neither reaches c, `F_c` or their standard errors.
+//! back, so that neither reaches c, `F_c` or their standard errors. Nor does a specimen that flows: about a place, one stroke takes its
+//! flow before the first that is read, and one that flowed all the same is left out.
 //!
 //! A rig that reads at the times it was asked has the same places out and back. One that reads when it can has not: there
 //! the measured share of the stroke says what is steady, and the sparser way is paired with the other one interpolated.
@@ -17,6 +18,7 @@ use super::session::{Session, first};
 use super::stop::Stop;
 use crate::formula::Estimate;
 use crate::mechanics::identification::{damping_ratio, fit_damping, fit_line};
+use crate::mechanics::strokes::{OutAndBack, change_along, own_stiffness};
 use crate::plan::{DampingSweep, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
@@ -38,6 +40,10 @@ const FEW: usize = 3;
 /// A share of the velocity by which the piston may miss it.
 const OFF_SPEED: f64 = 0.05;
 
+/// The strokes have another K than the plan's where the two differ by so many standard errors, and by this share.
+const CONTRADICTS: f64 = 5.0;
+const OFF_STIFFNESS: f64 = 0.1;
+
 /// Readings of one traverse, at most.
 pub const MOST_SAMPLES: f64 = 1e6;
 
@@ -47,20 +53,35 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     let lag = link.map_or(0.0, |link| link.lag);
     let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag, exact: link.is_some() };
     let stop = sweep.run(plan, inputs, session).err();
-    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = sweep.strokes.iter().flat_map(|stroke| sweep.pairs(stroke)).unzip();
+    let told = sweep.told();
+    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = sweep
+        .strokes
+        .iter()
+        .filter(|stroke| !told.left_out.contains(&stroke.out.start))
+        .flat_map(|stroke| sweep.pairs(stroke))
+        .unzip();
     let fit = fit_of(&pairs);
     if fit.is_none() && stop.is_none() {
         let text =
             "no damping: the steady parts of the strokes hold too few readings, or too few velocities, for a line".to_owned();
         session.event(EventKind::Remark, text);
     }
-    for text in sweep.remarks() {
+    for text in sweep.remarks().into_iter().chain(told.remarks).chain(fit.as_ref().and_then(negative)) {
         session.event(EventKind::Remark, text);
     }
-    let results = sweep.results(fit.as_ref(), whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
+    let own_stiffness = told.own_stiffness;
+    let results = sweep.results(fit.as_ref(), own_stiffness, whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
     let stiffness = sweep.stiffness.map(|stiffness| stiffness.value);
-    let history = SweepHistory { steps: sweep.steps, pairs, middles, stiffness, fit };
+    let history = SweepHistory { steps: sweep.steps, pairs, middles, stiffness, own_stiffness, fit };
     Performed { history: History::Sweep(history), results, stop }
+}
+
+/// Damping that gives energy back is none.
+fn negative(fit: &LineFit) -> Option<String> {
+    (fit.slope + fit.slope_error < 0.0).then(|| {
+        let damping = readable(fit.slope, Dimension::DAMPING);
+        format!("c is {damping}, and no specimen gives energy back: what changed between the strokes is not damping")
+    })
 }
 
 fn steady_from(seconds: f64, lag: f64) -> f64 {
@@ -81,6 +102,15 @@ pub(super) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
 fn fit_of(pairs: &[(f64, f64)]) -> Option<LineFit> {
     let (velocities, forces): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
     fit_damping(&velocities, &forces)
+}
+
+/// What strokes tell beside c.
+struct Told {
+    /// By their first steps: strokes that flowed, where others did not.
+    left_out: Vec<usize>,
+    /// K and its standard error, N/m, where it is not the plan's.
+    own_stiffness: Option<(f64, f64)>,
+    remarks: Vec<String>,
 }
 
 /// Steps of one stroke, out and back.
@@ -129,6 +159,8 @@ impl Sweep {
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
             let middle = inputs.number("about", about, Dimension::LENGTH)?;
+            // What the specimen flows on the first way out it has flowed before anything is read.
+            session.go_to(middle + 0.5 * stroke, None)?;
             session.go_to(middle - 0.5 * stroke, None)?;
         }
         let home = session.commanded();
@@ -224,8 +256,47 @@ impl Sweep {
         self.strokes.iter().flat_map(told).collect()
     }
 
-    fn results(&self, fit: Option<&LineFit>, mass: Option<f64>) -> Vec<NamedResult> {
-        let ratio = fit.zip(self.stiffness).zip(mass).map(|((fit, stiffness), mass)| {
+    /// What the strokes tell of the specimen beside its damping.
+    fn told(&self) -> Told {
+        let pairs = |stroke: &Stroke| -> Vec<OutAndBack> {
+            let pairs = self.pairs(stroke).into_iter();
+            pairs.map(|((_, half_difference), [place, mean])| OutAndBack { place, half_difference, mean }).collect()
+        };
+        let strokes: Vec<(&Stroke, Vec<OutAndBack>)> = self.strokes.iter().map(|stroke| (stroke, pairs(stroke))).collect();
+        let flowed: Vec<(&Stroke, f64)> =
+            strokes.iter().filter_map(|(stroke, pairs)| Some((*stroke, change_along(pairs)?))).collect();
+        let all = flowed.len() == strokes.len();
+        let mut remarks: Vec<String> = Vec::new();
+        for (stroke, change) in &flowed {
+            let (speed, change) = (readable(stroke.speed, Dimension::VELOCITY), readable(*change, Dimension::FORCE));
+            let so = if all { "c and the Coulomb force are of its loop too" } else { "it is left out" };
+            remarks.push(format!(
+                "the stroke at {speed} comes back by another way: half of out minus back changes by {change} along it, as of a specimen \
+                 that flows; {so}"
+            ));
+        }
+        let left_out: Vec<usize> = flowed.iter().filter(|_| !all).map(|(stroke, _)| stroke.out.start).collect();
+        let kept = strokes.iter().filter(|(stroke, _)| !left_out.contains(&stroke.out.start));
+        let own_stiffness = own_stiffness(&kept.map(|(_, pairs)| pairs.as_slice())).filter(|own| self.contradicts(*own));
+        if let (Some((own, _)), Some(assumed)) = (own_stiffness, self.stiffness) {
+            let (own, assumed) = (readable(own, Dimension::STIFFNESS), readable(assumed.value, Dimension::STIFFNESS));
+            remarks.push(format!(
+                "the strokes run at {own}, not at the {assumed} of `stiffness`: the damping ratio is told with theirs"
+            ));
+        }
+        Told { left_out, own_stiffness, remarks }
+    }
+
+    /// Whether the K of the strokes (N/m, with its standard error) is another than the plan's.
+    fn contradicts(&self, (own, error): (f64, f64)) -> bool {
+        let Some(assumed) = self.stiffness else { return false };
+        let sure = CONTRADICTS * error.hypot(assumed.uncertainty.unwrap_or(0.0));
+        own > 0.0 && (own - assumed.value).abs() > sure.max(OFF_STIFFNESS * assumed.value)
+    }
+
+    fn results(&self, fit: Option<&LineFit>, own: Option<(f64, f64)>, mass: Option<f64>) -> Vec<NamedResult> {
+        let stiffness = own.map(|(value, error)| Estimate { value, uncertainty: Some(error) }).or(self.stiffness);
+        let ratio = fit.zip(stiffness).zip(mass).map(|((fit, stiffness), mass)| {
             let ratio = damping_ratio(fit.slope, stiffness.value, mass);
             // ζ = c/(2√(KM)): u(ζ)² = (u(c)/(2√(KM)))² + (ζ·u(K)/(2K))².
             let by_damping = damping_ratio(fit.slope_error, stiffness.value, mass);

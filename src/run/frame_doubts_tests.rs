@@ -35,6 +35,7 @@ pub(super) fn shaken(storeys: Vec<Storey>, accelerations: Vec<f64>, time_step: f
     let ground = Ground {
         name: "quake".to_owned(),
         file: "quake.csv".to_owned(),
+        unit: 1.0,
         scale: 1.0,
         scale_uncertainty: 0.0,
         times,

@@ -11,10 +11,11 @@ use super::stepping::stable;
 use super::stop::Stop;
 use super::strike::Strike;
 use crate::formula::Estimate;
+use crate::mechanics::approach::Approach;
 use crate::mechanics::contact::ContactLaw;
-use crate::mechanics::critical_time_step;
+use crate::mechanics::energy::UNBALANCED;
 use crate::mechanics::impact::ImpactInput;
-use crate::mechanics::method::longest_stable_step;
+use crate::mechanics::stability::{Met, longest_stable_step};
 use crate::mechanics::structure::Structure;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until, step_count, steps_in};
@@ -68,6 +69,10 @@ pub(super) fn blow(plan: &Impact, setting: &Setting, doubts: &Doubts<'_>, before
 #[derive(Clone, Copy)]
 pub(super) struct Setting {
     pub input: ImpactInput,
+    /// What the critical time step was found for: of several blows the fastest.
+    pub approach: Approach,
+    /// Its striker before it falls, m/s.
+    pub fastest: f64,
     /// s
     pub critical_time_step: f64,
     pub steps: u64,
@@ -88,7 +93,8 @@ impl Setting {
         let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));
         let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
         let law = law(&plan.contact, inputs)?;
-        let critical_time_step = critical_time_step(mass, stiffness);
+        let approach = Approach::of(striker, law.stiffness());
+        let critical_time_step = approach.critical_time_step(mass, stiffness);
         let stepping = &plan.stepping;
         let critical = Some(critical_time_step);
         let time_step = inputs.positive_estimate("time_step", &stepping.time_step, Dimension::TIME, critical)?.value;
@@ -103,7 +109,7 @@ impl Setting {
             });
         }
         // What `check` could not know yet: the stability limit by the stiffness of an earlier procedure.
-        stable(stepping, time_step, longest_stable_step(stepping.integrator, stiffness / mass, 0.0))?;
+        stable(stepping, time_step, longest_stable_step(stepping.integrator, &Met::one(mass, damping, stiffness, stiffness)))?;
         let structure = Structure {
             mass,
             damping,
@@ -116,13 +122,13 @@ impl Setting {
             resolution: noise.resolution,
         };
         let input = structure.struck_by(striker, stepping);
-        Ok(Self { input, critical_time_step, steps: step_count(duration, time_step), pause })
+        Ok(Self { input, approach, fastest: striker.velocity, critical_time_step, steps: step_count(duration, time_step), pause })
     }
 
     /// With more mass of the structure, kg.
     pub(super) fn heavier(&mut self, mass: f64) {
         self.input.mass += mass;
-        self.critical_time_step = critical_time_step(self.input.mass, self.input.stiffness);
+        self.critical_time_step = self.approach.critical_time_step(self.input.mass, self.input.stiffness);
     }
 }
 
@@ -161,8 +167,14 @@ const SECONDS_PER_METRE: Dimension = Dimension {
     time: crate::quantity::Exponent::whole(1),
 };
 
-/// Share of the input energy that the scheme may make or lose before a reader is told: an unstable run is off by far more.
-const UNBALANCED: f64 = 0.1;
+/// Says that the scheme made or lost more of the energy than a reader may take for the specimen's.
+pub(super) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
+    if energy_error.is_nan() || energy_error.abs() > UNBALANCED {
+        let off = significant(100.0 * energy_error, 3);
+        let text = format!("the energy balance is off by {off} % of the energy put in: a shorter time step is needed");
+        session.event(EventKind::Remark, text);
+    }
+}
 
 /// What a reader of the results must know of how the run ended.
 pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
@@ -173,11 +185,7 @@ pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Sessio
         let text = "the structure was still moving on at the end: its largest displacement is not a peak";
         session.event(EventKind::Remark, text.to_owned());
     }
-    if summary.energy_error.abs() > UNBALANCED {
-        let off = significant(100.0 * summary.energy_error, 3);
-        let text = format!("the energy balance is off by {off} % of the energy put in: a shorter time step is needed");
-        session.event(EventKind::Remark, text);
-    }
+    unbalanced(summary.energy_error, session);
     if summary.last_blow_cut {
         let text = "the striker stopped with a contact force in its last step: the last blow is cut";
         session.event(EventKind::Remark, text.to_owned());

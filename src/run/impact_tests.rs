@@ -4,7 +4,7 @@ use super::testing::{elastic_plan, every, number, result_of, run_unwatched};
 use super::{Inspection, Observer, StepReport, run};
 use crate::formula::Formula;
 use crate::mechanics::contact::StepState;
-use crate::plan::{Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Stepping, Until, VirtualLink};
+use crate::plan::{Contact, Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Stepping, Until, VirtualLink};
 use crate::record::{EventKind, History, ImpactStep, Outcome, Record};
 use crate::rig::VirtualRig;
 
@@ -84,6 +84,29 @@ fn pauses_take_rig_time_and_a_time_step_may_be_critical() {
     let way: f64 = steps.windows(2).map(|pair| (pair[1].command - pair[0].command).abs()).sum();
     let by_hand = way / 1e-3 + 0.5 * count(last.step);
     assert!((last.wall_time - by_hand).abs() < 1e-6, "{} {by_hand}", last.wall_time);
+}
+
+/// Under a contact of finite stiffness the critical step is that of the contact: a step that the plan does not give must show the
+/// blow. Between free masses F = k^(2/5)(5/4 μu²)^(3/5) (Hertz); the spring gives nothing of note in so short a time.
+#[test]
+fn a_step_that_is_not_given_shows_the_blow_of_a_stiff_contact() {
+    let hertz = |step, duration| {
+        let divided = |by| {
+            let parts = (Box::new(Formula::CriticalTimeStep), Box::new(constant(by)));
+            Formula::Binary(crate::formula::Operator::Divide, parts.0, parts.1)
+        };
+        let contact = Contact::Hertz { stiffness: constant(1e9), loss: constant(0.0), force_limit: None };
+        let stepping = Stepping { time_step: divided(step), ..every(0.01) };
+        let record =
+            run_unwatched(&plan(Impact { contact, stepping, duration: constant(duration), until: Until::Duration, ..impact() }));
+        value(&record, "max_contact_force")
+    };
+    let free = 1e9_f64.powf(0.4) * (1.25_f64 * 10.0 / 11.0).powf(0.6);
+    let first = hertz(20.0, 0.5e-3);
+    assert!((first / free - 1.0).abs() < 2e-3, "{first} {free}");
+    // Later blows meet a structure that comes back, and are harder.
+    let (found, fine) = (hertz(20.0, 0.05), hertz(400.0, 0.05));
+    assert!((found / fine - 1.0).abs() < 5e-3, "{found} {fine}");
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 mod attribution;
 mod axes;
+#[cfg(test)]
+mod balance_tests;
 mod blow;
 #[cfg(test)]
 mod contacts_tests;

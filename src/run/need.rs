@@ -6,7 +6,6 @@
 //! long as its longest numbers make it. The tests hold the sum against what runs wrote.
 
 use crate::formula::{Formula, ResultReference, ResultValue, Results};
-use crate::mechanics::critical_time_step;
 use crate::plan::{
     BlowOn, DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp, StoreyImpact,
     Striker, steps_in,
@@ -185,12 +184,13 @@ impl Reckoner<'_> {
         match kind {
             ProcedureKind::StiffnessRamp(ramp) => Some(self.ramp(ramp)),
             ProcedureKind::DampingSweep(sweep) => self.sweep(sweep),
-            ProcedureKind::Impact(impact) => self.blow(impact),
+            ProcedureKind::Impact(impact) => self.blow(impact, self.plan.strikers.get(impact.striker)?),
             ProcedureKind::Escalate(escalate) => {
                 let between = moves(UNLOADING * self.way).plus(Counts { steps: UNLOADING, ..Counts::default() });
+                let fastest = escalate.fastest(self.plan.strikers.get(escalate.striker())?);
                 let blow = match &escalate.blow {
-                    BlowOn::Specimen(blow) => self.blow(blow)?,
-                    BlowOn::Storey(blow) => self.storey_blow(blow, &escalate.fastest(self.plan.strikers.get(blow.striker)?))?,
+                    BlowOn::Specimen(blow) => self.blow(blow, &fastest)?,
+                    BlowOn::Storey(blow) => self.storey_blow(blow, &fastest)?,
                 };
                 Some(blow.plus(between).times(rounded(escalate.velocities.len() as u64)))
             }
@@ -233,7 +233,8 @@ impl Reckoner<'_> {
     fn sweep(&self, sweep: &DampingSweep) -> Option<Counts> {
         let stroke = self.number(&sweep.stroke)?.abs();
         let lag = self.plan.rig.link.as_virtual().map_or(0.0, |link| link.lag);
-        let mut all = Counts { targets: self.way, ..Counts::default() };
+        // To the place and over the first stroke, back, and then stroke by stroke.
+        let mut all = Counts { targets: 2.0 * self.way, ..Counts::default() };
         for velocity in &sweep.velocities {
             let seconds = stroke / self.number(velocity)?.abs();
             let rate = sweep.rate.as_ref().map(|rate| self.number(rate));
@@ -244,8 +245,8 @@ impl Reckoner<'_> {
         Some(all)
     }
 
-    fn blow(&self, impact: &Impact) -> Option<Counts> {
-        let critical = critical_time_step(self.number(&impact.mass)?, self.number(&impact.stiffness)?);
+    fn blow(&self, impact: &Impact, striker: &Striker) -> Option<Counts> {
+        let critical = impact.critical_time_step(striker, |formula| self.number(formula))?;
         let time_step = impact.stepping.time_step.evaluate(&self.assumed, Some(critical)).ok()?.value;
         let steps = steps_in(self.number(&impact.duration)?, time_step) + 1.0;
         Some(stepped(impact.stepping.mode, steps))

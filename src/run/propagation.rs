@@ -159,13 +159,16 @@ impl<'run> Doubts<'run> {
         }
         let results = Moved { results: self.results, source, by };
         let mut inputs = Inputs::new(&results, self.procedure);
+        // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion; they share the
+        // critical time step of the fastest.
+        let faster = striker.velocity / declared.velocity;
+        striker.velocity = setting.fastest * faster;
         let mut moved = Setting::evaluate(self.plan, &striker, &mut inputs, self.noise)
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))?;
         moved.heavier(heavier);
         moved.input.time_step = setting.input.time_step;
         moved.steps = setting.steps;
-        // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion.
-        moved.input.striker_velocity = setting.input.striker_velocity * (striker.velocity / declared.velocity);
+        moved.input.striker_velocity = setting.input.striker_velocity * faster;
         Ok(Job { setting: moved, distortion })
     }
 }

@@ -7,9 +7,8 @@ use super::stop::Stop;
 use super::storey_impact;
 use super::study::Unknown;
 use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
-use crate::formula::NoResults;
-use crate::mechanics::critical_time_step;
-use crate::plan::{BlowOn, Impact, Plan, Procedure, ProcedureKind, step_count};
+use crate::formula::{Formula, NoResults};
+use crate::plan::{BlowOn, Impact, Plan, Procedure, ProcedureKind, Striker, step_count};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
 
@@ -279,11 +278,12 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
             Some(once * u64::from(ramp.repeats))
         }
         ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => None,
-        ProcedureKind::Impact(impact) => steps_of_blow(impact),
+        ProcedureKind::Impact(impact) => steps_of_blow(impact, plan.strikers.get(impact.striker)?),
         ProcedureKind::Escalate(escalate) => {
+            let fastest = escalate.fastest(plan.strikers.get(escalate.striker())?);
             let blow = match &escalate.blow {
-                BlowOn::Specimen(blow) => steps_of_blow(blow)?,
-                BlowOn::Storey(blow) => storey_impact::steps(blow, plan, &escalate.fastest(plan.strikers.get(blow.striker)?))?,
+                BlowOn::Specimen(blow) => steps_of_blow(blow, &fastest)?,
+                BlowOn::Storey(blow) => storey_impact::steps(blow, plan, &fastest)?,
             };
             let blow = blow.saturating_add(most_moves(escalate.between));
             Some(blow.saturating_mul(escalate.velocities.len() as u64))
@@ -296,8 +296,8 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     }
 }
 
-fn steps_of_blow(impact: &Impact) -> Option<u64> {
-    let critical = critical_time_step(impact.mass.constant()?, impact.stiffness.constant()?);
+fn steps_of_blow(impact: &Impact, striker: &Striker) -> Option<u64> {
+    let critical = impact.critical_time_step(striker, Formula::constant)?;
     let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
     Some(step_count(impact.duration.constant()?, time_step))
 }

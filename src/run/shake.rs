@@ -5,6 +5,7 @@
 use super::Performed;
 use super::followed::Followed;
 use super::frame_doubts::FrameDoubts;
+use super::impact::unbalanced;
 use super::inputs::Inputs;
 use super::session::Session;
 use super::shake_doubts;
@@ -55,6 +56,9 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     let summary = Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty());
     let mut results = results(shaking.history.modes.as_ref(), summary, &shaking.followed);
     if stop.is_none() {
+        if summary.is_some() {
+            unbalanced(shaking.summary.energy_error(), session);
+        }
         let doubts = FrameDoubts::of_shake(plan, whole, inputs, session);
         let mut tick = |done, of| session.study(done, of);
         let found = shake_doubts::propagate(&doubts, plan, ground, &setting, &shaking.history, &mut results, &mut tick);

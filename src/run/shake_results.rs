@@ -51,6 +51,11 @@ impl ShakeSummary {
         self.steps = state.step;
     }
 
+    /// What the balance misses, over the largest energy.
+    pub(super) const fn energy_error(&self) -> f64 {
+        self.energy_error
+    }
+
     /// J
     pub(super) const fn largest_energy(&self) -> f64 {
         self.largest_energy

@@ -6,7 +6,7 @@ use super::session::Session;
 use super::stiffness_on_the_way::OnTheWay;
 use crate::diagnostic::Code;
 use crate::mechanics::frame::{FrameMatrices, drifts, shears, storeys_of};
-use crate::mechanics::method::longest_stable_step;
+use crate::mechanics::stability::{Met, longest_stable_step};
 use crate::plan::{Integrator, Mode, Stepping};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
@@ -80,14 +80,16 @@ impl Stiffer {
         let rounding = if self.judged.moving { 1e-4 } else { 1e-9 } * operator_stiffness;
         let stiffness = |value| readable(value, Dimension::STIFFNESS);
         let time = |value| readable(value, Dimension::TIME);
+        let limit =
+            |stiffness: f64| longest_stable_step(integrator, &Met::one(1.0 / mobility, 0.0, stiffness, operator_stiffness));
         // Explicit Newmark is bound by what the specimen is, not by what it was taken for.
         if integrator == Integrator::Explicit {
             let sure = measured - SURE * spread - rounding;
-            if sure <= 0.0 || time_step <= longest_stable_step(integrator, sure * mobility, 0.0) {
+            if sure <= 0.0 || time_step <= limit(sure) {
                 return None;
             }
             self.said = true;
-            let limit = time(longest_stable_step(integrator, measured * mobility, 0.0));
+            let limit = time(limit(measured));
             return Some(format!(
                 "{}: {what} reached {}: explicit Newmark is stable up to {limit} there, and the time step is {}",
                 Code::StifferThanOperator,
@@ -99,7 +101,7 @@ impl Stiffer {
             return None;
         }
         self.said = true;
-        let limit = longest_stable_step(integrator, 0.0, (measured - operator_stiffness) * mobility);
+        let limit = limit(measured);
         let so = if time_step > limit { "which it is beyond" } else { "which it is within" };
         Some(format!(
             "{}: {what} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",

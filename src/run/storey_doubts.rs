@@ -8,9 +8,8 @@ use super::stepping;
 use super::stop::Stop;
 use super::storey_impact::Setting;
 use super::study::{Taken, Tick, Unknown, over_rules};
-use crate::mechanics::contact::ContactLaw;
+use crate::mechanics::approach::Approach;
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
-use crate::mechanics::frame_properties::Approach;
 use crate::mechanics::frame_rerun::{Blow, BlowOutcome, FrameRun};
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::rerun::OUTCOMES;
@@ -132,8 +131,9 @@ fn moved(
             _ => {}
         }
     }
-    let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
-    let critical_time_step = properties.critical_on_impact(plan.struck, &Approach::of(&striker, hertz));
+    // Blows of a row have the critical time step of the fastest.
+    let fastest = Striker { velocity: striker.velocity * (setting.fastest / setting.striker.velocity), ..striker.clone() };
+    let critical_time_step = properties.critical_on_impact(plan.struck, &Approach::of(&fastest, law.stiffness()));
     let stiffness = frame.stiffness[plan.struck][plan.struck];
     let body = ImpactInput {
         mass: properties.struck_mass(plan.struck),

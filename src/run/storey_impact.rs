@@ -13,13 +13,14 @@ use super::stop::Stop;
 use super::storey_doubts;
 use super::storey_summary::{StoreySummary, results};
 use super::striking::Striking;
-use crate::formula::NoResults;
+use crate::formula::{Formula, NoResults};
+use crate::mechanics::approach::Approach;
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::frame::Damping;
-use crate::mechanics::frame_properties::{Approach, FrameProperties};
+use crate::mechanics::frame_properties::FrameProperties;
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::structure::Structure;
-use crate::plan::{Contact, Frame, Plan, StoreyImpact, Striker, step_count};
+use crate::plan::{Frame, Plan, StoreyImpact, Striker, step_count};
 use crate::quantity::Dimension;
 use crate::record::{History, ImpactHistory, NamedResult, StoreyImpactHistory};
 
@@ -103,11 +104,7 @@ fn history_of(plan: &StoreyImpact, setting: Option<&Setting>) -> StoreyImpactHis
 pub(super) fn steps(impact: &StoreyImpact, plan: &Plan, striker: &Striker) -> Option<u64> {
     let frame = plan.specimens.get(impact.specimen)?.frame.as_ref()?;
     let properties = FrameProperties::of(frame, &Damping::None).ok()?;
-    let hertz = match &impact.contact {
-        Contact::Hertz { stiffness, .. } => Some(stiffness.constant()?),
-        _ => None,
-    };
-    let approach = Approach::of(striker, hertz);
+    let approach = impact.contact.approach(striker, Formula::constant)?;
     let critical = properties.critical_on_impact(impact.struck, &approach);
     let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
     Some(step_count(impact.duration.constant()?, time_step))
@@ -120,6 +117,8 @@ pub(super) struct Setting {
     pub(super) striker: Striker,
     /// The struck floor and the striker as an impact on one degree of freedom has them.
     pub(super) body: ImpactInput,
+    /// Of the blow that the critical time step was found for, m/s.
+    pub(super) fastest: f64,
 }
 
 impl Setting {
@@ -132,8 +131,7 @@ impl Setting {
     ) -> Result<Self, Stop> {
         let properties = stepping::properties(frame, &plan.damping, inputs)?;
         let law = law(&plan.contact, inputs)?;
-        let hertz = if let ContactLaw::Hertz { stiffness, .. } = law { Some(stiffness) } else { None };
-        let critical = properties.critical_on_impact(plan.struck, &Approach::of(striker, hertz));
+        let critical = properties.critical_on_impact(plan.struck, &Approach::of(striker, law.stiffness()));
         let time_step = stepping::time_step(&plan.stepping, (frame, &properties), critical, inputs, session)?;
         let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
         let steps = FrameSteps::new(properties, &plan.stepping, (time_step, critical, duration), inputs)?;
@@ -151,7 +149,7 @@ impl Setting {
             resolution: noise.resolution,
         };
         let body = body.struck_by(striker, &plan.stepping);
-        Ok(Self { frame: steps, law, striker: striker.clone(), body })
+        Ok(Self { frame: steps, law, striker: striker.clone(), body, fastest: striker.velocity })
     }
 
     /// The same with a striker of another velocity, m/s.

@@ -9,7 +9,10 @@ const ALPHA: Field = Field::quantity("alpha", Dimension::NUMBER, "numerical damp
     .within(-1.0 / 3.0, 0.0);
 
 const INTEGRATORS: &[Variant] = &[
-    Variant::word("tangent", "Newmark with the measured tangent stiffness, eqs. 2 to 6; stable at every step"),
+    Variant::word(
+        "tangent",
+        "Newmark with the measured tangent stiffness, eqs. 2 to 6; stable at every step while no slope changes",
+    ),
     Variant::word("explicit", "explicit Newmark: needs no stiffness; stable for Δt ≤ T/π"),
     Variant::with("alpha_os", &[ALPHA], "α-operator splitting with the initial stiffness: softening specimens, noisy cells"),
 ];

@@ -185,9 +185,13 @@ pub(super) const IMPACT: BlockKind = BlockKind {
         methods::ALLOW_UNSTABLE,
         methods::I_MODIFICATION,
         methods::MODE,
-        Field::quantity("time_step", Dimension::TIME, "Δt; may read `critical`, Δt of eq. 7")
-            .above_zero()
-            .or_said("critical / 20"),
+        Field::quantity(
+            "time_step",
+            Dimension::TIME,
+            "Δt; may read `critical`, Δt of eq. 7, under `hertz` a tenth of the shortest period with the contact closed",
+        )
+        .above_zero()
+        .or_said("critical / 20"),
         Field::quantity("duration", Dimension::TIME, "upper bound of virtual time").required("duration = 50 ms").above_zero(),
         Field::choice(
             "until",

@@ -97,7 +97,11 @@ pub(super) const IMPACT: &[ResultKind] = &[
     FOLLOWED[2],
     FOLLOWED[3],
     ResultKind::new("time_step", Dimension::TIME, "time step of the run"),
-    ResultKind::measured("critical_time_step", Dimension::TIME, "critical time step (Melo et al. 2006, eq. 7)"),
+    ResultKind::measured(
+        "critical_time_step",
+        Dimension::TIME,
+        "critical time step (Melo et al. 2006, eq. 7; under `hertz` of the closed contact)",
+    ),
     ResultKind::count("steps", "number of steps"),
     ResultKind::measured("contact_duration", Dimension::TIME, "virtual time of the first blow, in whole steps").of_storey(),
     ResultKind::measured("rebound_velocity", Dimension::VELOCITY, "speed of the striker on its way back at the end of the run")

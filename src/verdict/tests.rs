@@ -214,3 +214,32 @@ fn the_simple_rule_knows_no_band() {
     assert_eq!((outcome.verdict, outcome.guard_band), (Verdict::Pass, None));
     assert!(outcome.uncertainty.is_some());
 }
+
+/// A run whose balance is off by more than half decides nothing of its motion; the balance itself it does decide.
+#[test]
+fn what_a_scheme_made_of_its_energy_decides_nothing() {
+    let with = |name, error: ResultValue| {
+        let mut record = record(Outcome::Completed);
+        let error = NamedResult { name, value: error, dimension: Dimension::NUMBER, contributions: Vec::new() };
+        record.procedures[0].results.push(error);
+        record
+    };
+    let verdict = |record: &Record, name| {
+        let wanted =
+            Requirement { label: String::new(), conditions: vec![condition(result(name), compare(Comparison::LessEqual, 8.5))] };
+        assess_requirement(&wanted, DecisionRule::Simple, record)
+    };
+    let number = |value| ResultValue::Number { value: Some(value), uncertainty: None };
+    for (error, expected) in
+        [(0.49, Verdict::Pass), (-0.49, Verdict::Pass), (0.51, Verdict::Inconclusive), (-94.0, Verdict::Inconclusive)]
+    {
+        let record = with("energy_error", number(error));
+        let found = verdict(&record, "max_displacement");
+        assert_eq!(found.verdict, expected, "{error}");
+        assert_eq!(found.conditions[0].reason.is_some(), expected == Verdict::Inconclusive);
+        assert_eq!(verdict(&record, "energy_error").verdict, Verdict::Pass);
+    }
+    assert_eq!(verdict(&with("energy_error", number(f64::NAN)), "max_displacement").verdict, Verdict::Inconclusive);
+    let blows = with("energy_errors", ResultValue::List(vec![0.01, -0.7]));
+    assert_eq!(verdict(&blows, "max_displacement").verdict, Verdict::Inconclusive);
+}

@@ -3,10 +3,15 @@
 use std::fs::File;
 use std::io::{Read as _, Write as _};
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
+use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, Winsize, tcgetattr, tcsetwinsize};
 use serde_json::Value;
+
+/// Longest wait for anything, far beyond what it takes: only a program that does not hear reaches it.
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// An inspection comes first, so that the screen is there however fast the machine is.
 const PLAN: &str = r#"plan "A test with a look" {
@@ -78,8 +83,12 @@ impl Terminal {
 
     /// Reads until this has been drawn since the last key.
     fn wait_for(&mut self, text: &str) {
-        let mut buffer = [0; 4096];
+        let (mut buffer, since) = ([0; 4096], Instant::now());
         while !self.seen.contains(text) {
+            if since.elapsed() > PATIENCE {
+                self.child.kill().unwrap();
+                panic!("in vain for {text:?}:\n{}", self.seen);
+            }
             let count = self.master.read(&mut buffer).unwrap();
             assert!(count > 0, "the terminal closed before {text:?}:\n{}", self.seen);
             self.seen.push_str(&String::from_utf8_lossy(&buffer[..count]));
@@ -89,6 +98,14 @@ impl Terminal {
     fn press(&mut self, keys: &str) {
         self.seen.clear();
         self.master.write_all(keys.as_bytes()).unwrap();
+    }
+
+    /// Another size of the window, as a window manager gives it; waits until the screen is drawn for it.
+    fn resize(&mut self, columns: u16) {
+        self.seen.clear();
+        tcsetwinsize(&self.master, Winsize { ws_row: 30, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 }).unwrap();
+        kill_process(Pid::from_child(&self.child), Signal::WINCH).unwrap();
+        self.wait_for("hold now");
     }
 
     /// The exit code and the summary.
@@ -139,6 +156,20 @@ fn ctrl_c_and_no_and_the_end_of_the_input_stop_and_none_is_a_yes() {
         let (code, summary) = terminal.ended();
         assert_eq!(code, Some(4), "{keys:?}: {summary:#}");
         assert!(events(&summary).iter().any(|text| text.contains(reason)), "{keys:?}: {summary:#}");
+    }
+}
+
+#[test]
+fn the_first_key_after_the_window_got_another_size_is_heard() {
+    for (key, reason) in [("h", "on request"), ("q", "stopped on request"), ("\u{3}", "stopped on request")] {
+        let mut terminal = Terminal::run(&["--operator", "B"]);
+        terminal.wait_for("on?");
+        terminal.resize(110);
+        terminal.resize(90);
+        terminal.press(key);
+        let (code, summary) = terminal.ended();
+        assert_eq!(code, Some(4), "{key:?}: {summary:#}");
+        assert!(events(&summary).iter().any(|text| text.contains(reason)), "{key:?}: {summary:#}");
     }
 }
 

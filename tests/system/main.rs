@@ -17,6 +17,7 @@ mod lost;
 mod named;
 mod needs;
 mod person;
+mod resumed;
 mod served;
 mod signed;
 mod stage;

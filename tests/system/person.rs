@@ -5,7 +5,7 @@ use std::fs;
 
 use rustix::process::Signal;
 
-use crate::stage::{Ended, Stage, code, finish, signal, start, wait};
+use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
 use crate::terminal::Terminal;
 
 /// The rig stands where it was held, and the record can be gone on with.
@@ -91,4 +91,74 @@ fn a_record_cut_short_says_so() {
     fs::write(stage.journal(), cut.join("\n") + "\n").unwrap();
     let verified = stage.verify();
     assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
+}
+
+/// Waits until the run stands still.
+fn standing(stage: &Stage) -> usize {
+    loop {
+        let before = stage.moves().len();
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        if stage.moves().len() == before {
+            return before;
+        }
+    }
+}
+
+#[test]
+fn the_first_key_after_the_window_got_another_size_holds_the_rig() {
+    // A step takes ten seconds at this speed: nobody waits for its end.
+    let slow = |plan: &str| {
+        plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um")
+            .replace("probe(0.1 mm", "probe(0.02 mm")
+    };
+    for (keys, resized) in [("h", true), ("\u{3}\u{3}", true), ("h", false)] {
+        let stage = Stage::of(slow, "");
+        let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
+        stage.after_moves(3);
+        if resized {
+            terminal.resize(110);
+            terminal.redrawn("hold now");
+        }
+        terminal.press(keys);
+        let code = code(&mut terminal.child);
+        assert_eq!(code, Some(4), "{}", terminal.shown());
+        assert_eq!(stage.moves().len(), 3, "{}", stage.log());
+        let journal = fs::read_to_string(stage.journal()).unwrap();
+        assert_eq!(journal.matches(" STEP ").count(), 0, "held on its way, not at its end");
+    }
+}
+
+#[test]
+fn a_key_ends_a_monitor_whose_window_got_another_size() {
+    let stage = Stage::new();
+    for key in ["q", "\u{3}"] {
+        let mut terminal = Terminal::with_screen(&mut stage.tool("monitor", &["--every", "20 ms"]));
+        until("the screen", || terminal.shown().contains("MONITOR"));
+        terminal.resize(110);
+        terminal.redrawn("MONITOR");
+        terminal.press(key);
+        assert_eq!(code(&mut terminal.child), Some(0), "{}", terminal.shown());
+    }
+}
+
+#[test]
+fn a_run_is_paused_taken_a_step_further_noted_and_gone_on_with_by_keys() {
+    let stage = Stage::new();
+    let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(3);
+    terminal.press("p");
+    until("it pauses", || terminal.shown().contains("PAUSED"));
+    let paused = standing(&stage);
+    terminal.press("s");
+    until("one step", || stage.moves().len() > paused);
+    assert_eq!(standing(&stage), paused + 1, "one step, and no more");
+    terminal.press("ino crack\r");
+    terminal.press("p");
+    assert_eq!(code(&mut terminal.child), Some(0), "{}", terminal.shown());
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(stage.path("run").join("summary.json")).unwrap()).unwrap();
+    let events: Vec<&str> = summary["events"].as_array().unwrap().iter().filter_map(|event| event["text"].as_str()).collect();
+    let place = |text: &str| events.iter().position(|event| *event == text);
+    let said = ["paused (A. Tester)", "no crack (A. Tester)", "went on (A. Tester)"].map(place);
+    assert!(said.is_sorted() && said.iter().all(Option::is_some), "{events:#?}");
+    assert!(!stage.proven().contains("INCOMPLETE"));
 }

@@ -1,5 +1,5 @@
-//! A person at a terminal, as a program sees one: a pseudo-terminal too small for the screen. In: what is typed. Out: a
-//! program whose questions are answered, or not.
+//! A person at a terminal, as a program sees one: a pseudo-terminal too small for the screen, or large enough. In: what is
+//! typed. Out: a program whose questions are answered, or not.
 
 use std::fs::File;
 use std::io::{Read as _, Write as _};
@@ -7,9 +7,11 @@ use std::os::unix::ffi::OsStrExt as _;
 use std::process::{Child, Command};
 use std::sync::{Arc, Mutex};
 
+use rustix::process::Signal;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{Winsize, tcsetwinsize};
 
-use crate::stage::until;
+use crate::stage::{signal, until};
 
 pub struct Terminal {
     pub child: Child,
@@ -20,9 +22,19 @@ pub struct Terminal {
 impl Terminal {
     /// Starts a program that a person sits in front of.
     pub fn start(command: &mut Command) -> Self {
+        Self::of_size(0, command)
+    }
+
+    /// Starts a program that has the screen to itself.
+    pub fn with_screen(command: &mut Command) -> Self {
+        Self::of_size(100, command.env("TERM", "xterm-256color").env("LC_ALL", "C.UTF-8"))
+    }
+
+    fn of_size(columns: u16, command: &mut Command) -> Self {
         let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
         grantpt(&keys).unwrap();
         unlockpt(&keys).unwrap();
+        tcsetwinsize(&keys, size(columns)).unwrap();
         let name = ptsname(&keys, Vec::new()).unwrap();
         let path = std::ffi::OsStr::from_bytes(name.as_bytes());
         let end = File::options().read(true).write(true).open(path).unwrap();
@@ -44,9 +56,29 @@ impl Terminal {
         String::from_utf8_lossy(&self.shown.lock().unwrap()).into_owned()
     }
 
+    pub fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).unwrap();
+    }
+
+    /// Waits until this is drawn anew.
+    pub fn redrawn(&self, text: &str) {
+        let before = self.shown().len();
+        until(text, || self.shown().get(before..).is_some_and(|shown| shown.contains(text)));
+    }
+
+    /// Another size of the window, as a window manager gives it.
+    pub fn resize(&self, columns: u16) {
+        tcsetwinsize(&self.keys, size(columns)).unwrap();
+        signal(&self.child, Signal::WINCH);
+    }
+
     /// Waits for a question, then types.
     pub fn answer(&mut self, question: &str, keys: &str) {
         until(question, || self.shown().contains(question));
         self.keys.write_all(keys.as_bytes()).unwrap();
     }
+}
+
+const fn size(columns: u16) -> Winsize {
+    Winsize { ws_row: if columns == 0 { 0 } else { 30 }, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 }
 }

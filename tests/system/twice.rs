@@ -50,3 +50,32 @@ fn on_one_record() {
     assert_eq!(resumed.code, Some(0), "{}", resumed.told);
     assert_eq!(stage.verify().code, Some(0));
 }
+
+#[test]
+fn a_report_of_a_run_that_is_going_on_is_refused_and_spoils_nothing() {
+    let stage = Stage::new();
+    let run = start(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(8);
+    signal(&run, Signal::STOP);
+    for more in [&[][..], &["--out", "elsewhere"]] {
+        let report = wait(Command::new(PSD).arg("report").arg(stage.path("run")).args(more).current_dir(stage.path("")));
+        assert!(report.code == Some(3) && report.told.contains("in use by another psd"), "{}", report.told);
+    }
+    signal(&run, Signal::CONT);
+    let ran = finish(run);
+    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    assert!(!stage.proven().contains("INCOMPLETE") && !stage.path("elsewhere").exists());
+}
+
+#[test]
+fn results_that_somebody_else_put_there_are_not_overwritten_and_the_way_out_is_told() {
+    let stage = Stage::new();
+    let run = start(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(8);
+    fs::write(stage.path("run").join("summary.json"), "{}").unwrap();
+    let ran = finish(run);
+    assert!(ran.code == Some(3) && ran.told.contains("`psd report RUN --out FOLDER`"), "{}", ran.told);
+    assert_eq!(fs::read(stage.path("run").join("summary.json")).unwrap(), b"{}");
+    let report = wait(Command::new(PSD).arg("report").arg(stage.path("run")).arg("--out").arg(stage.path("anew")));
+    assert_eq!(report.code, Some(0), "{}", report.told);
+}

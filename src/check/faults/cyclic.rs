@@ -24,10 +24,11 @@ pub fn no_use_with_rate(field: &str, span: Span, rate: Span) -> Diagnostic {
         .help(format!("leave out `{field}`, or `rate`"))
 }
 
-pub fn blow_on_blow(head: Span, before: &str, before_at: Span, help: &str) -> Diagnostic {
-    Diagnostic::new(Code::BlowOnBlow, format!("this blow begins where `{before}` ended: under load, and at rest"))
+/// `what` begins where `before` ended.
+pub fn blow_on_blow((what, head): (&str, Span), (before, before_at, ends): (&str, Span, &str), help: &str) -> Diagnostic {
+    Diagnostic::new(Code::BlowOnBlow, format!("this {what} begins where `{before}` ended: under load, and at rest"))
         .at(head, "begins there")
-        .at(before_at, "ends near its largest displacement")
+        .at(before_at, ends.to_owned())
         .help(help)
 }
 

@@ -1,4 +1,4 @@
-//! Faults and warnings of real rigs: E606 to E614, E619, W707, W708, W711. In: what was found and where. Out: diagnostics.
+//! Faults and warnings of real rigs: E606 to E614, E619, W707, W708, W711, W727. In: what was found and where. Out: diagnostics.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
@@ -7,6 +7,9 @@ use crate::quantity::Dimension;
 use crate::schema::Field;
 use crate::source::Span;
 use crate::syntax::ast::Ident;
+
+/// The force of a probe over the noise of a reading, at least.
+pub const GATE_OVER_NOISE: f64 = 10.0;
 
 /// `a`, `b` and `c`
 fn all_of(words: &[&str]) -> String {
@@ -251,6 +254,31 @@ pub fn drift_within_noise(
     )
     .at(at, format!("the {name} of one reading is {size}"))
     .help(format!("allow at least {reach}, or measure with less {name}"))
+}
+
+/// `probe` m, of which the softest specimen that passes (N/m) makes too little force beside the noise of a reading, N.
+pub fn gate_within_noise(probe: f64, softest: f64, noise: f64, at: Span) -> Diagnostic {
+    // Two digits, upwards.
+    let least = GATE_OVER_NOISE * noise / softest;
+    let digit = 10f64.powf(least.log10().floor() - 1.0);
+    let least = (least / digit * (1.0 - 1e-9)).ceil() * digit;
+    Diagnostic::new(
+        Code::GateWithinNoise,
+        format!(
+            "a probe of {} does not stand out of the noise: a sound rig may fail its gate by chance",
+            shown(probe, Dimension::LENGTH)
+        ),
+    )
+    .at(
+        at,
+        format!(
+            "{} at {}, and the noise of one reading is {}",
+            shown(probe * softest, Dimension::FORCE),
+            shown(softest, Dimension::STIFFNESS),
+            shown(noise, Dimension::FORCE)
+        ),
+    )
+    .help(format!("move at least {}: ten times the noise", shown(least, Dimension::LENGTH)))
 }
 
 pub fn resolution_unknown(rig: &str, at: Span) -> Diagnostic {

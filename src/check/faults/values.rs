@@ -260,3 +260,8 @@ pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Dia
         .at(procedure, "runs only later")
         .help("procedures run in the order written: move that one up")
 }
+
+/// What is written and can do nothing here: why, and the way out.
+pub fn no_effect(message: String, span: Span, label: &str, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::NoEffect, message).at(span, label.to_owned()).help(help.to_owned())
+}

@@ -40,8 +40,8 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
         speed: arguments.speed.as_deref().map(|speed| number(speed, Dimension::VELOCITY, "--speed", "0.5 mm/s")).transpose()?,
     };
     let attendance = real_rig::named(attendance, plan)?;
-    let wish = Wish::default();
-    let _signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+    let wish = Wish::default().letting_go(arguments.let_go);
+    let _signals = Signals::holding(&wish).map_err(Failure::Signals)?;
     let by = real_rig::operator(plan, &attendance).unwrap_or_else(|| "somebody".to_owned());
     let person = Person { lines: None, wish: &wish, yes: arguments.yes, by };
     match plan.rig.link {
@@ -131,8 +131,13 @@ struct Hand<'a> {
 
 impl Hand<'_> {
     fn drive(&mut self, specimen: &mut Specimen<'_, '_>) {
-        let ended =
-            specimen.come(format!("{}, by hand", self.person.by)).map_err(Failure::Rig).and_then(|()| self.moves(specimen));
+        let come = specimen.come(format!("{}, by hand", self.person.by)).map_err(Failure::Rig);
+        let ended = come.and_then(|()| {
+            if self.person.wish.lets_go() {
+                specimen.remark(format!("what was found held was let go of where it stands ({})", self.person.by));
+            }
+            self.moves(specimen)
+        });
         let (parting, reason) = match &ended {
             Ok(Exit::Met) => (Parting::Closed, "done".to_owned()),
             Ok(_) => (Parting::Stopped, "a limit or a person stood in the way".to_owned()),
@@ -182,7 +187,7 @@ impl Hand<'_> {
         }
     }
 
-    /// One move, in increments where the plan limits them; Ctrl-C ends it after the increment.
+    /// One move, in increments where the plan limits them; Ctrl-C holds the rig on its way.
     fn move_to(&mut self, to: &[f64], specimen: &mut Specimen<'_, '_>) -> Result<Exit, Failure> {
         let speed = self.wanted.speed;
         let at = speed.map_or_else(String::new, |speed| format!(" at {}", plain(speed, Dimension::VELOCITY, 4)));
@@ -209,12 +214,17 @@ impl Hand<'_> {
             }
             specimen.commit();
         }
+        let stopped = self.person.wish.wants_end();
         let felt = specimen.felt();
         let words = felt.displacement.iter().zip(&felt.force).map(|(displacement, force)| {
             format!("X {}   R {}\n", readable(*displacement, Dimension::LENGTH), readable(*force, Dimension::FORCE))
         });
         give(&words.collect::<String>())?;
-        Ok(Exit::Met)
+        if stopped {
+            specimen.hold();
+            tell("  stopped on request, at its end\n");
+        }
+        Ok(if stopped { Exit::Stopped } else { Exit::Met })
     }
 }
 

@@ -16,6 +16,9 @@ use crate::rig::{Identity, Reading, Rig};
 const READINGS: usize = 10;
 const APART: f64 = 0.1;
 
+/// Of a reading: what rounding may make of the mean of ten that are alike.
+const DUST: f64 = 1e-12;
+
 /// Gives the report; exit 4 where the rig stands outside a limit.
 pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {
     let identity = rig.identity();
@@ -71,7 +74,12 @@ impl Channel {
         let (drift, drift_error) = fit_line(times, values).map_or((0.0, 0.0), |fit| (fit.slope, fit.slope_error));
         let square = |(time, value): (&f64, &f64)| (value - mean - drift * (time - middle)).powi(2);
         let squares: f64 = times.iter().zip(values).map(square).sum();
-        Self { mean, noise: (squares / (count - 2.0).max(1.0)).sqrt(), drift, drift_error }
+        let noise = (squares / (count - 2.0).max(1.0)).sqrt();
+        let lasted = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+        // What adding up leaves of the last digits is neither noise nor drift.
+        let dust = DUST * values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let told = |value: f64, over: f64| if value.abs() * over > dust { value } else { 0.0 };
+        Self { mean, noise: told(noise, 1.0), drift: told(drift, lasted), drift_error: told(drift_error, lasted) }
     }
 }
 
@@ -127,12 +135,12 @@ fn report(identity: &Identity, axes: &[Axis], plan: &Plan) -> String {
 fn channel(text: &mut String, name: &str, dimension: Dimension, rate: Dimension, channel: &Channel, limit: Interval) {
     let mean = channel.mean;
     let (noise, drift) = (channel.noise_told(dimension), channel.drift_told(rate));
-    let _ = writeln!(text, "  {name:<14}{:<12}{noise:<16}{drift}", readable(mean, dimension));
+    let _ = writeln!(text, "  {name:<14}{:<11} {noise:<15} {drift}", readable(mean, dimension));
     for (end, bound, margin) in [("low", limit.low, mean - limit.low), ("high", limit.high, limit.high - mean)] {
         if bound.is_finite() {
             let bound = plain(bound, dimension, 4);
             let past = if margin >= 0.0 { "margin" } else { "PAST THE LIMIT by" };
-            let _ = writeln!(text, "    {end:<12}{bound:<12}{past} {}", readable(margin.abs(), dimension));
+            let _ = writeln!(text, "    {end:<12}{bound:<11} {past} {}", readable(margin.abs(), dimension));
         }
     }
 }
@@ -155,10 +163,24 @@ mod tests {
         assert_eq!(channel.noise_told(Dimension::FORCE), "noise 1.1 N");
         let told = channel.drift_told(Dimension::FORCE);
         assert!(told.starts_with("drift below "), "noise is not taken for drift: {told}");
+        for alike in [0.1, 1.249_871e-3, -812.344] {
+            let still = Channel::of(&times, &[alike; 10]);
+            assert_eq!((still.noise, still.drift, still.drift_error), (0.0, 0.0, 0.0), "{alike}");
+        }
         let still = Channel::of(&times, &[0.25; 10]);
         assert_eq!(
             (still.noise_told(Dimension::FORCE), still.drift_told(Dimension::FORCE)),
             ("no noise".into(), "no drift".into())
         );
+    }
+
+    #[test]
+    fn columns_stand_apart_however_long_their_words() {
+        let mut text = String::new();
+        let still = Channel { mean: -12_345.678, noise: 0.001_234, drift: 0.0, drift_error: 1.2e-9 };
+        channel(&mut text, "displacement", Dimension::LENGTH, Dimension::VELOCITY, &still, Interval { low: -1e5, high: 1e5 });
+        for line in text.lines() {
+            assert!(line.contains(" noise ") && line.contains(" drift ") || line.contains(" margin "), "{line}");
+        }
     }
 }

@@ -195,7 +195,7 @@ fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(),
         page.draw(&View { model: &model, dialogue: &dialogue, wish, elapsed: began.elapsed().as_secs(), color })?;
         // Keys are heard at once, and the next picture is drawn when its time has come.
         while let Some(left) = FRAME.checked_sub(drawn.elapsed()).filter(|left| !left.is_zero()) {
-            let pressed = Page::keys(left)?;
+            let pressed = page.keys(left)?;
             if !pressed.is_empty() {
                 let mut state = shared.lock();
                 for key in pressed {

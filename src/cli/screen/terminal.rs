@@ -1,5 +1,6 @@
 //! The terminal while the screen stands: raw mode, another page, no cursor. In: pictures. Out: keys. However the program
-//! ends, the terminal is as it was before; a terminal that is gone is told as such and never waited for.
+//! ends, the terminal is as it was before; a terminal that is gone is told as such and never waited for. What is typed is read
+//! here, byte by byte, and not by a queue of events: one that hears of a new size of the window may miss the key beside it.
 
 use std::io::{BufWriter, Stderr, Write as _, stderr};
 use std::sync::Once;
@@ -8,13 +9,12 @@ use std::time::Duration;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use ratatui::crossterm::cursor::Show;
-use ratatui::crossterm::event;
 use ratatui::crossterm::execute;
 use ratatui::crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode, size};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::draw::{SMALLEST, View, draw};
-use super::keys::{Key, key};
+use super::keys::{Key, Keyboard};
 
 /// The terminal is gone.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +23,7 @@ pub struct Gone;
 /// Drawn on standard error: standard output may be a pipe.
 pub struct Page {
     terminal: Terminal<CrosstermBackend<BufWriter<Stderr>>>,
+    keyboard: Keyboard,
 }
 
 /// Whether the terminal is large enough for the screen.
@@ -49,7 +50,7 @@ impl Page {
             restore();
             return Err(Gone);
         };
-        Ok(Self { terminal })
+        Ok(Self { terminal, keyboard: Keyboard::default() })
     }
 
     pub fn draw(&mut self, view: &View<'_>) -> Result<(), Gone> {
@@ -57,15 +58,18 @@ impl Page {
     }
 
     /// The keys pressed, if any within the time-out.
-    pub fn keys(timeout: Duration) -> Result<Vec<Key>, Gone> {
+    pub fn keys(&mut self, timeout: Duration) -> Result<Vec<Key>, Gone> {
         if !has_input(timeout)? {
+            self.keyboard.quiet();
             return Ok(Vec::new());
         }
-        let mut keys = Vec::new();
-        while event::poll(Duration::ZERO).map_err(|_| Gone)? {
-            keys.extend(key(&event::read().map_err(|_| Gone)?));
+        let mut typed = [0; 256];
+        match rustix::io::read(std::io::stdin(), &mut typed) {
+            Ok(0) => Err(Gone),
+            Ok(count) => Ok(self.keyboard.typed(&typed[..count])),
+            Err(rustix::io::Errno::INTR | rustix::io::Errno::AGAIN) => Ok(Vec::new()),
+            Err(_) => Err(Gone),
         }
-        Ok(keys)
     }
 }
 
@@ -82,8 +86,8 @@ fn restore() {
     let _ = stderr().flush();
 }
 
-/// Whether a key waits. The library that reads keys never ends its read on a terminal that is gone: it is asked only
-/// where there is something to read.
+/// Whether a key waits. A read is begun only where there is something to read: it never waits, and ends at once on a terminal
+/// that is gone.
 fn has_input(timeout: Duration) -> Result<bool, Gone> {
     let stdin = std::io::stdin();
     let mut watched = [PollFd::new(&stdin, PollFlags::IN)];

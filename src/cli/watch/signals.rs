@@ -1,5 +1,5 @@
 //! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the
-//! second holds the rig now. The signal of a file that is too large is caught too, and does nothing.
+//! second holds the rig now; by hand, where there are no steps, the first holds it. The signal of a file that is too large is caught too, and does nothing.
 
 use std::sync::Arc;
 
@@ -15,12 +15,21 @@ pub struct Signals {
 
 impl Signals {
     pub fn caught(wish: &Wish) -> std::io::Result<Self> {
+        Self::become_wishes(wish, interrupt)
+    }
+
+    /// The first signal holds the rig already.
+    pub fn holding(wish: &Wish) -> std::io::Result<Self> {
+        Self::become_wishes(wish, Wish::hold_now)
+    }
+
+    fn become_wishes(wish: &Wish, become_wish: fn(&Wish)) -> std::io::Result<Self> {
         let mut signals = iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
         let handle = signals.handle();
         let wish = wish.clone();
         std::thread::spawn(move || {
             for _ in signals.forever() {
-                interrupt(&wish);
+                become_wish(&wish);
             }
         });
         Ok(Self { handle })

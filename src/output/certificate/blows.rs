@@ -19,7 +19,7 @@ pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, hi
     }
     let Some(ProcedureKind::Escalate(planned)) = run.plan.procedures.get(index).map(|planned| &planned.kind) else { return };
     if let (BlowOn::Storey(impact), Some(first)) = (&planned.blow, history.storeys().next()) {
-        body.push(Block::paragraph(struck(impact, first)));
+        body.push(Block::paragraph(struck(run, impact, first)));
         body.extend(first.modes.as_ref().map(|modes| frames::mode_table(modes, &first.damping_ratios)));
     }
     body.push(rows(procedure, blows));
@@ -42,13 +42,18 @@ pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, hi
 }
 
 /// Which floor was struck, and how it was integrated.
-fn struck(impact: &StoreyImpact, first: &StoreyImpactHistory) -> String {
+fn struck(run: &Run<'_>, impact: &StoreyImpact, first: &StoreyImpactHistory) -> String {
     let time = |value| number::text(value, Dimension::TIME);
     format!(
         "Floor {} is struck in every blow. Contact law: {}. {} Time step {}; the critical one is {}.",
         first.struck + 1,
         contact_law(&impact.contact),
-        frames::integrated(impact.stepping.integrator, &impact.damping, &first.damping_ratios),
+        frames::integrated(
+            frames::frame_of(run, impact.specimen),
+            impact.stepping.integrator,
+            &impact.damping,
+            &first.damping_ratios
+        ),
         time(first.blow.time_step),
         time(first.blow.critical_time_step),
     )

@@ -5,6 +5,7 @@ use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, behaviour, number};
 use super::{described, followed, method, results};
 use crate::formula::ResultValue;
+use crate::mechanics::frame::{SymmetricBand, storeys_of};
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
@@ -69,6 +70,7 @@ pub(super) fn ground(ground: &Ground) -> Block {
         ("file", ground.file.clone()),
         ("record", spacing),
         ("duration", number::stated(ground.duration(), Dimension::TIME)),
+        ("unit of its numbers", number::stated(ground.unit, Dimension::ACCELERATION)),
         ("scale", number::stated(ground.scale, Dimension::NUMBER)),
         ("largest acceleration, scaled", number::text(ground.peak(), Dimension::ACCELERATION)),
     ])
@@ -86,7 +88,7 @@ pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, h
     body.push(Block::paragraph(told(run, shake, procedure, history)));
     body.push(mode_table(modes, &history.damping_ratios));
     if !history.steps.is_empty() {
-        let frame = run.plan.specimens.get(shake.specimen).and_then(|specimen| specimen.frame.as_ref());
+        let frame = frame_of(run, shake.specimen);
         body.push(storey_table(procedure, &history.steps, frame, "max_displacement"));
         body.extend(followed::table(procedure));
         body.push(energy_balance(history));
@@ -96,7 +98,7 @@ pub(super) fn shaken(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, h
 fn told(run: &Run<'_>, shake: &Shake, procedure: &ProcedureRecord, history: &ShakeHistory) -> String {
     let time = |value| number::text(value, Dimension::TIME);
     let mut sentences = vec![
-        integrated(shake.stepping.integrator, &shake.damping, &history.damping_ratios),
+        integrated(frame_of(run, shake.specimen), shake.stepping.integrator, &shake.damping, &history.damping_ratios),
         format!("Time step {}; a tenth of the shortest period is {}.", time(history.time_step), time(history.critical_time_step)),
     ];
     sentences.extend(method::driven(shake.stepping.i_modification, shake.stepping.mode));
@@ -110,9 +112,22 @@ fn told(run: &Run<'_>, shake: &Shake, procedure: &ProcedureRecord, history: &Sha
     sentences.join(" ")
 }
 
+/// The frame that a procedure tests.
+pub(super) fn frame_of<'a>(run: &Run<'a>, specimen: usize) -> Option<&'a Frame> {
+    run.plan.specimens.get(specimen)?.frame.as_ref()
+}
+
+/// Whether the stiffness is that of one storey upon the other, each of which shows its own as it moves.
+fn of_storeys(frame: &Frame) -> bool {
+    SymmetricBand::from_dense(&frame.stiffness).is_ok_and(|stiffness| storeys_of(&stiffness).is_some())
+}
+
 /// How a frame was integrated, and how it was damped.
-pub(super) fn integrated(integrator: Integrator, damping: &ShakeDamping, ratios: &[f64]) -> String {
+pub(super) fn integrated(frame: Option<&Frame>, integrator: Integrator, damping: &ShakeDamping, ratios: &[f64]) -> String {
     let integrator = match integrator {
+        Integrator::Tangent if frame.is_some_and(|frame| !of_storeys(frame)) => {
+            "constant average acceleration with the initial stiffness matrix".to_owned()
+        }
         Integrator::Tangent => "constant average acceleration with the measured tangent stiffness".to_owned(),
         Integrator::Explicit => "explicit Newmark".to_owned(),
         Integrator::AlphaOs { alpha } => {
@@ -223,11 +238,15 @@ pub(super) fn known_entry(procedure: &ProcedureRecord, name: &str, place: usize)
 pub(super) fn unloaded(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, steps: &[UnloadStep], body: &mut Vec<Block>) {
     let (Some(first), Some(last)) = (steps.first(), steps.last()) else { return };
     let specimen = run.plan.procedures.get(index).and_then(|planned| planned.kind.specimen());
-    let frame = specimen.and_then(|specimen| run.plan.specimens.get(specimen)?.frame.as_ref());
+    let frame = specimen.and_then(|specimen| frame_of(run, specimen));
     let moves = steps.len() - 1;
+    let by = if frame.is_some_and(|frame| !of_storeys(frame)) {
+        "by the inverse of the initial stiffness matrix"
+    } else {
+        "each storey by the stiffness that its last move showed"
+    };
     body.push(Block::paragraph(format!(
-        "All floors moved together to where their forces vanish, in {moves} {}: each storey by the stiffness that its last move \
-         showed.",
+        "All floors moved together to where their forces vanish, in {moves} {}: {by}.",
         if moves == 1 { "move" } else { "moves" }
     )));
     let whole = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));

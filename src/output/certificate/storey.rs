@@ -45,7 +45,12 @@ fn told(run: &Run<'_>, impact: &StoreyImpact, procedure: &ProcedureRecord, histo
     };
     let mut sentences = vec![
         format!("Floor {} is struck. Contact law: {}.", history.struck + 1, contact_law(&impact.contact)),
-        frames::integrated(impact.stepping.integrator, &impact.damping, &history.damping_ratios),
+        frames::integrated(
+            frames::frame_of(run, impact.specimen),
+            impact.stepping.integrator,
+            &impact.damping,
+            &history.damping_ratios,
+        ),
         format!("Time step {step}; {critical} {}.", time(history.blow.critical_time_step)),
     ];
     if impact.stepping.i_modification {

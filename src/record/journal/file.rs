@@ -30,6 +30,12 @@ pub struct FileStorage {
     path: PathBuf,
 }
 
+/// A journal that nobody writes while this lives.
+#[derive(Debug)]
+pub struct Still {
+    _file: File,
+}
+
 impl FileStorage {
     /// A new, empty journal with its reserve beside it, both durable.
     ///
@@ -59,6 +65,24 @@ impl FileStorage {
         let storage = Self::locked(file, path)?;
         storage.settle()?;
         Ok(storage)
+    }
+
+    /// Holds the lock of a journal that is only read, so that nobody writes it meanwhile; a file that cannot be written needs no
+    /// more than to be read for it.
+    ///
+    /// # Errors
+    /// There is none, or another psd writes it.
+    pub fn keep_still(path: &Path) -> Result<Still, FileFault> {
+        let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
+        let file = OpenOptions::new().read(true).custom_flags(flags.cast_signed()).open(path);
+        let file = file.map_err(FileFault::of("opened", path))?;
+        if on(Guarding::Lock) {
+            file.try_lock_shared().map_err(|refused| match refused {
+                TryLockError::WouldBlock => FileFault::InUse { path: path.to_owned() },
+                TryLockError::Error(error) => FileFault::of("locked", path)(error),
+            })?;
+        }
+        Ok(Still { _file: file })
     }
 
     /// All the bytes.

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use super::asking::Asking;
 use super::{Answer, Device, DeviceFault, DeviceIdentity, Move, Sample, Talk, one_axis};
 use crate::plan::Limits;
-use crate::rig::Tally;
 use crate::rig::dialect::grbl::{self, State, Status, Word};
+use crate::rig::{JUST_STARTED, Tally};
 
 /// Settings without which a specimen is not safe: number, value, why.
 const REQUIRED: [(u64, &str, &str); 6] = [
@@ -65,7 +65,8 @@ impl GrblDevice {
         Err(DeviceFault::Refused { reason: reason.to_owned() })
     }
 
-    /// Sends a line that acts once however often it is heard, and collects what comes before its `ok`.
+    /// Sends a line that acts once however often it is heard, and collects what comes before its `ok`: settings, versions and
+    /// messages are parts of the answer, all else is none of it.
     fn command(
         &mut self,
         line: &[u8],
@@ -75,7 +76,9 @@ impl GrblDevice {
         let known = self.known;
         let (mut seen, mut lines) = (Vec::new(), Vec::new());
         self.talk.exchange(line, b"\n", |line| {
-            for word in grbl::words(line) {
+            let words = grbl::words(line);
+            let is_part = !words.is_empty() && words.iter().all(Word::is_part);
+            for word in words {
                 if let Some(fault) = fault(&word, known) {
                     return Answer::Fault(fault);
                 }
@@ -86,7 +89,7 @@ impl GrblDevice {
                 seen.push(word);
                 lines.push(line.to_vec());
             }
-            Answer::Ignore
+            if is_part { Answer::Part } else { Answer::Ignore }
         })
     }
 
@@ -111,18 +114,46 @@ impl GrblDevice {
         match self.fit_status()?.0.state {
             State::Idle => Ok(()),
             State::Held if self.unanswered => {
-                refused("a move that was never answered may wait in it: reset it while it is at rest (Ctrl-X), then begin again")
+                refused("a move that was never answered may wait in it: look at it, then begin again with `--let-go`")
             }
-            State::Held if self.held => {
-                // Nothing waits in it, so that nothing moves when it is let go of.
-                self.talk.send(grbl::RESUME)?;
-                self.until(|state| state == State::Idle)?;
-                self.held = false;
-                Ok(())
-            }
+            State::Held if self.held => self.resume_at_rest(),
             State::Held => refused("it is held by somebody else"),
             _ => refused("it is still moving"),
         }
+    }
+
+    /// Nothing waits in it, so that nothing moves when it is let go of.
+    fn resume_at_rest(&mut self) -> Result<(), DeviceFault> {
+        self.talk.send(grbl::RESUME)?;
+        self.until(|state| state == State::Idle)?;
+        self.held = false;
+        Ok(())
+    }
+
+    /// Lets go of an axis that stands held at this place, as a person wants: it forgets what was interrupted, and moves nothing.
+    /// To resume (`~`) would finish the move that was held.
+    fn let_go(&mut self, held: Status) -> Result<(), DeviceFault> {
+        let unfit = |reason: &str| Err(DeviceFault::Unfit(reason.to_owned()));
+        // Asked once more: a reset in motion would lose the position.
+        if self.status()?.0 != held {
+            return unfit("it is held and does not rest: it is not let go of");
+        }
+        self.talk.drain()?;
+        self.talk.exchange_once(grbl::RESET, b"\n", |line| {
+            let words = grbl::words(line);
+            let alarm = words.iter().find(|word| matches!(word, Word::Alarm(_)));
+            match alarm.and_then(|word| fault(word, false)) {
+                Some(fault) => Answer::Fault(fault),
+                None if words.iter().any(|word| matches!(word, Word::Banner(_))) => Answer::Take(()),
+                None => Answer::Part,
+            }
+        })?;
+        self.asking.doubt();
+        let (now, _) = self.fit_status()?;
+        if now == (Status { state: State::Idle, ..held }) {
+            return Ok(());
+        }
+        unfit("let go of, it is not idle where it was held: home it (`$H`)")
     }
 
     /// One step, m.
@@ -133,14 +164,16 @@ impl GrblDevice {
     }
 }
 
-/// Who a controller is that says its version in this line.
-pub(super) fn introduced(line: &[u8]) -> Option<DeviceIdentity> {
-    let (firmware, serial) = grbl::words(line).into_iter().find_map(|word| match word {
-        Word::Version(version, text) => Some((version, text)),
+/// Who a controller is that says its version in this line; the line before it, if there is one, is what it said of its start.
+pub(super) fn introduced(said: &[u8]) -> Option<DeviceIdentity> {
+    let words: Vec<Word> = said.split(|byte| *byte == b'\n').flat_map(grbl::words).collect();
+    let (firmware, serial) = words.iter().find_map(|word| match word {
+        Word::Version(version, text) => Some((version.clone(), text.clone())),
         _ => None,
     })?;
+    let boot = words.iter().any(|word| matches!(word, Word::Banner(_))).then(|| JUST_STARTED.to_owned());
     let simulated = serial.starts_with(super::SIMULATED);
-    Some(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot: None, simulated, raw: vec![line.to_vec()] })
+    Some(DeviceIdentity { model: "Grbl".to_owned(), serial, firmware, boot, simulated, raw: vec![said.to_vec()] })
 }
 
 /// Where the axis is by the first status of a line.
@@ -184,14 +217,27 @@ impl Device for GrblDevice {
         self.known = false;
         // It may start anew when its port is opened, and then hears nothing for a while: the question is sent again.
         self.talk.drain()?;
-        let accept = |line: &[u8]| find(line, false, |word| matches!(word, Word::Status(_)).then_some(()));
+        // What it says of its start is not asked for, and is no fault of the line.
+        let of_the_start = |line: &[u8]| grbl::words(line).iter().all(|word| matches!(word, Word::Banner(_) | Word::Message));
+        let mut before = Vec::new();
+        let accept = |line: &[u8]| {
+            if grbl::words(line).iter().any(|word| matches!(word, Word::Banner(_))) {
+                before = [line, b"\n"].concat();
+            }
+            match find(line, false, |word| matches!(word, Word::Status(_)).then_some(())) {
+                Answer::Ignore if of_the_start(line) => Answer::Part,
+                answer => answer,
+            }
+        };
         self.talk.exchange(grbl::ASK, b"\n", accept)?;
         self.asking.doubt();
-        match self.fit_status()?.0.state {
+        let status = self.fit_status()?.0;
+        match status.state {
             State::Idle => {}
+            State::Held if self.talk.lets_go() => self.let_go(status)?,
             State::Held => {
-                let help =
-                    "it is held: look at it, then reset it while it is at rest (Ctrl-X keeps the position) and begin again";
+                let help = "it is held: look at it, then let go of it with `--let-go` (of `psd resume`, or of `psd rig jog` before a \
+                            new run); it stays where it is, and forgets what was interrupted";
                 return Err(DeviceFault::Unfit(help.to_owned()));
             }
             _ => return Err(DeviceFault::Unfit("it is moving already".to_owned())),
@@ -199,7 +245,7 @@ impl Device for GrblDevice {
         let mut who = None;
         let keep = |word: &Word, line: &[u8]| {
             if let Word::Version(..) = word {
-                who = introduced(line);
+                who = introduced(&[&before, line].concat());
             }
         };
         self.command(grbl::BUILD, keep, |seen| seen.iter().any(|word| matches!(word, Word::Version(..))))?;
@@ -255,7 +301,9 @@ impl Device for GrblDevice {
         // While it jogs this ends the jog and leaves it idle; at rest it leaves it held. A reset would lose the position.
         self.talk.send(grbl::HOLD)?;
         self.held = true;
-        self.until(|state| !state.is_moving()).map(drop)
+        let rest = self.until(|state| !state.is_moving())?;
+        // It was at rest, and nothing waits in it: it keeps its load without being held, and whoever comes next finds it idle.
+        if rest.state == State::Held && !self.unanswered { self.resume_at_rest() } else { Ok(()) }
     }
 
     fn emergency(&self) -> Vec<u8> {

@@ -47,6 +47,8 @@ pub enum Missed {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer<T> {
     Take(T),
+    /// A line of the answer that is not its last: the wait goes on.
+    Part,
     /// Broken, late, doubled or not asked for: it is counted, and the wait goes on.
     Ignore,
     Fault(DeviceFault),
@@ -96,6 +98,12 @@ impl Talk {
     #[must_use]
     pub fn interrupted(&self) -> bool {
         self.wish.wants_hold()
+    }
+
+    /// Whether a person wants an axis that is found held let go of.
+    #[must_use]
+    pub fn lets_go(&self) -> bool {
+        self.wish.lets_go()
     }
 
     /// A second hold on the line that can only send.
@@ -265,6 +273,7 @@ impl Talk {
             match self.line(ending, deadline) {
                 Ok(line) => match accept(&line) {
                     Answer::Take(answer) => return Ok(Some(answer)),
+                    Answer::Part => {}
                     Answer::Ignore => self.tally.ignored += 1,
                     Answer::Fault(fault) => return Err(fault),
                 },

@@ -4,7 +4,7 @@
 
 use super::{Channel, Device, DeviceFault, DeviceIdentity, Move, Sample};
 use crate::plan::Limits;
-use crate::rig::Tally;
+use crate::rig::{NO_POWER_UP, Tally};
 
 /// One of them.
 pub struct Member {
@@ -85,12 +85,13 @@ impl Device for Several {
         let all = |field: fn(&DeviceIdentity) -> &str| {
             said.iter().map(field).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ")
         };
-        let boots: Vec<&str> = said.iter().filter_map(|identity| identity.boot.as_deref()).collect();
+        let known = said.iter().any(|identity| identity.boot.is_some());
+        let boots: Vec<&str> = said.iter().map(|identity| identity.boot.as_deref().unwrap_or(NO_POWER_UP)).collect();
         Ok(DeviceIdentity {
             model: all(|identity| &identity.model),
             serial: all(|identity| &identity.serial),
             firmware: all(|identity| &identity.firmware),
-            boot: (!boots.is_empty()).then(|| boots.join(" + ")),
+            boot: known.then(|| boots.join(" + ")),
             simulated: said.iter().any(|identity| identity.simulated),
             raw: said.into_iter().flat_map(|identity| identity.raw).collect(),
         })

@@ -7,6 +7,8 @@ use super::number;
 pub const ASK: &[u8] = b"?";
 pub const HOLD: &[u8] = b"!";
 pub const RESUME: &[u8] = b"~";
+/// Forgets what it was told. At rest it keeps its position; in motion it loses it.
+pub const RESET: &[u8] = b"\x18";
 pub const BUILD: &[u8] = b"$I\n";
 pub const SETTINGS: &[u8] = b"$$\n";
 
@@ -32,6 +34,14 @@ pub enum Word {
     /// `[…]` and echoes: nothing that answers.
     Message,
     Unknown,
+}
+
+impl Word {
+    /// Whether it can stand before the `ok` of a question, as a part of what is answered.
+    #[must_use]
+    pub const fn is_part(&self) -> bool {
+        matches!(self, Self::Setting(..) | Self::Version(..) | Self::Message)
+    }
 }
 
 /// A status report.

@@ -31,6 +31,9 @@ fn a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held
     // The first `!` after 8 T, whatever becomes of its answer.
     let held = frames.iter().find(|(_, frame)| frame.starts_with('!')).unwrap().0;
     assert!(((held - third.0) / REPLY_TIMEOUT - 8.0).abs() < 0.2);
+    // Its answer is waited for as long: the last frame leaves after 12 T, the program after 16.
+    let last = frames.last().unwrap().0;
+    assert!(((last - third.0) / REPLY_TIMEOUT - 12.0).abs() < 0.3, "{}", (last - third.0) / REPLY_TIMEOUT);
     assert_eq!(ended.stand.stand().bench().moves().len(), 3, "the move itself was begun once");
 
     // One lost reply is mended, and said on page one.

@@ -40,6 +40,7 @@ mod gate;
 mod gliding;
 mod line;
 mod long;
+mod manual;
 mod motion;
 mod room;
 mod several;

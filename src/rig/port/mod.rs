@@ -4,6 +4,7 @@
 mod clock;
 mod descriptor;
 mod serial;
+mod taken;
 mod tcp;
 
 use std::io;

@@ -1,13 +1,14 @@
 //! Where a cut-off run stands, before it may go on. In: its record, and what the rig says now without having moved. Out:
 //! from which record on it is done again, or why it must not be. A target is sent again only if it never arrived.
 
-use super::entry::{Doubt, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
+use super::entry::{Assurance, Doubt, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
 use super::played::{Mismatch, Played, Unplayable, body};
 use crate::mechanics::path::Path;
 use crate::plan::{RealLink, RigPlan};
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
-use crate::rig::{DeclaredNoise, Identity, Reading, named_axis, of_axis, who};
+use crate::rig::failpoint::{Guarding, on};
+use crate::rig::{DeclaredNoise, Identity, JUST_STARTED, NO_POWER_UP, Reading, named_axis, of_axis, who};
 use crate::run::{Inspection, UNLOADING};
 
 /// A rig that no next path is told goes on for so long at most before it holds, s: a controller's 0.25 s, and what its line and
@@ -59,6 +60,7 @@ impl Decision {
             by: by.to_owned(),
             reason: reason.to_owned(),
             doubt: self.doubt,
+            assured: Vec::new(),
             found: (found.displacement.clone(), found.force.clone()),
             recorded: self.recorded,
             t: time,
@@ -80,6 +82,11 @@ pub enum Refusal {
     OtherRig { recorded: String, found: String },
     #[error("the rig started anew since ({recorded} became {found}): reference it, then say so with --re-referenced")]
     Rebooted { recorded: String, found: String },
+    #[error(
+        "this rig cannot say whether it was switched off since: if you know that it was not, say so with --same-power-up; else \
+         reference it, then say so with --re-referenced"
+    )]
+    PowerUpUnknown,
     #[error(
         "the rig's firmware is no longer the one of the record ({recorded} became {found}): see that it means the same, reference \
          the rig, then say so with --re-referenced"
@@ -107,21 +114,33 @@ pub enum Refusal {
     Unplayable(#[from] Unplayable),
 }
 
-/// Whether the rig that answers is the one of the record, and has neither started anew nor become another program.
+/// Whether the rig that answers is the one of the record, and has neither started anew nor become another program. Where it
+/// cannot say whether it was switched off, a person must.
 ///
 /// # Errors
-/// It is not; `re_referenced` accepts a new start and another firmware.
-pub fn same_rig(recorded: &Identity, found: &Identity, re_referenced: bool) -> Result<(), Refusal> {
+/// It is not; to have referenced it accepts a new start and another firmware.
+pub fn same_rig(recorded: &Identity, found: &Identity, assured: &[Assurance]) -> Result<(), Refusal> {
     let named = |identity: &Identity| format!("{} {}", identity.model, identity.serial);
     if (&recorded.model, &recorded.serial) != (&found.model, &found.serial) {
         return Err(Refusal::OtherRig { recorded: named(recorded), found: named(found) });
     }
-    if recorded.firmware != found.firmware && !re_referenced {
+    if assured.contains(&Assurance::ReReferenced) {
+        return Ok(());
+    }
+    if recorded.firmware != found.firmware {
         return Err(Refusal::OtherFirmware { recorded: recorded.firmware.clone(), found: found.firmware.clone() });
     }
-    if recorded.boot != found.boot && !re_referenced {
-        let boot = |identity: &Identity| identity.boot.clone().unwrap_or_else(|| "none".to_owned());
-        return Err(Refusal::Rebooted { recorded: boot(recorded), found: boot(found) });
+    let power_up = |identity: &Identity| identity.boot.clone().unwrap_or_else(|| NO_POWER_UP.to_owned());
+    let (was, is) = (power_up(recorded), power_up(found));
+    let (before, now): (Vec<&str>, Vec<&str>) = (was.split(" + ").collect(), is.split(" + ").collect());
+    let pairs = || before.iter().copied().zip(now.iter().copied());
+    let anew = |(before, now): (&str, &str)| now == JUST_STARTED || before != now && (before, now) != (JUST_STARTED, NO_POWER_UP);
+    if before.len() != now.len() || pairs().any(anew) {
+        let told = |word: &str| if word == NO_POWER_UP { "none".to_owned() } else { word.to_owned() };
+        return Err(Refusal::Rebooted { recorded: told(&was), found: told(&is) });
+    }
+    if on(Guarding::PowerUp) && now.contains(&NO_POWER_UP) && !assured.contains(&Assurance::SamePowerUp) {
+        return Err(Refusal::PowerUpUnknown);
     }
     Ok(())
 }

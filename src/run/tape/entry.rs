@@ -256,6 +256,9 @@ pub struct ResumeBody {
     pub by: String,
     pub reason: String,
     pub doubt: Doubt,
+    /// What the person who resumes it takes upon themselves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assured: Vec<Assurance>,
     /// Found before anything moved: m, N.
     pub found: (Vec<f64>, Vec<f64>),
     /// As recorded last: m, N.
@@ -264,6 +267,33 @@ pub struct ResumeBody {
     pub t: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
+}
+
+/// What only a person can know of a rig that a run goes on with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Assurance {
+    /// It was not switched off since, and cannot say so itself.
+    SamePowerUp,
+    /// It was referenced anew.
+    ReReferenced,
+    /// The force that changed means no harm to the specimen.
+    AcceptedRelaxation,
+    /// It was held, and may be let go of where it stands.
+    LetGo,
+}
+
+impl Assurance {
+    /// As it is told, behind the name of the person.
+    #[must_use]
+    pub const fn told(self) -> &'static str {
+        match self {
+            Self::SamePowerUp => "it was not switched off since",
+            Self::ReReferenced => "it was referenced anew",
+            Self::AcceptedRelaxation => "the change of the force is accepted",
+            Self::LetGo => "it was let go of where it was held",
+        }
+    }
 }
 
 /// RECOVER: a torn end of the file was put aside.

@@ -27,7 +27,8 @@ mod way;
 pub use agreement::{Contradiction, agrees};
 pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_resolution, same_rig};
 pub use entry::{
-    AmendBody, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody, RigBody, SampleBody, StrokeBody,
+    AmendBody, Assurance, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody, RigBody, SampleBody,
+    StrokeBody,
 };
 pub use observer::TapedObserver;
 pub use played::{Mismatch, Played, Unplayable};

@@ -155,7 +155,9 @@ fn told(resume: &ResumeBody) -> String {
         _ => String::new(),
     };
     let when = resume.wall.as_ref().map_or_else(String::new, |wall| format!(" at {wall}"));
-    format!("resumed{when} by {}: {}; {target}{relaxed}", resume.by, resume.reason)
+    let assured = resume.assured.iter().map(|assured| assured.told());
+    let said: Vec<&str> = std::iter::once(resume.reason.as_str()).chain(assured).collect();
+    format!("resumed{when} by {}: {}; {target}{relaxed}", resume.by, said.join("; "))
 }
 
 /// A record's body, typed.

@@ -11,6 +11,8 @@ use crate::plan::{
     Storey, Test, Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
 };
 use crate::quantity::Dimension;
+use crate::rig::failpoint::{Guarding, without};
+use crate::rig::{Identity, JUST_STARTED};
 use crate::run::testing::{elastic_plan, every, impact, ramp, result_of, struck_frame};
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
@@ -58,6 +60,7 @@ fn shaken(mode: Mode) -> Plan {
     plan.grounds = vec![Ground {
         name: "quake".to_owned(),
         file: "quake.csv".to_owned(),
+        unit: 1.0,
         scale: 1.0,
         scale_uncertainty: 0.0,
         times: vec![0.0, 0.02, 0.04, 0.06],
@@ -240,5 +243,39 @@ fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_reco
         let plain = run(&plan, &mut Standing::new(&plan), &mut Witness);
         // What the rig mended is counted from its first reading on in either.
         assert_eq!(format!("{plain:?}"), format!("{:?}", whole.record), "{name}: not recorded");
+    }
+}
+
+#[test]
+fn a_rig_that_cannot_say_that_it_was_not_switched_off_needs_the_word_of_a_person() {
+    let plan = crate::run::testing::empty_plan();
+    let of = |boot: Option<&str>| Identity { boot: boot.map(str::to_owned), ..Standing::new(&plan).identity() };
+    let (nothing, word, anew) = (&[][..], &[Assurance::SamePowerUp][..], &[Assurance::ReReferenced][..]);
+    let refused = |was, is, assured| same_rig(&of(was), &of(is), assured).err();
+    for mute in [(None, None), (Some(JUST_STARTED), None), (Some("7F3A + -"), Some("7F3A + -"))] {
+        assert_eq!(refused(mute.0, mute.1, nothing), Some(Refusal::PowerUpUnknown), "{mute:?}");
+        assert_eq!((refused(mute.0, mute.1, word), refused(mute.0, mute.1, anew)), (None, None), "{mute:?}");
+        let unguarded = without(Guarding::PowerUp, || refused(mute.0, mute.1, nothing));
+        assert_eq!(unguarded, None, "{mute:?}: nothing else sees it");
+    }
+    for proven in ["7F3A", "7F3A + 11B0"] {
+        assert_eq!(refused(Some(proven), Some(proven), nothing), None);
+    }
+    let started = [
+        (Some("7F3A"), Some("11B0")),
+        (None, Some(JUST_STARTED)),
+        (Some(JUST_STARTED), Some(JUST_STARTED)),
+        (Some("7F3A"), None),
+        (Some("7F3A + -"), Some("11B0 + -")),
+        (Some("7F3A + -"), Some("7F3A")),
+    ];
+    for (was, is) in started {
+        for assured in [nothing, word] {
+            assert!(
+                matches!(refused(was, is, assured), Some(Refusal::Rebooted { .. })),
+                "no word outweighs what it says: {was:?} {is:?}"
+            );
+        }
+        assert_eq!(refused(was, is, anew), None, "{was:?} {is:?}");
     }
 }

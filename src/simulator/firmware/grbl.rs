@@ -262,9 +262,12 @@ impl Firmware for Grbl {
         Vec::new()
     }
 
+    /// Switched on anew with `$22=1` it is locked until it has been homed.
     fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
         bench.hold();
-        self.reset(bench).into_bytes()
+        let banner = self.reset(bench);
+        self.state = State::Alarm;
+        format!("{banner}[MSG:'$H'|'$X' to unlock]\r\n").into_bytes()
     }
 }
 
@@ -356,7 +359,9 @@ mod tests {
         assert!(say(&mut board, b"\x18").starts_with("ALARM:3\r\n\r\nGrbl 1.1h "));
         assert_eq!(say(&mut board, b"$J=X5F60\n"), "error:8\r\n");
         assert_eq!(say(&mut board, b"$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
-        assert_eq!(board.0.reboot(&mut board.1), b"\r\nGrbl 1.1h ['$' for help]\r\n");
+        assert_eq!(say(&mut board, b"!\x18?"), "\r\nGrbl 1.1h ['$' for help]\r\n<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
+        assert_eq!(board.0.reboot(&mut board.1), b"\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n");
+        assert!(say(&mut board, b"?").starts_with("<Alarm|"), "not homed");
     }
 
     #[test]

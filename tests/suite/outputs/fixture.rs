@@ -86,6 +86,7 @@ pub fn finished() -> Finished {
             pairs: sweep_pairs(&sweep_steps()),
             middles: Vec::new(),
             stiffness: Some(327.72),
+            own_stiffness: None,
             steps: sweep_steps(),
             fit: Some(line(4.02, 0.08, 0.31, 0.02)),
         }),

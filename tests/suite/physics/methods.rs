@@ -2,8 +2,9 @@
 
 use psd::mechanics::contact::ContactLaw;
 use psd::mechanics::impact::{ImpactInput, ImpactSolver};
-use psd::mechanics::method::longest_stable_step;
-use psd::plan::Integrator;
+use psd::mechanics::specimen::{RestoringForce, SpecimenModel};
+use psd::mechanics::stability::{Met, longest_stable_step};
+use psd::plan::{Behaviour, Integrator};
 
 use super::support::{impact, run};
 
@@ -125,18 +126,98 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
             farthest.max(solver.state().displacement.abs())
         })
     };
-    let explicit = longest_stable_step(Integrator::Explicit, stiffness / mass, 0.0);
+    let explicit = longest_stable_step(Integrator::Explicit, &Met::one(mass, 0.0, stiffness, 0.0));
     assert!((explicit - 2.0 * std::f64::consts::PI / 20.0 / std::f64::consts::PI).abs() < 1e-15, "T/π");
     assert!(farthest(Integrator::Explicit, 0.0, 0.99 * explicit) < 20.0);
     assert!(farthest(Integrator::Explicit, 0.0, 1.01 * explicit) > 1e20);
 
     let soft = 300.0;
     let split = Integrator::AlphaOs { alpha: 0.0 };
-    let limit = longest_stable_step(split, stiffness / mass, (stiffness - soft) / mass);
+    let limit = longest_stable_step(split, &Met::one(mass, 0.0, stiffness, soft));
     assert!(farthest(split, soft, 0.99 * limit) < 20.0);
     assert!(farthest(split, soft, 1.01 * limit) > 1e20);
     for alpha in [0.0, -0.05, -0.3] {
         assert!(farthest(Integrator::AlphaOs { alpha }, stiffness, 10.0) < 1.001, "as stiff as the specimen: no limit");
         assert!(farthest(Integrator::AlphaOs { alpha }, 2.0 * stiffness, 2.0 * explicit) < 5.0, "stiffer: none either");
     }
+}
+
+/// Growth of a free vibration by each step, as it runs, against the limit that is told: α-OS that splits with less than the specimen's
+/// stiffness, damped and not. Just inside no more than what a damping ratio of 1e-4 would take in a cycle, just beyond more.
+#[test]
+fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
+    let (mass, stiffness): (f64, f64) = (1.0, 400.0);
+    let omega = (stiffness / mass).sqrt();
+    for (alpha, share, ratio) in
+        [(-0.05, 0.5, 0.0), (-0.1, 0.25, 0.02), (-0.2, 0.5, 0.0), (-0.3, 0.5, 0.0), (-0.3, 0.5, 0.02), (-1.0 / 3.0, 0.9, 0.05)]
+    {
+        let integrator = Integrator::AlphaOs { alpha };
+        let (damping, soft) = (2.0 * ratio * omega * mass, (1.0 - share) * stiffness);
+        let limit = longest_stable_step(integrator, &Met::one(mass, damping, stiffness, soft));
+        // ln|z| of the fastest of its motions, by the size of the state over many steps.
+        let growth = |time_step: f64| {
+            let input = ImpactInput { operator_stiffness: soft, ..vibration(integrator, mass, damping, stiffness, time_step) };
+            let mut solver = ImpactSolver::new(&input, 1.0, stiffness);
+            let size = |solver: &ImpactSolver| {
+                let state = solver.state();
+                (state.displacement * omega).hypot(state.velocity).hypot(state.acceleration / omega)
+            };
+            let mut step = |count: u32| {
+                let mut largest = 0.0_f64;
+                for _ in 0..count {
+                    let target = solver.predict();
+                    solver.complete(target, stiffness * target);
+                    largest = largest.max(size(&solver));
+                    if largest > 1e100 {
+                        return f64::INFINITY;
+                    }
+                }
+                largest
+            };
+            let before = if step(2000).is_finite() { step(300) } else { 1.0 };
+            step(3700);
+            (step(300) / before).ln() / 4000.0
+        };
+        let trifle = if ratio == 0.0 { 1e-4 * omega * limit } else { 0.0 };
+        let (inside, beyond) = (growth(0.97 * limit), growth(1.03 * limit));
+        assert!(inside < trifle && beyond > trifle, "α {alpha}, {share}, ζ {ratio}: {limit} s, {inside} {beyond} {trifle}");
+    }
+}
+
+/// What the tangent form makes of a specimen that yields. It foretells the force by the slope of the step before; where the slope changes
+/// it errs by δ = (K − `K_t`)ΔX for that step, and the balance by −½ΔX(δ + δ₀), δ₀ that of the step before, which is all that it errs by. So
+/// no step is stable by itself: at a tenth of the default step a yielding vibration loses next to nothing, at a fifth of the period
+/// (`critical` twice over) the balance is worth nothing.
+#[test]
+fn the_tangent_form_errs_by_what_its_slope_is_late() {
+    let (mass, stiffness): (f64, f64) = (1.0, 400.0);
+    let behaviour = Behaviour::Bilinear { stiffness, yield_force: 20.0, hardening: 0.05 };
+    let off = |time_step: f64| {
+        let input = ImpactInput { max_tangent_ratio: 10.0, ..vibration(Integrator::Tangent, mass, 0.0, stiffness, time_step) };
+        let mut specimen = SpecimenModel::new(&behaviour);
+        let (mut place, mut force) = (0.15, specimen.move_to(0.15));
+        let mut solver = ImpactSolver::new(&input, place, force);
+        let began = force * force / (2.0 * stiffness);
+        let (mut slope, mut late, mut reckoned, mut largest) = (stiffness, 0.0, 0.0, 0.0_f64);
+        let mut time = 0.0;
+        while time < 30.0 {
+            time += time_step;
+            let target = solver.predict();
+            let read = specimen.move_to(target);
+            solver.complete(target, read);
+            let moved = target - place;
+            let erred = read - force - slope * moved;
+            reckoned -= 0.5 * moved * (erred + late);
+            slope = ((read - force) / moved).clamp(0.0, 10.0 * stiffness);
+            (place, force, late) = (target, read, erred);
+            let error = solver.state().energies.error;
+            assert!((error - reckoned).abs() < 1e-9 * (1.0 + reckoned.abs()), "{error} {reckoned}");
+            largest = largest.max(error.abs() / began);
+        }
+        largest
+    };
+    let critical = 0.2 * std::f64::consts::PI * (mass / stiffness).sqrt();
+    let (tenth, default, coarse) = (off(critical / 200.0), off(critical / 20.0), off(2.0 * critical));
+    assert!(tenth < 0.01 && tenth < 0.2 * default && default < 0.05, "{tenth} {default}");
+    assert!(coarse > 1.0, "{coarse}");
 }
