@@ -175,9 +175,10 @@ pub fn put_everything(run: &Run<'_>, shelf: &mut dyn Shelf) -> Result<Vec<Listed
     let summary = summary_file(run)?;
     let foretold = run.provenance.prediction.as_ref().map(prediction::file).transpose()?;
     let figures = figures::all(run)?;
+    let first = std::iter::once(summary).chain(foretold);
+    let mut listed = first.map(|file| put_whole(shelf, &file)).collect::<Result<Vec<_>, _>>()?;
     let tables = tables::put(run, shelf)?;
-    let mut files = vec![summary];
-    files.extend(foretold);
+    let mut files = Vec::new();
     let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
     if html || pdf {
         let report = certificate::document(run, &figures, &tables);
@@ -196,7 +197,7 @@ pub fn put_everything(run: &Run<'_>, shelf: &mut dyn Shelf) -> Result<Vec<Listed
     }
     files.extend(plan_files(run.plan));
     tell_apart(files.iter_mut().map(|file| &mut file.path));
-    let mut listed = tables;
+    listed.extend(tables);
     for file in &files {
         listed.push(put_whole(shelf, file)?);
     }
