@@ -290,6 +290,17 @@ pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
     })
 }
 
+/// Why no uncertainty is told of a run whose way does not hold together.
+pub(super) const GROWS: &str = "errors of its readings, taken along the recorded way, grow without bound";
+
+/// Whether a run that was taken again went ten times as far as the run itself did: what a small error makes of such a way is
+/// no uncertainty, but a way that is not stable against it.
+pub(super) fn grows(again: &Floors, itself: &Floors) -> bool {
+    const FARTHER: f64 = 10.0;
+    let farthest = itself.max_displacement.iter().fold(0.0_f64, |most, place| most.max(place.abs()));
+    again.max_displacement.iter().any(|place| place.is_nan() || place.abs() > FARTHER * farthest)
+}
+
 /// Results that wait for the end of the run, beside those of any impact.
 const LATE_OF_STOREYS: [&str; 2] = ["residual_drift", "storey_energy"];
 

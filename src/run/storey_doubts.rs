@@ -1,7 +1,9 @@
 //! What the uncertainty of the inputs makes of the results of an impact on a storey. In: what went into it, and the recorded
 //! steps. Out: for each number, what each source contributes. The recorded way of all floors is taken again.
 
-use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::frame_doubts::{FrameDoubts, GROWS, Shifts, give_all, grows, leads_there, mark_late};
 use super::impact::law;
 use super::propagation::{LEADS_ELSEWHERE, contact_formulas, round_times, same};
 use super::stepping;
@@ -71,15 +73,26 @@ pub(super) fn propagate(
     let rules = path.rules();
     let study = doubts.study(&sources, doubts.effort(history.floors.len(), rules.len(), &sources), job)?;
     let nominal = numbers(&as_it_was, &found);
+    let (itself, grown) = (&found.floors.between, AtomicBool::new(false));
     let parts = over_rules(&rules, tick, &mut |rule, tick| {
         let path = path.supposing(rule);
-        let again = |job: &Job| match take(job, &path) {
+        let taken = |job: &Job| {
+            let found = take(job, &path);
+            if found.as_ref().is_ok_and(|found| grows(&found.floors.between, itself)) {
+                grown.store(true, Ordering::Relaxed);
+            }
+            found
+        };
+        let again = |job: &Job| match taken(job) {
             Ok(found) => Taken { values: numbers(job, &found), seen: found.floors.seen },
             Err(_) => Taken { values: vec![f64::NAN; nominal.len()], seen: false },
         };
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
     let mut parts = parts.map_err(Unknown::Stop)?;
+    if grown.into_inner() {
+        return Err(GROWS.to_owned().into());
+    }
     let time_step = setting.frame.time_step;
     round_times(doubts.procedure, time_step, &mut parts);
     // From the beginning of a step to the end of one: two times, each up to Δt off.
