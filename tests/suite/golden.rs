@@ -286,7 +286,7 @@ fn names_are_found_listed_and_missed() {
     let listed = bench.psd(&["test", "--list"]).with(0).stdout;
     assert_eq!(listed, "plans/one  (not blessed)\nplans/two  (not blessed)\n");
     bench.psd(&["test", "--filter", "three"]).with(2).says(&["no plan with `three` in its name in plans"]);
-    bench.psd(&["test", "nowhere"]).with(2).says(&["nowhere"]);
+    bench.psd(&["test", "nowhere"]).with(3).says(&["nowhere"]);
     bench.psd(&["test", "--anew"]).with(2);
     bench.psd(&["test", "--tap", "--format", "json"]).with(2);
     bench.psd(&["test", "--bless", "--golden", "kept", "plans/one.psd"]).with(0);
