@@ -15,7 +15,7 @@
 //! - at z = −1 it turns over beyond `k s = 4 / ((1+2α)((1−α)² − α²/s))`, which for α = 0 is Δt = 2√(M/(K − `K_I`)) (Combescure and
 //!   Pegon 1997);
 //! - at z near exp(iωΔt), ln|z| = ½(ωΔt)⁴·¼|α|·((1−α)²s − (1+α)²) to leading order: where s > ((1+α)/(1−α))² a vibration gains energy
-//!   from every step, however short. What little that is while steps are short is judged against [`TRIFLE`].
+//!   from every step, however short. What little that is while steps are short is judged against `TRIFLE`.
 //!
 //! A structure of many degrees of freedom is stable where each pair of Rayleigh quotients of (K, `K_I`) is, for z and its vector x make
 //! xᴴ(…)x = 0 the same cubic: so the largest s, the highest ω² and the highest K − `K_I` bound all of them.

@@ -13,7 +13,7 @@ use crate::plan::{Capping, Pinching};
 /// - from no force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with U_p the
 ///   permanent displacement of the peak that way, and on to the peak; where u₀ is past the break point, straight to the peak;
 /// - from the peak on it is the backbone;
-/// - it wears by the energy of its excursions ([`Wear`]): basic strength, post-capping strength, unloading stiffness, and the peak that it
+/// - it wears by the energy of its excursions (`Wear`): basic strength, post-capping strength, unloading stiffness, and the peak that it
 ///   reloads to. Nothing is lost while it is elastic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinchedHysteresis {
