@@ -1,14 +1,12 @@
 //! What the uncertainty of the inputs makes of the results of a shake. In: what went into it, and the recorded steps. Out: for
 //! each number, what each source contributes. The recorded way is taken again, under the same ground.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use super::frame_doubts::{FrameDoubts, GROWS, Shifts, give_all, grows, leads_there, mark_late};
+use super::frame_doubts::{Again, FrameDoubts, Shifts, give_all, leads_there, mark_late};
 use super::propagation::LEADS_ELSEWHERE;
 use super::shake::Setting;
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
-use super::study::{Taken, Tick, Unknown, over_rules};
+use super::study::{Tick, Unknown, over_rules};
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Floors, FrameRun};
 use crate::mechanics::ground::acceleration_at;
@@ -77,27 +75,13 @@ pub(super) fn propagate(
     };
     let rules = path.rules();
     let study = doubts.study(&sources, doubts.effort(history.steps.len(), rules.len(), &sources), job)?;
-    let nominal = numbers(&as_it_was, &found.between);
-    let (itself, grown) = (&found.between, AtomicBool::new(false));
+    let runs = Again::of(&found.between, numbers(&as_it_was, &found.between).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {
         let path = path.supposing(rule);
-        let taken = |job: &Job| {
-            let found = take(job, &path);
-            if found.as_ref().is_ok_and(|found| grows(&found.between, itself)) {
-                grown.store(true, Ordering::Relaxed);
-            }
-            found
-        };
-        let again = |job: &Job| match taken(job) {
-            Ok(found) => Taken { values: numbers(job, &found.between), seen: found.seen },
-            Err(_) => Taken { values: vec![f64::NAN; nominal.len()], seen: false },
-        };
+        let again = |job: &Job| runs.taken(take(job, &path), |found| found, |found| numbers(job, &found.between));
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
-    let mut parts = parts.map_err(Unknown::Stop)?;
-    if grown.into_inner() {
-        return Err(GROWS.to_owned().into());
-    }
+    let mut parts = runs.told(parts)?;
     let lists = ["max_displacement", "max_drift", "residual_drift", "periods"].map(|name| (name, floors));
     let layout: Vec<(&'static str, usize)> = lists.into_iter().chain([("max_base_shear", 1)]).collect();
     if path.swung_back() {

@@ -1,15 +1,13 @@
 //! What the uncertainty of the inputs makes of the results of an impact on a storey. In: what went into it, and the recorded
 //! steps. Out: for each number, what each source contributes. The recorded way of all floors is taken again.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use super::frame_doubts::{FrameDoubts, GROWS, Shifts, give_all, grows, leads_there, mark_late};
+use super::frame_doubts::{Again, FrameDoubts, Shifts, give_all, leads_there, mark_late};
 use super::impact::law;
 use super::propagation::{LEADS_ELSEWHERE, contact_formulas, round_times, same};
 use super::stepping;
 use super::stop::Stop;
 use super::storey_impact::Setting;
-use super::study::{Taken, Tick, Unknown, over_rules};
+use super::study::{Tick, Unknown, over_rules};
 use crate::mechanics::approach::Approach;
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Blow, BlowOutcome, FrameRun};
@@ -72,27 +70,13 @@ pub(super) fn propagate(
     };
     let rules = path.rules();
     let study = doubts.study(&sources, doubts.effort(history.floors.len(), rules.len(), &sources), job)?;
-    let nominal = numbers(&as_it_was, &found);
-    let (itself, grown) = (&found.floors.between, AtomicBool::new(false));
+    let runs = Again::of(&found.floors.between, numbers(&as_it_was, &found).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {
         let path = path.supposing(rule);
-        let taken = |job: &Job| {
-            let found = take(job, &path);
-            if found.as_ref().is_ok_and(|found| grows(&found.floors.between, itself)) {
-                grown.store(true, Ordering::Relaxed);
-            }
-            found
-        };
-        let again = |job: &Job| match taken(job) {
-            Ok(found) => Taken { values: numbers(job, &found), seen: found.floors.seen },
-            Err(_) => Taken { values: vec![f64::NAN; nominal.len()], seen: false },
-        };
+        let again = |job: &Job| runs.taken(take(job, &path), |found| &found.floors, |found| numbers(job, found));
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
-    let mut parts = parts.map_err(Unknown::Stop)?;
-    if grown.into_inner() {
-        return Err(GROWS.to_owned().into());
-    }
+    let mut parts = runs.told(parts)?;
     let time_step = setting.frame.time_step;
     round_times(doubts.procedure, time_step, &mut parts);
     // From the beginning of a step to the end of one: two times, each up to Δt off.
