@@ -195,6 +195,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         {
             let specimen = specimens.get(impact.specimen).and_then(Option::as_ref);
             impact::judge(checker, *block, impact, &escalate.fastest(striker), specimen);
+            arrival::hold(checker, *block, &escalate.slowest(striker), impact.duration.constant());
         }
         if let Some(Procedure { kind: ProcedureKind::StoreyImpact(impact), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
@@ -209,6 +210,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             && let Some(Some(striker)) = strikers.get(impact.striker)
         {
             storey_impact::judge(checker, *block, impact, frame, &escalate.fastest(striker));
+            arrival::hold(checker, *block, &escalate.slowest(striker), impact.duration.constant());
         }
         if let Some(Procedure { kind: ProcedureKind::Shake(shaking), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(shaking.specimen)

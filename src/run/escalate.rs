@@ -7,6 +7,7 @@ use super::inputs::Inputs;
 use super::rest_doubts::RestDoubts;
 use super::results::{measured, result};
 use super::session::Session;
+use super::stepping::above_critical;
 use super::stop::Stop;
 use super::unload::{MOST_TARGETS, to_rest};
 use crate::formula::{ProcedureId, ResultReference, ResultValue, Results};
@@ -33,6 +34,8 @@ fn run(
     let (mut struck, velocities) = Struck::evaluate(plan, whole, inputs, session)?;
     // As the plan gives them: a square of a root is not always what the root was taken of.
     let energies = plan.energies.as_ref().map(|energies| inputs.list("energies", energies)).transpose()?;
+    let (time_step, critical) = struck.time_steps();
+    above_critical(time_step, critical, session);
     let home = session.guard.commanded().to_vec();
     let doubts = RestDoubts::new(whole, inputs, session);
     let mut done = 0;

@@ -76,7 +76,7 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::measured(
         "max_contact_force",
         Dimension::FORCE,
-        "largest mean contact force of a step; grows as 1/Δt under `rigid`",
+        "largest mean contact force of a step; grows as 1/Δt under `rigid`, `restitution` and a `limit` that is not reached",
     ),
     ResultKind::measured("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
     ResultKind::count("contacts", "number of blows: contacts that began, also those inside a step"),

@@ -261,6 +261,16 @@ pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Dia
         .help("procedures run in the order written: move that one up")
 }
 
+/// `step` and `duration` in s.
+pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f64) -> Diagnostic {
+    let told = |time| display::stated(time, Dimension::TIME);
+    let message = format!("the time step {} is longer than the run, {}", told(step), told(duration));
+    Diagnostic::new(Code::OutOfRange, message)
+        .at(at, "not one whole step")
+        .at(duration_at, "all the time there is")
+        .help("write `time_step = critical / 20`")
+}
+
 /// What is written and can do nothing here: why, and the way out.
 pub fn no_effect(message: String, span: Span, label: &str, help: &str) -> Diagnostic {
     Diagnostic::new(Code::NoEffect, message).at(span, label.to_owned()).help(help.to_owned())
