@@ -133,8 +133,10 @@ fn unless_doubtful(condition: &Condition, rule: DecisionRule, outcome: Condition
                 record.procedures.get(procedure.0).map(|procedure| (&procedure.history, procedure.name.as_str()))
             })
         };
-        let why = cut_short(&read).or_else(|| unbalanced(&read)).or_else(no_peak)?;
-        Some(outcome.reason.clone().unwrap_or(why))
+        match cut_short(&read).or_else(|| unbalanced(&read)) {
+            Some(why) => Some(outcome.reason.clone().unwrap_or(why)),
+            None => no_peak(),
+        }
     };
     match drifted(&read, record).or_else(unfinished) {
         Some(reason) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(reason), ..outcome },
@@ -180,10 +182,7 @@ pub(crate) fn assess_on_blow(
 ) -> ConditionOutcome {
     let outcome = assess_condition(condition, rule, results);
     match growing::undecided_by(condition, rule, results, (own, blow)) {
-        Some(why) => {
-            let reason = Some(outcome.reason.clone().unwrap_or(why));
-            ConditionOutcome { verdict: Verdict::Inconclusive, reason, ..outcome }
-        }
+        Some(why) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(why), ..outcome },
         None => outcome,
     }
 }

@@ -113,7 +113,12 @@ pub fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64
 
 /// The same as it is foreseen: a stiffness that an earlier procedure is to measure is taken for the one with which the specimen of
 /// a virtual rig begins. Whether it is a foreseen one, too.
-pub fn critical_foreseen(checker: &Checker, impact: &Impact, striker: &Striker, specimen: Option<&Specimen>) -> Option<(f64, bool)> {
+pub fn critical_foreseen(
+    checker: &Checker,
+    impact: &Impact,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+) -> Option<(f64, bool)> {
     if let Some(critical) = critical_before_the_run(impact, striker) {
         return Some((critical, false));
     }

@@ -6,8 +6,8 @@ use super::impact::{critical_foreseen, time_step_before_the_run};
 use crate::formula::{Formula, NoResults};
 use crate::mechanics::frame::Damping;
 use crate::plan::{
-    Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake, StoreyImpact,
-    Specimen, Striker, Until,
+    Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake, Specimen,
+    StoreyImpact, Striker, Until,
 };
 use crate::schema::Kind;
 use crate::source::{FileId, Span};

@@ -54,6 +54,7 @@ mod path_matrix_tests;
 mod propagation;
 #[cfg(test)]
 mod propagation_tests;
+mod ramp_doubts;
 pub mod rehearsal;
 mod request;
 mod rest_doubts;
@@ -323,7 +324,7 @@ fn afterwards(plan: &Plan) -> &'static str {
 
 fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     match &procedure.kind {
-        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
+        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, plan, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),

@@ -55,9 +55,8 @@ pub(super) fn time_step(
 pub(super) fn above_critical(time_step: f64, critical: f64, session: &mut Session<'_>) {
     if time_step > critical {
         let (step, critical) = (stated(time_step, Dimension::TIME), stated(critical, Dimension::TIME));
-        let text = format!(
-            "the time step {step} is above the critical time step {critical} (W701): peaks between two steps are missed"
-        );
+        let text =
+            format!("the time step {step} is above the critical time step {critical} (W701): peaks between two steps are missed");
         session.event(EventKind::Remark, text);
     }
 }

@@ -2,7 +2,7 @@
 //! condition that reads what they came to. Out: why the condition is not decided by them, where it would come out otherwise had
 //! they grown on. It judges no condition by itself, and knows no plan.
 
-use super::assess_condition;
+use super::{ConditionOutcome, assess_condition};
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Condition, DecisionRule};
 use crate::record::{Blow, BlowHistory, EscalateHistory, FloorStep, Floors, History, ImpactHistory};
@@ -61,7 +61,10 @@ fn hangs_on(
     let growing: Vec<(ResultReference, Growth)> =
         references.iter().filter_map(|reference| Some((*reference, growth_of(*reference)?))).collect();
     let (_, Growth { why, .. }) = growing.first()?;
-    let now = assess_condition(condition, rule, results).verdict;
+    let ConditionOutcome { verdict: now, value, .. } = assess_condition(condition, rule, results);
+    if value.is_none() {
+        return Some(why.clone());
+    }
     let changes = |half_decade: i32| {
         let by = 10_f64.powf(0.5 * f64::from(half_decade));
         assess_condition(condition, rule, &Grown { results, growing: &growing, by }).verdict != now

@@ -92,9 +92,9 @@ pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagn
     };
     let message = format!("the peak contact force under {of} grows as 1/Δt: it says more of the time step than of the blow");
     Diagnostic::new(Code::PeakForceUnderRigidLaw, message)
-    .at(span, "this figure follows the time step")
-    .at(impact, format!("{holds} holds here"))
-    .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
+        .at(span, "this figure follows the time step")
+        .at(impact, format!("{holds} holds here"))
+        .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
 }
 
 /// `first`: the longest step at which the limit acts at the first blow; `resolved`: at which the displacement is resolved.
