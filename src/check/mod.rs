@@ -20,10 +20,12 @@ mod escalate;
 mod expression;
 mod faults;
 mod fields;
+mod fits;
 mod frame;
 mod golden;
 mod ground;
 mod ground_record;
+mod guarded;
 mod impact;
 mod imports;
 mod inspect;
@@ -236,6 +238,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(report) = &report {
             print::warn(checker, report);
         }
+        fits::hold(checker, &procedures);
+        let rule = plan_block::decision_rule(&particulars);
+        guarded::warn(checker, &procedures, requirements.as_deref().unwrap_or(&[]), rule);
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), &grounds, head);
     }
     let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();

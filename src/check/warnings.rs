@@ -11,7 +11,7 @@ use crate::plan::{
 };
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
-use crate::uncertainty::{FEW, Source};
+use crate::uncertainty::Source;
 
 /// Warnings of one impact: its step against eq. 7, unless more was said of it, and against what the limit force needs.
 pub fn impact(
@@ -62,7 +62,6 @@ pub fn whole_plan(
     peak_forces(checker, procedures, requirements);
     blows_on_blows(checker, procedures, grounds);
     unused_uncertainties(checker, procedures, requirements);
-    few_degrees_of_freedom(checker, procedures, requirements);
     match procedures.last() {
         None => checker.faults.push(fault::nothing_runs(plan)),
         Some((block, _)) if requirements.is_empty() => {
@@ -157,32 +156,6 @@ fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Proc
         }
     }
 }
-
-/// What is fitted to a ramp of few points is known to a multiple of its standard error; said where a requirement reads it.
-fn few_degrees_of_freedom(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
-    let mut told: Vec<usize> = Vec::new();
-    for (index, requirement) in requirements.iter().enumerate() {
-        let mut references = Vec::new();
-        requirement.conditions.iter().for_each(|condition| condition.collect_references(&mut references));
-        for reference in references.iter().filter(|reference| FITTED.contains(&reference.name)) {
-            let Some((block, Some(procedure))) = procedures.get(reference.procedure.0) else { continue };
-            let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else { continue };
-            if let Some((points, degrees)) = ramp.degrees_of_freedom().filter(|(_, degrees)| *degrees < usize::from(FEW))
-                && let Some((_, entry)) = checker.given(*block, "displacements")
-                && !told.contains(block)
-            {
-                told.push(*block);
-                let required = checker.scope.requirements[index].condition.span;
-                let at = entry.value.span;
-                checker.faults.push(values::few_degrees_of_freedom(&procedure.name, points, degrees, at, required));
-            }
-        }
-    }
-}
-
-/// Results of a ramp that its fit gives.
-const FITTED: [&str; 6] =
-    ["stiffness", "intercept_force", "yield_force", "yield_displacement", "hardened_stiffness", "hardening"];
 
 fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
     let law = |procedure: &Procedure| match &procedure.kind {

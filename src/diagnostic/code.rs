@@ -133,6 +133,7 @@ codes! {
     E650 RelaxationWithoutHold Error;
     E651 NotTogether Error;
     E652 NobodyToFreeIt Error;
+    E655 NeverGiven Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -159,6 +160,7 @@ codes! {
     W726 FewDecades Warning;
     W728 NoEffect Warning;
     W727 GateWithinNoise Warning;
+    W729 NothingToGuard Warning;
 }
 
 impl std::fmt::Display for Code {
