@@ -142,15 +142,20 @@ impl SummaryBuilder {
             (_, FirstBlow::Over { restitution }) => restitution,
             _ => None,
         };
-        // A run that goes on past its largest X has seen a peak, whichever way the structure moves as it ends.
         self.summary.still_rising =
-            self.last_velocity > 0.0 && self.summary.residual_displacement >= self.summary.max_displacement;
+            still_rising(self.last_velocity, self.summary.residual_displacement, self.summary.max_displacement);
         self.summary.last_blow_cut = self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
         if self.summary.max_displacement == f64::NEG_INFINITY {
             self.summary.max_displacement = 0.0;
         }
         self.summary
     }
+}
+
+/// Whether a structure that ends with Ẋ (m/s) at X (m) was still on its way where X was largest. A run that goes on past that has seen a
+/// peak, whichever way the structure moves as it ends.
+pub(crate) fn still_rising(velocity: f64, displacement: f64, largest: f64) -> bool {
+    velocity > 0.0 && displacement >= largest
 }
 
 /// The summary of a run that is all there.

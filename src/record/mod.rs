@@ -21,13 +21,14 @@ use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
 pub use crate::mechanics::reached_fit::{LawFit, ReachedFit};
 pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
+use crate::mechanics::summary::still_rising;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use drift::{AxisDrift, Beyond, Drift, Zero};
 pub use escalate::{Blow, BlowHistory, EscalateHistory};
-pub use floors::{FloorStep, Floors, StoreyImpactHistory};
+pub use floors::{FloorStep, Floors, FloorsAt, StoreyImpactHistory};
 pub use unload::{Rest, UnloadStep};
 
 #[derive(Clone, Debug)]
@@ -238,7 +239,7 @@ impl ImpactHistory {
     #[must_use]
     pub fn still_rising(&self) -> bool {
         let largest = self.steps.iter().map(|step| step.computed).fold(f64::NEG_INFINITY, f64::max);
-        self.steps.last().is_some_and(|last| last.velocity > 0.0 && last.computed >= largest)
+        self.steps.last().is_some_and(|last| still_rising(last.velocity, last.computed, largest))
     }
 }
 
@@ -270,28 +271,17 @@ pub struct ShakeStep {
 }
 
 impl Floors for ShakeStep {
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn computed(&self) -> &[f64] {
-        &self.computed
-    }
-
-    fn restoring_force(&self) -> &[f64] {
-        &self.restoring_force
-    }
-
-    fn command(&self) -> &[f64] {
-        &self.command
-    }
-
-    fn measured(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    fn tracking(&self) -> &[Tracking] {
-        &self.tracking
+    fn at(&self) -> FloorsAt<'_> {
+        FloorsAt {
+            time: self.time,
+            command: &self.command,
+            measured: &self.displacement,
+            computed: &self.computed,
+            velocity: &self.velocity,
+            acceleration: &self.acceleration,
+            restoring_force: &self.restoring_force,
+            tracking: &self.tracking,
+        }
     }
 }
 

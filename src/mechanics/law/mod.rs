@@ -8,7 +8,7 @@ pub(crate) use hertz::Closing;
 pub use hertz::HertzContact;
 pub use impulse::ImpulseContact;
 pub use restitution::RestitutionContact;
-pub(crate) use restitution::{MOST_BOUNCES, SHORTEST_FLIGHT, locate};
+pub(crate) use restitution::{Collision, MOST_BOUNCES, locate};
 
 use crate::mechanics::contact::{ContactLaw, StepState};
 use crate::mechanics::integrator::Motion;

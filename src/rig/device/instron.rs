@@ -4,7 +4,6 @@
 
 use super::unnumbered::ask_line;
 use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
-use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::instron::{self, Channel, Movement, Question, Trouble};
 
@@ -231,10 +230,6 @@ impl Device for Instron {
 
     fn emergency(&self) -> Vec<u8> {
         instron::hold().concat()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {

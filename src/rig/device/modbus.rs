@@ -5,7 +5,7 @@
 
 use super::unnumbered::{clear, fault, fresh, order};
 use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
-use crate::plan::{Limits, ModbusMap, ModbusNumber};
+use crate::plan::{ModbusMap, ModbusNumber};
 use crate::rig::Tally;
 use crate::rig::dialect::modbus::{self, Fault, Table};
 
@@ -154,10 +154,6 @@ impl Device for Modbus {
 
     fn emergency(&self) -> Vec<u8> {
         self.stop_frame().unwrap_or_default()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {

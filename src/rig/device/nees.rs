@@ -6,7 +6,6 @@
 //! asked for one after the other.
 
 use super::{Answer, Channel, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
-use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::nees::{self, Reply};
 
@@ -200,10 +199,6 @@ impl Device for Nees {
 
     fn emergency(&self) -> Vec<u8> {
         self.executing.as_deref().map(nees::cancel).unwrap_or_default()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {
