@@ -67,6 +67,7 @@ pub struct SummaryBuilder {
 }
 
 impl SummaryBuilder {
+    /// Before step 0.
     #[must_use]
     pub fn new(input: &ImpactInput) -> Self {
         Self {
@@ -95,6 +96,7 @@ impl SummaryBuilder {
         }
     }
 
+    /// Takes the end of the next step.
     pub fn push(&mut self, state: &ImpactState) {
         let summary = &mut self.summary;
         if state.displacement > summary.max_displacement {
@@ -134,6 +136,7 @@ impl SummaryBuilder {
         };
     }
 
+    /// What the steps taken come to.
     #[must_use]
     pub fn finish(mut self) -> ImpactSummary {
         self.summary.restitution = match (self.input.law, self.first_blow) {

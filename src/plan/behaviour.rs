@@ -143,6 +143,7 @@ pub struct Table {
     pub scale: f64,
 }
 
+/// How a measured curve goes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unloading {
     /// Parallel to the steepest stretch of the table.
@@ -161,7 +162,8 @@ pub enum Breaks {
 }
 
 impl Behaviour {
-    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in bearing.
+    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in
+    /// bearing.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {
         match self {

@@ -43,6 +43,7 @@ pub use rig::{
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::{FrameUnload, Unload};
 
+/// All that a run needs to know beforehand. Numbers are SI, names are resolved to places in its lists.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub title: String,
@@ -84,6 +85,7 @@ impl Plan {
     }
 }
 
+/// A file of the plan, as it was read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanFile {
     pub name: String,
@@ -100,6 +102,7 @@ pub struct Parameter {
     pub set: bool,
 }
 
+/// What is tested: one degree of freedom, or a frame.
 #[derive(Clone, Debug)]
 pub struct Specimen {
     pub name: String,
@@ -185,11 +188,13 @@ impl Interval {
         self.low <= x && x <= self.high
     }
 
+    /// What lies in both; empty (`low` above `high`) where nothing does.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
+    /// Whether it ends on either side.
     #[must_use]
     pub fn is_bounded(self) -> bool {
         self.low > f64::NEG_INFINITY || self.high < f64::INFINITY
@@ -254,12 +259,14 @@ impl Limits {
     }
 }
 
+/// One block that acts, in the order of the plan.
 #[derive(Clone, Debug)]
 pub struct Procedure {
     pub name: String,
     pub kind: ProcedureKind,
 }
 
+/// What a procedure does.
 #[derive(Clone, Debug)]
 pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
@@ -313,6 +320,7 @@ impl ProcedureKind {
     }
 }
 
+/// A striker, which is computed, meets one degree of freedom, which is on the rig (Melo et al. 2006, eqs. 4 and 5).
 #[derive(Clone, Debug)]
 pub struct Impact {
     pub specimen: usize,
@@ -333,6 +341,7 @@ pub struct Impact {
     pub until: Until,
 }
 
+/// The contact law of striker and structure.
 #[derive(Clone, Debug)]
 pub enum Contact {
     Rigid,
@@ -351,6 +360,7 @@ pub enum Contact {
     },
 }
 
+/// When an impact is over, before its `duration` at the latest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Until {
     /// The first step end with Ẋs ≤ 0 and Ẋ ≤ 0.
@@ -383,6 +393,7 @@ pub enum InspectTrigger {
     At(f64),
 }
 
+/// The actuator goes to a place.
 #[derive(Clone, Debug)]
 pub struct Move {
     /// m, absolute.
@@ -398,6 +409,7 @@ pub struct Requirement {
     pub conditions: Vec<Condition>,
 }
 
+/// A value and what it is held against.
 #[derive(Clone, Debug)]
 pub struct Condition {
     /// As the plan wrote it.
@@ -454,6 +466,7 @@ impl DecisionRule {
     }
 }
 
+/// What a value must be; limits, targets and tolerances in the SI unit of its dimension.
 #[derive(Clone, Debug)]
 pub enum Test {
     Compare {
@@ -468,6 +481,7 @@ pub enum Test {
     },
 }
 
+/// Of a value, on the left, with a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comparison {
     Less,
@@ -478,6 +492,7 @@ pub enum Comparison {
     NotEqual,
 }
 
+/// What a run leaves beside its record and its summary.
 #[derive(Clone, Debug)]
 pub struct Report {
     pub title: Option<String>,
@@ -486,6 +501,7 @@ pub struct Report {
     pub sign: Vec<String>,
 }
 
+/// A kind of file of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Html,

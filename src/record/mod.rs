@@ -31,6 +31,7 @@ pub use escalate::{Blow, BlowHistory, EscalateHistory};
 pub use floors::{FloorStep, Floors, FloorsAt, StoreyImpactHistory};
 pub use unload::{Rest, UnloadStep};
 
+/// What a run measured and did, all numbers in SI. Every output is a function of it, its plan and its assessment.
 #[derive(Clone, Debug)]
 pub struct Record {
     pub rig: Identity,
@@ -67,6 +68,7 @@ pub struct Event {
     pub text: String,
 }
 
+/// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventKind {
@@ -85,6 +87,25 @@ pub enum EventKind {
     Amendment,
 }
 
+impl EventKind {
+    /// Its word for people, also in `summary.json`.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Inspection => "inspection",
+            Self::LimitBreach => "limit breach",
+            Self::Hold => "hold",
+            Self::Fault => "fault",
+            Self::Mended => "mended",
+            Self::Remark => "remark",
+            Self::Resume => "resume",
+            Self::Amendment => "amendment",
+        }
+    }
+}
+
+/// What one procedure took in and came to.
 #[derive(Clone, Debug)]
 pub struct ProcedureRecord {
     pub name: String,
@@ -99,6 +120,7 @@ pub struct ProcedureRecord {
     pub history: History,
 }
 
+/// A result under its name in the language.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedResult {
     pub name: &'static str,
@@ -146,6 +168,7 @@ pub struct RampStep {
     pub returning: bool,
 }
 
+/// A stiffness ramp, place by place, and what was fitted to it.
 #[derive(Clone, Debug)]
 pub struct RampHistory {
     pub steps: Vec<RampStep>,
@@ -179,6 +202,7 @@ pub struct SweepStep {
     pub steady: bool,
 }
 
+/// A damping sweep, reading by reading, and the line through its pairs.
 #[derive(Clone, Debug)]
 pub struct SweepHistory {
     pub steps: Vec<SweepStep>,
@@ -225,6 +249,7 @@ pub struct ImpactStep {
     pub tracking: Tracking,
 }
 
+/// An impact on one degree of freedom, step by step.
 #[derive(Clone, Debug)]
 pub struct ImpactHistory {
     pub steps: Vec<ImpactStep>,
@@ -285,6 +310,7 @@ impl Floors for ShakeStep {
     }
 }
 
+/// A frame on moving ground, step by step.
 #[derive(Clone, Debug, Default)]
 pub struct ShakeHistory {
     pub steps: Vec<ShakeStep>,
@@ -323,6 +349,7 @@ impl History {
 }
 
 impl Record {
+    /// The procedure of this name; None where the run did not get to it.
     #[must_use]
     pub fn procedure(&self, name: &str) -> Option<&ProcedureRecord> {
         self.procedures.iter().find(|procedure| procedure.name == name)
@@ -330,6 +357,7 @@ impl Record {
 }
 
 impl ProcedureRecord {
+    /// The result of this name.
     #[must_use]
     pub fn result(&self, name: &str) -> Option<&NamedResult> {
         self.results.iter().find(|result| result.name == name)

@@ -122,6 +122,7 @@ impl Restitution {
         // A pair that parts as the step begins has not touched in it.
         let touched = self.joined || way.impulse > 0.0;
         let passed = Passed {
+            structure: (),
             striker_displacement: way.striker_displacement,
             striker_velocity: way.striker_velocity,
             state: if touched { StepState::Contact } else { StepState::Free },

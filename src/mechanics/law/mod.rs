@@ -44,10 +44,10 @@ pub struct Start {
     pub indentation: f64,
 }
 
-/// … and at its end.
+/// … and at its end; of the structure, what `S` tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Advance {
-    pub structure: Motion,
+pub struct Advance<S = Motion> {
+    pub structure: S,
     pub striker_displacement: f64,
     pub striker_velocity: f64,
     pub state: StepState,

@@ -23,6 +23,7 @@ pub struct RestitutionContact {
 }
 
 impl RestitutionContact {
+    /// e, from 0 (they stick) to 1 (nothing is lost); the bodies begin apart.
     #[must_use]
     pub const fn new(coefficient: f64) -> Self {
         Self { coefficient, joined: false }

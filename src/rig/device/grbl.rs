@@ -23,6 +23,7 @@ const TOP_SPEED: u64 = 110;
 /// Steps per mm of X.
 const STEPS: u64 = 100;
 
+/// The frame at the other end of a line.
 pub struct GrblDevice {
     talk: Talk,
     asking: Asking,

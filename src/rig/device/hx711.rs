@@ -5,6 +5,7 @@ use super::{DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk, stre
 use crate::rig::Tally;
 use crate::rig::dialect::hx711::{self, RAILS};
 
+/// The converter at the other end of a line.
 pub struct Hx711Device {
     talk: Talk,
 }

@@ -6,6 +6,7 @@ use super::{Answer, DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Ta
 use crate::rig::Tally;
 use crate::rig::dialect::indicator::{self, Status};
 
+/// The indicator at the other end of a line.
 pub struct IndicatorDevice {
     talk: Talk,
     asking: Asking,

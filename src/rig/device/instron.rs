@@ -15,6 +15,7 @@ const TRIES: u32 = 3;
 const SAME_TARGET: f64 = 1e-7;
 const SAME_TIME: f64 = 1e-3;
 
+/// The console at the other end of a line.
 pub struct Instron {
     talk: Talk,
     position: Reader,

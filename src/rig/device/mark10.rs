@@ -16,6 +16,7 @@ const OVERRUN: f64 = 5e-5;
 /// Twice, since one may be taken for a digit of a setting that was cut short.
 const EMERGENCY: &[u8] = b"ss";
 
+/// The stand at the other end of a line.
 pub struct Mark10 {
     talk: Talk,
     /// Travel as last read, m.

@@ -7,6 +7,7 @@ use super::{DeviceFault, DeviceIdentity, Gauge, Sample, Talk};
 use crate::rig::Tally;
 use crate::rig::dialect::mark10;
 
+/// The gauge at the other end of a line.
 pub struct Mark10Gauge {
     talk: Talk,
 }

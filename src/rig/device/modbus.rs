@@ -19,6 +19,7 @@ const IMPLAUSIBLE_FORCE: f64 = 1e12;
 /// Smaller than any reading but zero: what a float becomes when its words are swapped.
 const IMPLAUSIBLY_SMALL: f64 = 1e-30;
 
+/// The drive, or the transmitter, at the other end of a line.
 pub struct Modbus {
     talk: Talk,
     map: ModbusMap,

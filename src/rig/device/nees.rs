@@ -14,6 +14,7 @@ const SESSION: &str = "psd";
 /// Steps announced when a session opens: a coordinator must say a number, and rigs only show it.
 const ANNOUNCED_STEPS: u32 = 1_000_000;
 
+/// The site at the other end of a line.
 pub struct Nees {
     talk: Talk,
     /// One an axis.

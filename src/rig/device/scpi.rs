@@ -8,6 +8,7 @@ use crate::rig::dialect::scpi;
 /// How often a question is put before it is given up.
 const ATTEMPTS: u32 = 3;
 
+/// The meter at the other end of a line.
 pub struct ScpiDevice {
     talk: Talk,
     /// One a channel.
