@@ -64,9 +64,11 @@ pub fn open(plan: &Plan, attendance: &Attendance, wish: Wish, settings: Settings
 
 /// [`open`] for a client that drives: watched in lines, and `wish` is what signals become.
 pub fn open_for_client(plan: &Plan, attendance: &Attendance, settings: Settings, wish: &Wish) -> Result<Opened, Failure> {
+    let early = Signals::caught(wish).map_err(Failure::Signals)?;
     let connected = connect(&plan.rig, &plan.limits, wish)?;
     let simulated = connected.rig.identity().simulated;
     let watcher = Watcher::in_lines(settings, attendance, plan, simulated, wish.clone()).map_err(Failure::Signals)?;
+    drop(early);
     Ok(Opened { connected, watcher })
 }
 

@@ -19,6 +19,7 @@ mod needs;
 mod person;
 mod resumed;
 mod served;
+mod signals;
 mod signed;
 mod stage;
 mod terminal;
