@@ -36,7 +36,8 @@ impl Terminal {
     }
 
     fn of_size(columns: u16, command: &mut Command) -> Self {
-        let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        // No program started meanwhile keeps it open.
+        let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&keys).unwrap();
         unlockpt(&keys).unwrap();
         tcsetwinsize(&keys, size(columns)).unwrap();
