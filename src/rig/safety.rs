@@ -162,7 +162,9 @@ mod tests {
 
     /// What was sent, and which thread sent it: other tests panic and hold too, and theirs reach every armed line.
     #[derive(Clone, Default)]
-    struct Recorder(Arc<Mutex<Vec<(ThreadId, Vec<u8>)>>>);
+    struct Recorder(Arc<Mutex<Vec<Sent>>>);
+
+    type Sent = (ThreadId, Vec<u8>);
 
     impl Emergency for Recorder {
         fn send(&mut self, bytes: &[u8]) {
