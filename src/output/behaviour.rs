@@ -2,7 +2,8 @@
 //! Out: labelled texts, for the certificate and for `psd check --explain`.
 
 use crate::mechanics::beam::first_mode_mass_factor;
-use crate::plan::{Beam, Behaviour, Breaks, Ends, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
+use crate::mechanics::portal_mass::{EquivalentMasses, equivalent_masses};
+use crate::plan::{Beam, Behaviour, Breaks, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
 use crate::quantity::Dimension;
 
 /// Shows a number that somebody stated, or that follows from such.
@@ -188,6 +189,7 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
     };
     // N·m² has no name among the dimensions: shown as what bends a beam of 1 m.
     let section = portal.bending_stiffness.map_or_else(String::new, |bending| format!(", EI {}", of_both(bending, "N·m²")));
+    let weighs = portal.masses.map_or_else(String::new, |masses| frame_words(masses, shown));
     let loads = match portal.loads {
         Loads::Sway => "sway load".to_owned(),
         Loads::Beam => "load at midspan".to_owned(),
@@ -198,7 +200,7 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
         ),
     };
     format!(
-        "portal, fixed feet, span {}, height {}, plastic moment {}{section}, {loads}: stiffness {}",
+        "portal, fixed feet, span {}, height {}, plastic moment {}{section}{weighs}, {loads}: stiffness {}",
         shown(portal.span, Dimension::LENGTH),
         shown(portal.height, Dimension::LENGTH),
         of_both(portal.plastic_moment, "N·m"),
@@ -206,7 +208,32 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
     )
 }
 
-/// What follows from a geometry: a beam's own mass in its first mode, a portal's mechanism.
+fn frame_words(masses: FrameMasses, shown: Shown<'_>) -> String {
+    let FrameMasses { per_length, midspan, corner } = masses;
+    let one = |value: f64| shown(value, Dimension::MASS_PER_LENGTH);
+    let members = match (per_length.beam > 0.0, per_length.are_same()) {
+        (false, _) => String::new(),
+        (true, true) => format!(", mass {}", one(per_length.beam)),
+        (true, false) => format!(", mass {} of the beam and {} of the columns", one(per_length.beam), one(per_length.column)),
+    };
+    let lump = |mass: f64, place: &str| {
+        if mass > 0.0 { format!(", {} {place}", shown(mass, Dimension::MASS)) } else { String::new() }
+    };
+    members + &lump(midspan, "at midspan") + &lump(corner, "at each corner")
+}
+
+/// Equivalent masses of a frame, each with the shape that it is of and the share of the whole that it is.
+fn portal_masses(masses: EquivalentMasses, shown: Shown<'_>, rows: &mut Vec<(&'static str, String)>) {
+    let all = shown(masses.whole, Dimension::MASS);
+    let of = |mass: f64, shape: &str| {
+        format!("{} ({:.4} of the frame's {all}, {shape})", shown(mass, Dimension::MASS), mass / masses.whole)
+    };
+    rows.push(("elastic equivalent mass", of(masses.elastic, "static deflection as the shape")));
+    rows.extend(masses.plastic.map(|plastic| ("plastic equivalent mass", of(plastic, "the mechanism as the shape"))));
+    rows.push(("lumped equivalent mass", of(masses.lumped, "half of each member at its ends, as the paper's Fig. 5")));
+}
+
+/// What follows from a geometry: a beam's own mass in its first mode, a portal's mechanism and masses.
 fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str, String)>) {
     match behaviour {
         Behaviour::Beam(beam) => {
@@ -230,6 +257,10 @@ fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str,
                 .collect();
             rows.push(("collapse loads", loads.join(", ")));
             rows.push(("capacity", shown(portal.capacity(), Dimension::FORCE)));
+            rows.push(("yields at", shown(portal.capacity() / portal.stiffness, Dimension::LENGTH)));
+            if let Some(masses) = equivalent_masses(portal) {
+                portal_masses(masses, shown, rows);
+            }
         }
         _ => behaviour.parts().iter().for_each(|part| follow(part, shown, rows)),
     }

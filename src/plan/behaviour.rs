@@ -3,6 +3,8 @@
 
 use super::portal::Portal;
 use crate::mechanics::logarithmic::lost_after_long;
+use crate::mechanics::portal_mass::EquivalentMasses;
+use crate::mechanics::{beam, portal_mass};
 
 /// Restoring force of a virtual specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -263,6 +265,19 @@ impl Behaviour {
             Self::Series(parts) => parts.iter().map(Self::capacity).fold(f64::INFINITY, f64::min),
             Self::Parallel(parts) => parts.iter().map(Self::capacity).sum(),
             Self::Portal(portal) => portal.capacity(),
+        }
+    }
+
+    /// Equivalent masses that its geometry gives; what stands around a beam or portal goes the same way.
+    #[must_use]
+    pub fn equivalent_masses(&self) -> Option<EquivalentMasses> {
+        match self {
+            Self::Beam(beam) => beam::equivalent_masses(beam),
+            Self::Portal(portal) => portal_mass::equivalent_masses(portal),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                of.equivalent_masses()
+            }
+            _ => None,
         }
     }
 

@@ -35,7 +35,7 @@ pub use identification::{
     BreakCount, DampingSweep, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
 };
 pub use integrator::{Integrator, Mode};
-pub use portal::{Loads, Mechanism, Portal, Sections};
+pub use portal::{ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses};
 pub use rig::{
     Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
     RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,

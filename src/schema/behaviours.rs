@@ -255,6 +255,14 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("column_second_moment", Dimension::SECOND_MOMENT, "second moment of area of the columns")
                 .above_zero()
                 .or_said("as the beam's"),
+            Field::quantity("mass_per_length", Dimension::MASS_PER_LENGTH, "of the beam; gives the specimen its mass where it states none")
+                .above_zero()
+                .or_said("density * area of the specimen"),
+            Field::quantity("column_mass_per_length", Dimension::MASS_PER_LENGTH, "of the columns")
+                .above_zero()
+                .or_said("as the beam's"),
+            Field::quantity("midspan_mass", Dimension::MASS, "carried at midspan").or(0.0, "kg").at_least_zero(),
+            Field::quantity("corner_mass", Dimension::MASS, "carried at each corner").or(0.0, "kg").at_least_zero(),
         ],
         "a portal frame with fixed feet by plastic hinges: elastic up to the least collapse load",
     ),
