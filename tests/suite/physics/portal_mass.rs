@@ -141,45 +141,56 @@ impl Mesh {
         shape.iter().zip(self.masses.iter()).map(|(moved, mass)| mass * moved * moved).sum()
     }
 
-    /// ω² of the first mode of the kind that the load pushes, by inverse iteration: few steps, before rounding lets in a mode of the other kind.
+    /// ω² of the first mode of the kind that the load pushes, by inverse iteration; rounding would let in those of the other kind.
     fn first_mode(&self, given: Given) -> f64 {
         let parts = self.stiffness.clone().lu();
-        let mut shape = parts.solve(&self.load(given)).expect("it stands");
-        for _ in 0..8 {
-            let inertia = shape.component_mul(&self.masses);
-            let next = parts.solve(&inertia).expect("it stands");
+        let kind = if matches!(given.loads, Loads::Beam) { 1.0 } else { -1.0 };
+        let solved = |load: &DVector<f64>| self.of_kind(kind, &parts.solve(load).expect("it stands"));
+        let mut shape = solved(&self.load(given));
+        for _ in 0..20 {
+            let next = solved(&shape.component_mul(&self.masses));
             shape = &next / self.energy(&next).sqrt();
         }
         shape.dot(&(&self.stiffness * &shape)) / self.energy(&shape)
     }
+
+    /// The symmetric (1) or antisymmetric (−1) part of a shape.
+    fn of_kind(&self, kind: f64, shape: &DVector<f64>) -> DVector<f64> {
+        let mirrored = |place: usize| {
+            let (node, direction) = (4 * self.n - place / 3, place % 3);
+            let sign = if direction == 1 { kind } else { -kind };
+            sign * shape[3 * node + direction]
+        };
+        DVector::from_fn(shape.len(), |place, _| 0.5 * (shape[place] + mirrored(place)))
+    }
 }
 
-/// Lumping errs with the square of the length of an element: halving it leaves a quarter of the difference to the closed form.
+/// Lumping errs with the square of the length of an element, of a frame that only deflects with the fourth power: halving it leaves a quarter of
+/// the difference to the closed form, or less.
 #[test]
 fn the_elastic_mass_is_that_of_finite_elements_as_they_grow_small() {
     for given in givens() {
         let found = given.reduced().elastic;
         let errors = [4, 8, 16].map(|n| Mesh::of(given, n).equivalent_mass(given) / found - 1.0);
         let told = format!("{:?}, EI {:?}: {errors:?}", given.loads, given.bending);
-        assert!(errors[2].abs() < 5e-4, "{told}");
-        for pair in errors.windows(2) {
-            let ratio = pair[0] / pair[1];
-            assert!((3.8..4.2).contains(&ratio) || pair[1].abs() < 1e-6, "{told}");
-        }
-        // Without the error of second order.
-        assert!(((4.0 * errors[2] - errors[1]) / 3.0).abs() < 2e-6, "{told}");
+        assert!(errors.windows(2).all(|pair| pair[0] / pair[1] > 3.8 || pair[1].abs() < 2e-7), "{told}");
+        // Without the errors of second and of fourth order (Romberg).
+        let [coarse, fine] = [0, 1].map(|at| (4.0 * errors[at + 1] - errors[at]) / 3.0);
+        assert!(((16.0 * fine - coarse) / 15.0).abs() < 2e-6, "{told}");
     }
 }
 
-/// The static deflection is a shape that the frame is forced into: Rayleigh's quotient K/M is above ω² of the first mode of its kind, and
-/// near it.
+/// The static deflection is a shape that the frame is forced into: Rayleigh's quotient K/M is above ω² of the first mode of its kind. It is near it
+/// where that mode is the frame's; slender columns that weigh three times as much a metre as the beam have one of their own below.
 #[test]
 fn stiffness_over_elastic_mass_is_just_above_the_first_frequency() {
     for given in givens().into_iter().filter(|given| !matches!(given.loads, Loads::Combined { .. })) {
         let [coarse, fine] = [8, 16].map(|n| Mesh::of(given, n).first_mode(given));
         let exact = (4.0 * fine - coarse) / 3.0;
-        let quotient = given.portal().stiffness / given.reduced().elastic;
-        assert!(quotient > exact * (1.0 - 1e-6) && quotient < 1.06 * exact, "{:?}: {quotient} is not near {exact}", given.loads);
+        let above = given.portal().stiffness / given.reduced().elastic / exact - 1.0;
+        let own_mode = matches!(given.loads, Loads::Beam) && !given.masses.per_length.are_same();
+        let told = format!("{:?}, EI {:?}: {above}", given.loads, given.bending);
+        assert!(above > -1e-5 && (own_mode || above < 0.05), "{told}");
     }
 }
 
