@@ -7,6 +7,7 @@ use super::frame;
 use super::limits::CheckedLimits;
 use super::striker::uncertainty;
 use crate::formula::{Formula, Function, Stated};
+use crate::mechanics::portal_limit::mechanism_limit;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
@@ -180,6 +181,10 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -
                 _ => masses.plastic,
             });
             (value.unwrap_or(f64::INFINITY), "its geometry does not give it")
+        }
+        ("mechanism_limit", _) => {
+            let limit = behaviour.portal().and_then(mechanism_limit);
+            (limit.unwrap_or(f64::INFINITY), "it is no `portal` under one load whose members have a mass")
         }
         (_, Behaviour::Portal(portal)) => {
             let mechanism = Mechanism::ALL.into_iter().find(|mechanism| name.starts_with(mechanism.name()))?;

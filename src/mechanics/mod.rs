@@ -26,6 +26,7 @@ pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
+pub mod portal_limit;
 pub mod portal_mass;
 pub mod reached_fit;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! Out: labelled texts, for the certificate and for `psd check --explain`.
 
 use crate::mechanics::beam::first_mode_mass_factor;
+use crate::mechanics::portal_limit::mechanism_limit;
 use crate::mechanics::portal_mass::{EquivalentMasses, equivalent_masses};
 use crate::plan::{Beam, Behaviour, Breaks, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
 use crate::quantity::Dimension;
@@ -260,6 +261,9 @@ fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str,
             rows.push(("yields at", shown(portal.capacity() / portal.stiffness, Dimension::LENGTH)));
             if let Some(masses) = equivalent_masses(portal) {
                 portal_masses(masses, shown, rows);
+            }
+            if let Some(most) = mechanism_limit(portal).filter(|most| most.is_finite()) {
+                rows.push(("follows its mechanism up to", shown(most, Dimension::FORCE)));
             }
         }
         _ => behaviour.parts().iter().for_each(|part| follow(part, shown, rows)),

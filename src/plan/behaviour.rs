@@ -281,6 +281,16 @@ impl Behaviour {
         }
     }
 
+    /// The portal that it is, also inside of what goes the same way.
+    #[must_use]
+    pub fn portal(&self) -> Option<&Portal> {
+        match self {
+            Self::Portal(portal) => Some(portal),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => of.portal(),
+            _ => None,
+        }
+    }
+
     /// The same with every force times `factor`: it yields and breaks at the same displacements.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
