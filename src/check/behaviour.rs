@@ -80,7 +80,12 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
         "elastic" => Some(Behaviour::Elastic { stiffness: number("stiffness")? }),
         "bilinear" => {
             let (stiffness, yield_force, hardening) = (number("stiffness"), number("yield_force"), number("hardening"));
-            Some(Behaviour::Bilinear { stiffness: stiffness?, yield_force: yield_force?, hardening: hardening? })
+            let (exponent, residual) = (number("deterioration_exponent"), number("residual_strength"));
+            let (stiffness, yield_force, hardening) = (stiffness?, yield_force?, hardening?);
+            Some(match deterioration(checker, &chosen, place, (exponent?, residual?))? {
+                None => Behaviour::Bilinear { stiffness, yield_force, hardening },
+                Some(deterioration) => Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration },
+            })
         }
         "bouc_wen" => {
             let (stiffness, yield_force, hardening) = (number("stiffness"), number("yield_force"), number("hardening"));
@@ -155,7 +160,11 @@ fn deterioration<'a>(
     place: Place,
     (exponent, residual): (f64, f64),
 ) -> Option<Option<Deterioration>> {
-    let mut of = |name| checker.optional_argument(chosen, name, place);
+    // Two slopes alone are not capped, and reload along their own.
+    let mut of = |name| match chosen.find(name) {
+        Some(_) => checker.optional_argument(chosen, name, place),
+        None => Some(None),
+    };
     let stated = [of("energy_capacity"), of("capping_capacity"), of("unloading_capacity"), of("reloading_capacity")];
     let [strength, capping, unloading, reloading] = stated;
     let all = [strength?, capping?, unloading?, reloading?];

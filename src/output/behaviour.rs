@@ -4,7 +4,7 @@
 use crate::mechanics::beam::first_mode_mass_factor;
 use crate::mechanics::portal_limit::mechanism_limit;
 use crate::mechanics::portal_mass::{EquivalentMasses, equivalent_masses};
-use crate::plan::{Beam, Behaviour, Breaks, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
+use crate::plan::{Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
 use crate::quantity::Dimension;
 
 /// Shows a number that somebody stated, or that follows from such.
@@ -46,6 +46,10 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                 ("hardening", *hardening, Of::NUMBER),
             ],
         ),
+        Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration } => {
+            let plain = Behaviour::Bilinear { stiffness: *stiffness, yield_force: *yield_force, hardening: *hardening };
+            words(&plain, shown) + &worn(*deterioration, yield_force * yield_force / stiffness, shown)
+        }
         Behaviour::Multilinear { corners } => {
             let corners: Vec<String> =
                 corners.iter().map(|[x, force]| format!("{} at {}", shown(*force, Of::FORCE), shown(*x, Of::LENGTH))).collect();
@@ -74,7 +78,8 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                     ("unloading exponent", pinching.unloading_exponent, Of::NUMBER),
                 ],
             );
-            told + &capped(pinching, shown) + &worn(pinching, shown)
+            let unit = pinching.yield_force * pinching.yield_force / pinching.stiffness;
+            told + &capped(pinching, shown) + &pinching.deterioration.map_or_else(String::new, |lost| worn(lost, unit, shown))
         }
         Behaviour::Degrading { stiffness, half_displacement, residual } => list(
             "degrading",
@@ -138,9 +143,8 @@ fn capped(pinching: &Pinching, shown: Shown<'_>) -> String {
     })
 }
 
-/// What is lost with energy, mode by mode.
-fn worn(pinching: &Pinching, shown: Shown<'_>) -> String {
-    let Some(lost) = pinching.deterioration else { return String::new() };
+/// What is lost with energy, mode by mode; `unit` is `F_y` `x_y`, J.
+fn worn(lost: Deterioration, unit: f64, shown: Shown<'_>) -> String {
     let residual = shown(lost.residual, Dimension::NUMBER);
     let modes = [
         (format!("strength lost with energy: all but {residual} of it"), lost.strength),
@@ -149,8 +153,7 @@ fn worn(pinching: &Pinching, shown: Shown<'_>) -> String {
         ("reloading stiffness".to_owned(), lost.reloading),
     ];
     let told = modes.into_iter().filter(|(_, capacity)| capacity.is_finite()).map(|(words, capacity)| {
-        let energy = capacity * pinching.yield_force * pinching.yield_force / pinching.stiffness;
-        format!(", {words} with {}", shown(energy, Dimension::ENERGY))
+        format!(", {words} with {}", shown(capacity * unit, Dimension::ENERGY))
     });
     format!("{}, exponent {}", told.collect::<String>(), shown(lost.exponent, Dimension::NUMBER))
 }

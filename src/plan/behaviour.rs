@@ -13,6 +13,8 @@ pub enum Behaviour {
     Elastic { stiffness: f64 },
     /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
     Bilinear { stiffness: f64, yield_force: f64, hardening: f64 },
+    /// The same, wearing with the energy it has taken.
+    WearingBilinear { stiffness: f64, yield_force: f64, hardening: f64, deterioration: Deterioration },
     /// A beam by geometry.
     Beam(Beam),
     /// Piecewise linear, with kinematic hardening: corners of the first loading, displacement (m) and force (N), both rising,
@@ -169,6 +171,7 @@ impl Behaviour {
         match self {
             Self::Elastic { stiffness }
             | Self::Bilinear { stiffness, .. }
+            | Self::WearingBilinear { stiffness, .. }
             | Self::BoucWen { stiffness, .. }
             | Self::Degrading { stiffness, .. } => *stiffness,
             Self::Beam(beam) => beam.stiffness,
@@ -202,6 +205,7 @@ impl Behaviour {
             Self::Parallel(parts) => parts.iter().map(Self::largest_stiffness).sum(),
             Self::Elastic { .. }
             | Self::Bilinear { .. }
+            | Self::WearingBilinear { .. }
             | Self::Beam(_)
             | Self::Multilinear { .. }
             | Self::Pinching(_)
@@ -242,9 +246,9 @@ impl Behaviour {
         match self {
             // However fast it is moved, a branch resists.
             Self::Elastic { .. } | Self::Beam(_) | Self::Maxwell { .. } => f64::INFINITY,
-            Self::Bilinear { yield_force, hardening, .. } | Self::BoucWen { yield_force, hardening, .. } => {
-                hardens(*hardening, *yield_force)
-            }
+            Self::Bilinear { yield_force, hardening, .. }
+            | Self::WearingBilinear { yield_force, hardening, .. }
+            | Self::BoucWen { yield_force, hardening, .. } => hardens(*hardening, *yield_force),
             Self::Pinching(Pinching { stiffness, yield_force, hardening, capping: Some(capping), .. }) => {
                 yield_force + hardening * stiffness * (capping.displacement - yield_force / stiffness)
             }
@@ -298,7 +302,9 @@ impl Behaviour {
         let mut same = self.clone();
         match &mut same {
             Self::Elastic { stiffness } | Self::Degrading { stiffness, .. } => *stiffness *= factor,
-            Self::Bilinear { stiffness, yield_force, .. } | Self::BoucWen { stiffness, yield_force, .. } => {
+            Self::Bilinear { stiffness, yield_force, .. }
+            | Self::WearingBilinear { stiffness, yield_force, .. }
+            | Self::BoucWen { stiffness, yield_force, .. } => {
                 *stiffness *= factor;
                 *yield_force *= factor;
             }

@@ -147,5 +147,5 @@ pub fn beyond_mechanism(mechanism: Mechanism, (force, most): (f64, f64), span: S
     let name = mechanism.name();
     Diagnostic::new(Code::BeyondMechanism, format!("a contact force above {most} makes other hinges than those of the {name} mechanism"))
         .at(span, format!("may come to {force}"))
-        .help("expect hinges nearer to the blow: a single degree of freedom does not have them; or bound the force by what the mechanism follows")
+        .help("bound the force by what the mechanism follows, or expect hinges nearer to the blow, which one degree of freedom has not")
 }
