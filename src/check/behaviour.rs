@@ -6,9 +6,7 @@ use super::faults::{shown, specimens as fault, values};
 use super::{portal, table_file};
 use crate::mechanics::beam;
 use crate::mechanics::logarithmic::lost_after_long;
-use crate::plan::{
-    Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Pinching, Table, Unloading,
-};
+use crate::plan::{Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Pinching, Table, Unloading};
 use crate::quantity::Dimension;
 use crate::schema::Variant;
 use crate::source::Span;

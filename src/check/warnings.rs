@@ -7,8 +7,8 @@ use crate::formula::Formula;
 use crate::mechanics::frame::Damping;
 use crate::mechanics::portal_limit::mechanism_limit;
 use crate::plan::{
-    Behaviour, Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake, Specimen, StoreyImpact,
-    Striker, Until,
+    Behaviour, Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake,
+    Specimen, StoreyImpact, Striker, Until,
 };
 use crate::schema::Kind;
 use crate::source::{FileId, Span};

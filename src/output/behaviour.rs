@@ -4,7 +4,9 @@
 use crate::mechanics::beam::first_mode_mass_factor;
 use crate::mechanics::portal_limit::mechanism_limit;
 use crate::mechanics::portal_mass::{EquivalentMasses, equivalent_masses};
-use crate::plan::{Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
+use crate::plan::{
+    Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal, Sections, Unloading,
+};
 use crate::quantity::Dimension;
 
 /// Shows a number that somebody stated, or that follows from such.
@@ -152,9 +154,10 @@ fn worn(lost: Deterioration, unit: f64, shown: Shown<'_>) -> String {
         ("unloading stiffness".to_owned(), lost.unloading),
         ("reloading stiffness".to_owned(), lost.reloading),
     ];
-    let told = modes.into_iter().filter(|(_, capacity)| capacity.is_finite()).map(|(words, capacity)| {
-        format!(", {words} with {}", shown(capacity * unit, Dimension::ENERGY))
-    });
+    let told = modes
+        .into_iter()
+        .filter(|(_, capacity)| capacity.is_finite())
+        .map(|(words, capacity)| format!(", {words} with {}", shown(capacity * unit, Dimension::ENERGY)));
     format!("{}, exponent {}", told.collect::<String>(), shown(lost.exponent, Dimension::NUMBER))
 }
 

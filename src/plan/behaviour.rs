@@ -290,7 +290,9 @@ impl Behaviour {
     pub fn portal(&self) -> Option<&Portal> {
         match self {
             Self::Portal(portal) => Some(portal),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => of.portal(),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                of.portal()
+            }
             _ => None,
         }
     }

@@ -41,9 +41,8 @@ const ENERGY_CAPACITY: Field =
         .above_zero()
         .or_said("its strength is kept");
 
-const UNLOADING_CAPACITY: Field = Field::quantity("unloading_capacity", Dimension::NUMBER, "γ of the unloading stiffness")
-    .above_zero()
-    .or_said("it is kept");
+const UNLOADING_CAPACITY: Field =
+    Field::quantity("unloading_capacity", Dimension::NUMBER, "γ of the unloading stiffness").above_zero().or_said("it is kept");
 
 const DETERIORATION_EXPONENT: Field =
     Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of what is lost in each mode").or(1.0, "").within(0.5, 4.0);
@@ -77,15 +76,7 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
     Variant::with("elastic", &[STIFFNESS], "a linear spring"),
     Variant::with(
         "bilinear",
-        &[
-            STIFFNESS,
-            YIELD_FORCE,
-            HARDENING,
-            ENERGY_CAPACITY,
-            UNLOADING_CAPACITY,
-            DETERIORATION_EXPONENT,
-            RESIDUAL_STRENGTH,
-        ],
+        &[STIFFNESS, YIELD_FORCE, HARDENING, ENERGY_CAPACITY, UNLOADING_CAPACITY, DETERIORATION_EXPONENT, RESIDUAL_STRENGTH],
         "elastic–plastic with kinematic hardening; wears with the energy it takes where a capacity is stated",
     ),
     Variant::with(
@@ -276,9 +267,13 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("column_second_moment", Dimension::SECOND_MOMENT, "second moment of area of the columns")
                 .above_zero()
                 .or_said("as the beam's"),
-            Field::quantity("mass_per_length", Dimension::MASS_PER_LENGTH, "of the beam; gives the specimen its mass where it states none")
-                .above_zero()
-                .or_said("density * area of the specimen"),
+            Field::quantity(
+                "mass_per_length",
+                Dimension::MASS_PER_LENGTH,
+                "of the beam; gives the specimen its mass where it states none",
+            )
+            .above_zero()
+            .or_said("density * area of the specimen"),
             Field::quantity("column_mass_per_length", Dimension::MASS_PER_LENGTH, "of the columns")
                 .above_zero()
                 .or_said("as the beam's"),

@@ -43,7 +43,11 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
         ResultKind::new("beam_collapse_load", Dimension::FORCE, "of a portal, W + H of the beam mechanism"),
         ResultKind::new("sway_collapse_load", Dimension::FORCE, "of a portal, W + H of the sway mechanism"),
         ResultKind::new("combined_collapse_load", Dimension::FORCE, "of a portal, W + H of the combined mechanism"),
-        ResultKind::new("mechanism_limit", Dimension::FORCE, "of a portal under one load, the largest that its mechanism follows"),
+        ResultKind::new(
+            "mechanism_limit",
+            Dimension::FORCE,
+            "of a portal under one load, the largest that its mechanism follows",
+        ),
     ],
     results: &[],
     example: "specimen beam {\n  mass = 0.73 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}",

@@ -145,7 +145,12 @@ pub fn table_too_short(file: &str, table: Interval, limit: Interval, named_at: S
 pub fn beyond_mechanism(mechanism: Mechanism, (force, most): (f64, f64), span: Span) -> Diagnostic {
     let [force, most] = [force, most].map(|force| shown(force, Dimension::FORCE));
     let name = mechanism.name();
-    Diagnostic::new(Code::BeyondMechanism, format!("a contact force above {most} makes other hinges than those of the {name} mechanism"))
-        .at(span, format!("may come to {force}"))
-        .help("bound the force by what the mechanism follows, or expect hinges nearer to the blow, which one degree of freedom has not")
+    Diagnostic::new(
+        Code::BeyondMechanism,
+        format!("a contact force above {most} makes other hinges than those of the {name} mechanism"),
+    )
+    .at(span, format!("may come to {force}"))
+    .help(
+        "bound the force by what the mechanism follows, or expect hinges nearer to the blow, which one degree of freedom has not",
+    )
 }

@@ -68,7 +68,8 @@ fn worst(frame: &Portal, load: f64) -> f64 {
     let mut worst: f64 = 0.0;
     for place in 0..POINTS {
         let here = at(place);
-        let beyond = (place + 1..POINTS).map(|point| per_length * step * at(point) * acceleration * (at(point) - here)).sum::<f64>();
+        let beyond =
+            (place + 1..POINTS).map(|point| per_length * step * at(point) * acceleration * (at(point) - here)).sum::<f64>();
         let moment = end - across * (length - here) + beyond;
         worst = worst.max(moment.abs() / strong);
     }

@@ -32,14 +32,10 @@ fn simple() -> impl Strategy<Value = Behaviour> {
     let capped = capped.boxed();
     let falls = (prop::option::of(tires.clone()), prop::option::of(capped));
     let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
-    let wearing = (stiffness(), force(), hardening(), tires.clone()).prop_map(
-        |(stiffness, yield_force, hardening, deterioration)| Behaviour::WearingBilinear {
-            stiffness,
-            yield_force,
-            hardening,
-            deterioration,
-        },
-    );
+    let wearing =
+        (stiffness(), force(), hardening(), tires.clone()).prop_map(|(stiffness, yield_force, hardening, deterioration)| {
+            Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration }
+        });
     let pinching = (stiffness(), force(), hardening(), shape, falls).prop_map(
         |(stiffness, yield_force, hardening, (force_factor, displacement_factor, unloading_exponent), (tires, capping))| {
             // One strength is never lost, whatever takes the rest.
