@@ -317,7 +317,8 @@ pub trait Rig {
     /// Stops all motion and keeps the load.
     fn hold(&mut self);
 
-    /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent stiffness.
+    /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent
+    /// stiffness.
     fn declared_noise(&self) -> DeclaredNoise;
 
     /// Speed of a move for which none is asked, m/s; None: as fast as the plan's limits allow.

@@ -6,7 +6,7 @@ use std::cell::Cell;
 use super::driven::{Driver, Specimen};
 use super::tape::{self, Header, HeaderFile, Played};
 use super::testing::elastic_plan;
-use super::{Inspection, Observer, Parting, StepReport};
+use super::{Inspection, Observer, Parting};
 use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, Journal, recover};
@@ -41,9 +41,6 @@ struct Person {
 }
 
 impl Observer for Person {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
     fn stop_requested(&self) -> bool {
         self.wants.replace(false)
     }

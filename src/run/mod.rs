@@ -114,13 +114,15 @@ use stop::Stop;
 /// Who watches a run: a progress bar, a live screen, a journal, a person.
 pub trait Observer {
     /// A procedure begins; `steps` is an upper bound of its steps where one is known.
-    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
-    fn step_done(&mut self, report: &StepReport);
-    fn procedure_finished(&mut self, name: &str);
+    fn procedure_started(&mut self, _name: &str, _keyword: &str, _steps: Option<u64>) {}
+    fn step_done(&mut self, _report: &StepReport) {}
+    fn procedure_finished(&mut self, _name: &str) {}
     /// The uncertainty of the results is being worked out, by runs taken again: so many of so many are done.
     fn studying(&mut self, _done: usize, _of: usize) {}
     /// Asked after every step: true stops the run after holding the rig.
-    fn stop_requested(&self) -> bool;
+    fn stop_requested(&self) -> bool {
+        false
+    }
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
@@ -228,12 +230,6 @@ pub(crate) const UNLOADING: &str = "unloading to where the run began";
 pub struct Unwatched;
 
 impl Observer for Unwatched {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
-    fn stop_requested(&self) -> bool {
-        false
-    }
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::go_on()
     }

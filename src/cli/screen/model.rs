@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use super::curve::Curve;
 use crate::plan::{Interval, Limits, Plan};
 use crate::quantity::Dimension;
-use crate::record::{Event, EventKind};
+use crate::record::Event;
 use crate::run::StepReport;
 
 /// Events kept for the screen.
@@ -164,26 +164,12 @@ impl Model {
         .filter(|row| row.limit.high < f64::INFINITY || row.limit.low > if row.size { 0.0 } else { f64::NEG_INFINITY })
         .collect()
     }
-
-    /// The word for an event's kind, as in `summary.json`.
-    pub const fn kind(event: &Event) -> &'static str {
-        match event.kind {
-            EventKind::Note => "note",
-            EventKind::Inspection => "inspection",
-            EventKind::LimitBreach => "limit breach",
-            EventKind::Hold => "hold",
-            EventKind::Fault => "fault",
-            EventKind::Mended => "mended",
-            EventKind::Remark => "remark",
-            EventKind::Resume => "resume",
-            EventKind::Amendment => "amendment",
-        }
-    }
 }
 
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use crate::record::EventKind;
     use crate::run::testing::empty_plan;
 
     pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {

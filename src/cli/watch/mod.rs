@@ -177,14 +177,7 @@ mod tests {
 
     #[test]
     fn a_real_rig_stops_where_nobody_can_be_asked() {
-        let settings = Settings {
-            color: false,
-            stdout_color: false,
-            unicode: true,
-            stderr_terminal: false,
-            stdout_terminal: false,
-            can_ask: false,
-        };
+        let settings = Settings::PLAIN;
         let mut plan = empty_plan();
         plan.particulars.push(("operator", "A. Engineer".to_owned()));
         let ask = |yes, simulated| {

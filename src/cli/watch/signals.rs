@@ -1,5 +1,5 @@
-//! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the
-//! second holds the rig now; by hand, where there are no steps, the first holds it. The signal of a file that is too large is caught too, and does nothing.
+//! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the second holds the
+//! rig now; by hand, where there are no steps, the first holds it. The signal of a file that is too large is caught too, and does nothing.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! A rig that moves a real specimen. In: targets, one an axis, and one or two devices. Out: settled readings in the plan's
-//! sign, each axis judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
+//! A rig that moves a real specimen. In: targets, one an axis, and one or two devices. Out: settled readings in the plan's sign, each axis
+//! judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
 mod heard;
