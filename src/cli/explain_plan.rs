@@ -241,6 +241,7 @@ impl<'a> DryRun<'a> {
         Prediction {
             model: self.model.clone(),
             stopped: self.stopped(),
+            zeros: explain_drift::predicted(&self.record),
             procedures: procedures.collect(),
             limits: limits.collect(),
             requirements: required

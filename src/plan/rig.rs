@@ -143,6 +143,18 @@ pub enum ZeroAfter {
     Nowhere,
 }
 
+impl ZeroAfter {
+    /// As a plan writes it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Free => "free",
+            Self::Nowhere => "nowhere",
+        }
+    }
+}
+
 /// Where the numbers of a rig are traced to.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Calibration {

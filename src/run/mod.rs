@@ -163,6 +163,9 @@ pub struct StepReport {
     pub acceleration: Option<f64>,
     /// Measured restoring force, N.
     pub force: f64,
+    /// Of the last way of the rig, m/s; only for who watches.
+    #[serde(skip)]
+    pub speed: Option<f64>,
     /// Energy error over the input energy; only of procedures that integrate.
     pub energy_error: Option<f64>,
     /// What the monitors of tracking show; only of procedures that integrate.
@@ -271,6 +274,10 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
     }
     for procedure in &plan.procedures {
+        if let Err(stop) = session.stop_if_requested() {
+            record.outcome = ended_by(&stop, plan, &mut session);
+            break;
+        }
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { mut history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
@@ -286,12 +293,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
             history,
         });
         if let Some(stop) = stop {
-            session.end(&stop);
-            let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
-            if unload && stop.leaves_the_rig_sound() {
-                session.unload();
-            }
-            record.outcome = stop.outcome();
+            record.outcome = ended_by(&stop, plan, &mut session);
             break;
         }
         session.leave();
@@ -299,7 +301,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     if let Some(drift) = &mut record.drift {
         drift.held = session.guard.take_held();
         if record.outcome == Outcome::Completed
-            && let Err(stop) = zero::after(drift, &home, &mut session)
+            && let Err(stop) = session.stop_if_requested().and_then(|()| zero::after(drift, &home, &mut session))
         {
             session.end(&stop);
             record.outcome = stop.outcome();
@@ -307,6 +309,16 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     }
     record.events = session.finish();
     record
+}
+
+/// Holds the rig, and takes the load off where that is its safe state and it is still to be trusted.
+fn ended_by(stop: &Stop, plan: &Plan, session: &mut Session<'_>) -> Outcome {
+    session.end(stop);
+    let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
+    if unload && stop.leaves_the_rig_sound() {
+        session.unload();
+    }
+    stop.outcome()
 }
 
 /// What a real rig does once it has proved itself.

@@ -117,19 +117,14 @@ fn a_rig_that_falls_silent_ends_the_sitting_and_the_record_is_sound() {
 }
 
 #[test]
-fn ctrl_c_holds_a_jog_on_its_way() {
-    // A move of twenty seconds, and one of a tenth of one, which may be over first.
-    for speed in ["0.05 mm/s", "10 mm/s"] {
-        let stage = Stage::of(|plan| plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um"), "");
-        let jog = start(&mut stage.recorded_tool("jog", &["--to", "1 mm", "--speed", speed, "--yes"]));
-        stage.after_moves(1);
-        signal(&jog, Signal::INT);
-        let ended = finish(jog);
-        assert_eq!(ended.code, Some(4), "{}", ended.told);
-        assert!(ended.told.contains("on request"), "{}", ended.told);
-        let requests = stage.requests();
-        let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
-        assert!(last(">STOP").max(last("!")) > last(">MOVE"), "not held: {requests:#?}");
-        stage.proven();
-    }
+fn ctrl_c_holds_a_jog_whose_move_may_be_over_first() {
+    // A tenth of a second: on its way a jog is held in `signals`.
+    let stage = Stage::of(|plan| plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um"), "");
+    let jog = start(&mut stage.recorded_tool("jog", &["--to", "1 mm", "--speed", "10 mm/s", "--yes"]));
+    stage.after_moves(1);
+    signal(&jog, Signal::INT);
+    let ended = finish(jog);
+    assert_eq!(ended.code, Some(4), "{}", ended.told);
+    assert!(ended.told.contains("on request") && stage.is_held(), "{}", ended.told);
+    stage.proven();
 }

@@ -73,7 +73,7 @@ impl Served {
     }
 
     /// A person ends it.
-    fn stop(&mut self, sent: Signal) -> (Option<i32>, String) {
+    pub fn stop(&mut self, sent: Signal) -> (Option<i32>, String) {
         signal(&self.program, sent);
         self.ended()
     }

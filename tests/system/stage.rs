@@ -240,6 +240,21 @@ impl Stage {
         verified.told
     }
 
+    /// Whether the last word about moving is the one to stop.
+    pub fn is_held(&self) -> bool {
+        let requests = self.requests();
+        let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
+        last(">STOP").max(last("!")) > last(">MOVE").max(last(">GLIDE"))
+    }
+
+    /// A person stopped the run: the rig stands where it was held, and the record is sound as far as it goes.
+    pub fn held_and_sound(&self, ran: &Ended) {
+        assert_eq!(ran.code, Some(4), "{}", ran.told);
+        assert!(self.is_held(), "not held: {:#?}", self.requests());
+        let verified = self.verify();
+        assert!(verified.code == Some(0) && verified.told.contains("INCOMPLETE"), "{}", verified.told);
+    }
+
     /// Goes on with the run to its end, whose record is then proven.
     pub fn goes_on(&self, more: &[&str]) -> Ended {
         let resumed = wait(&mut self.resume_with(more));
