@@ -87,6 +87,7 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Str
     integrator::stable(checker, block, impact, striker, specimen);
     let allowed = checker.faults[before..].iter().any(|fault| fault.code == Code::BeyondStability);
     warnings::impact(checker, block, impact, striker, specimen, allowed);
+    warnings::mechanism(checker, block, impact, specimen);
 }
 
 /// A step that is longer than the run is no step of it.
