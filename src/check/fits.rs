@@ -45,7 +45,7 @@ fn lacks(ramp: &StiffnessRamp, result: &str) -> Option<(String, &'static str)> {
         "loop_energy" if !ramp.return_path => Some(("it does not come back".to_owned(), "write `return = true`")),
         "tangent_stiffness" if steps < 2 => Some(("it has one step".to_owned(), "take two displacements or more")),
         name if OF_A_KNEE.contains(&name) && ramp.fit == RampFit::Linear => {
-            Some(("a straight line does not yield".to_owned(), "write `fit = bilinear`, or `fit = multilinear(…)`"))
+            Some(("a straight line does not yield".to_owned(), "write `fit = bilinear`, or `fit = multilinear`"))
         }
         name if FITTED.contains(&name) || name == "r_squared" => fitted_to_too_few(ramp),
         _ => None,

@@ -205,4 +205,19 @@ mod tests {
         // Nothing was rounded of the displacements, and nothing calibrated.
         assert_eq!(number(&record, 0, "max_displacement").1, None);
     }
+
+    /// A line through a yielding ramp is the stiffness of nothing, and says so; through a straight one, and one that noise bends, not.
+    #[test]
+    fn a_line_through_a_bend_is_remarked_on() {
+        let says = |behaviour, noise| {
+            let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::StiffnessRamp(ramp(2e-3))]);
+            plan.specimens[0].behaviour = Some(behaviour);
+            plan.rig.link = Link::Virtual(VirtualLink { noise, seed: 9, ..VirtualLink::default() });
+            run_unwatched(&plan).events.iter().any(|event| event.text.starts_with("the outward steps bend near"))
+        };
+        for noise in [0.0, 0.1] {
+            assert!(says(Behaviour::Bilinear { stiffness: STIFFNESS, yield_force: 10.0, hardening: 0.05 }, noise));
+            assert!(!says(Behaviour::Elastic { stiffness: STIFFNESS }, noise));
+        }
+    }
 }

@@ -144,7 +144,9 @@ impl Ramp {
         match plan.fit {
             RampFit::Linear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().filter(|step| !step.returning).map(point).unzip();
-                Fits { line: fit_line(&x, &r), ..Fits::default() }
+                let line = fit_line(&x, &r);
+                let remarks = line.as_ref().and_then(|line| curve::bends(&first().collect::<Vec<Point>>(), line));
+                Fits { line, remarks: remarks.into_iter().collect(), ..Fits::default() }
             }
             RampFit::Bilinear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
