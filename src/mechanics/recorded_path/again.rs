@@ -24,6 +24,8 @@ pub struct Again<'a> {
     turns: Vec<f64>,
     /// The last place, in metres of the record.
     place: f64,
+    /// With which it passed there, in metres of the record, m/s.
+    velocity: f64,
     aside: Option<Aside>,
     /// m
     unseen: f64,
@@ -59,7 +61,7 @@ impl<'a> Again<'a> {
         let place = path.readings[0].target;
         let maps = vec![Map::NONE; path.branches.len()];
         let fading = vec![None; path.branches.len()];
-        Self { path, distortion, step: 0, piece: 0, maps, fading, turns, place, aside: None, unseen: 0.0 }
+        Self { path, distortion, step: 0, piece: 0, maps, fading, turns, place, velocity: 0.0, aside: None, unseen: 0.0 }
     }
 
     /// Where it begins (m), and what is read there: displacement (m) and force (N).
@@ -71,7 +73,14 @@ impl<'a> Again<'a> {
 
     /// Displacement (m) and force (N) read at the target of the next step, m.
     pub fn move_to(&mut self, target: f64) -> (f64, f64) {
-        let place = target / self.distortion.displacement_scale;
+        self.pass(target, 0.0)
+    }
+
+    /// The same of a target that is passed with a velocity, m/s.
+    pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
+        let (target, velocity) = (target / self.distortion.displacement_scale, velocity / self.distortion.displacement_scale);
+        let place = self.path.under_way.as_ref().map_or(target, |under_way| under_way.place(target, velocity));
+        self.velocity = velocity;
         self.step += 1;
         self.go(place);
         self.place = place;
@@ -267,6 +276,10 @@ impl<'a> Again<'a> {
     fn read(&self) -> (f64, f64) {
         let Distortion { force_scale, displacement_scale, zero, noise } = self.distortion;
         let (displacement, force) = self.recorded();
+        let step = self.nearest();
+        let recorded = self.path.readings[step].force;
+        let felt = self.path.under_way.as_ref().map(|under_way| under_way.force(step, (force, recorded), self.velocity));
+        let force = felt.unwrap_or(force);
         let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * force + zero);
         if let Some(noise) = noise {
             let [of_force, of_displacement] = noise.errors(self.step as u64, 0);

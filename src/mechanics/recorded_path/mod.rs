@@ -4,16 +4,19 @@
 //!
 //! The record is cut into curves (`pieces`), on which the force is interpolated; beyond what was recorded of one it goes on
 //! along the tangent there. The way taken again goes from curve to curve at its own turns (`again`). What a curve does when
-//! its beginning has moved, the record does not tell: `Rule` says what is supposed. At the recorded targets the recorded
-//! readings come back as they were, to the bit.
+//! its beginning has moved, the record does not tell: `Rule` says what is supposed. What an actuator under way adds to its
+//! readings is taken off them first (`under_way`). At the recorded targets the recorded readings come back as they were, to the bit.
 
 mod again;
 mod map;
 mod pieces;
+mod under_way;
 
 pub use again::Again;
+pub(super) use under_way::lag;
 
 use self::pieces::{Branch, Piece};
+use self::under_way::UnderWay;
 use super::tangent::NOISE_MULTIPLE;
 
 /// One step of the record.
@@ -99,6 +102,8 @@ pub struct RecordedPath {
     /// Places no farther apart tell no difference of force, m.
     least: f64,
     rule: Rule,
+    /// Of readings made without a stop: `readings` are those of the specimen at rest.
+    under_way: Option<UnderWay>,
 }
 
 impl RecordedPath {
@@ -111,13 +116,28 @@ impl RecordedPath {
         }
         let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
         let (branches, pieces) = pieces::cut(&readings, stiffness, force_noise, least);
-        Some(Self { readings, branches, pieces, least, rule: Rule::Shifted })
+        Some(Self { readings, branches, pieces, least, rule: Rule::Shifted, under_way: None })
+    }
+
+    /// The same of readings made under way, with the velocities foretold for their targets, m/s.
+    #[must_use]
+    pub fn under_way(
+        readings: Vec<Reading>,
+        velocities: &[f64],
+        stiffness: f64,
+        force_noise: f64,
+        resolution: f64,
+    ) -> Option<Self> {
+        let found = UnderWay::of(readings, velocities, resolution);
+        let at_rest = Self::new(found.at_rest(), stiffness, force_noise, resolution)?;
+        Some(Self { under_way: Some(found), ..at_rest })
     }
 
     /// The recorded reading of a step; past the end of the record, of its last.
     #[must_use]
     pub fn recorded(&self, step: usize) -> &Reading {
-        &self.readings[step.min(self.readings.len() - 1)]
+        let step = step.min(self.readings.len() - 1);
+        self.under_way.as_ref().map_or(&self.readings[step], |under_way| under_way.reading(step))
     }
 
     /// Whether it swung through no force and back after it flowed: what came then rests on more than one supposition.

@@ -134,7 +134,7 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
 }
 
 /// Readings at the ends of each stretch without a turn, and its direction.
-fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
+pub(super) fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
     let (mut begin, mut direction) = (0, 0.0);
     for step in 1..readings.len() {

@@ -1,0 +1,221 @@
+//! What is in the readings of an actuator that passed its targets without a stop. In: readings, and the velocity that was
+//! foretold for each target. Out: how far behind the specimen was, what a damper of it gave, and the readings without both:
+//! the specimen as it would be read at rest. It knows no way but the recorded one.
+//!
+//! # Why a way under way must be told without its velocity
+//!
+//! The force of a specimen with a damper is r = f(x) + c·v, and a way that is told as force over place has for its slope
+//!
+//! ```text
+//! dr/dx = f' + c·a/v
+//! ```
+//!
+//! which has no bound where the way turns. Let a motion x = A cos ωt be taken again a share ε larger. At its turn (t = 0) the
+//! force has grown by εkA, as it should. Along the next branch, which is shifted to the new turn, it would grow by
+//!
+//! ```text
+//! δr = εkA + (k + cω cot ωt)·εA(cos ωt − 1)     truly: εkA cos ωt − εcωA sin ωt
+//! ```
+//!
+//! At the quarter the damper gives nothing more, where it should give all of −εcωA; and as the next turn comes near, at
+//! ωt = π − ωs, δr gains 2εcA/s. The last reading before the turn is half a step from it on the mean, s = ½Δt, so that
+//! each turn leaves behind a force
+//!
+//! ```text
+//! δr/(k·εA) = 4c/(k·Δt)
+//! ```
+//!
+//! times what the deviation itself should come to, and the next branch begins with it: a finer step makes it worse. With
+//! C/K = 9 ms and Δt = 10 ms that is 3.6 at every turn. The same holds of a lag: where the actuator is τv behind, the
+//! measured place has the slope 1 − τa/v over the target, and the correction r − K(d_m − d) takes (K − f')·τa/v with it.
+//!
+//! So the readings are told over the place of the specimen, x = d − τv, with c·v taken off them, and what is read again is
+//! r + c·v at the velocity of the way that is taken again. The slope is f' then, as it is of a way with a stop at each step.
+//!
+//! # How τ and c are found
+//!
+//! τ is the least squares of d − `d_m` on v. For c every few readings of a branch are taken together: their tangent f' is one
+//! number, so that Δr = f'Δx + cΔv, and what is left of Δv when its share along Δx is taken off tells c. That is most where
+//! a/v changes most, beside the turns, and there only v counts, whatever the specimen does. Each few have their own c, and
+//! the middle of all, each weighed by what it tells, is not moved by those in which the specimen yields.
+
+use super::Reading;
+use super::pieces::stretches;
+
+/// Increments taken together: few enough that the tangent is one, one more than the two unknowns need.
+const TOGETHER: usize = 4;
+/// How many times its own uncertainty a number must be to count.
+const SURE: f64 = 3.0;
+/// Standard deviation of a normal number whose median distance is 1.
+const OF_MEDIAN: f64 = 1.4826;
+
+/// Readings made under way.
+#[derive(Clone, Debug)]
+pub(super) struct UnderWay {
+    /// Of the specimen behind its target, s.
+    lag: f64,
+    /// Of the specimen, N·s/m.
+    damping: f64,
+    /// As they were read, with the velocity foretold for the target, m/s.
+    passed: Vec<(Reading, f64)>,
+}
+
+impl UnderWay {
+    /// `velocities` are those foretold for the targets, m/s, of the same time as theirs; `resolution` in m.
+    pub fn of(readings: Vec<Reading>, velocities: &[f64], resolution: f64) -> Self {
+        let velocities = velocities.iter().copied().chain(std::iter::repeat(0.0));
+        let passed: Vec<(Reading, f64)> = readings.into_iter().zip(velocities).collect();
+        let lag = lag(passed.iter().map(|(reading, velocity)| (reading.target - reading.displacement, *velocity)), resolution);
+        let mut found = Self { lag, damping: 0.0, passed };
+        found.damping = damping(&found.at_rest(), |step| found.passed[step].1);
+        found
+    }
+
+    /// The readings as if the specimen had stood where it was read.
+    pub fn at_rest(&self) -> Vec<Reading> {
+        let at_rest = |(reading, velocity): &(Reading, f64)| Reading {
+            target: self.place(reading.target, *velocity),
+            force: reading.force - self.damping * velocity,
+            ..*reading
+        };
+        self.passed.iter().map(at_rest).collect()
+    }
+
+    /// Where the specimen is as the actuator passes a target (m) with a velocity (m/s).
+    pub fn place(&self, target: f64, velocity: f64) -> f64 {
+        target - self.lag * velocity
+    }
+
+    /// What is read where at rest it would be `force`, and `recorded` at the place of the reading of `step`, N. At the
+    /// recorded place and velocity it is the recorded force, to the bit.
+    pub fn force(&self, step: usize, (force, recorded): (f64, f64), velocity: f64) -> f64 {
+        let (reading, passed_with) = self.passed[step];
+        reading.force + (force - recorded) + self.damping * (velocity - passed_with)
+    }
+
+    /// As it was read.
+    pub fn reading(&self, step: usize) -> &Reading {
+        &self.passed[step].0
+    }
+}
+
+/// How long the specimen is behind, of how far it is behind (m) at which velocity (m/s); s.
+pub fn lag(behind: impl Iterator<Item = (f64, f64)>, resolution: f64) -> f64 {
+    let (both, own) =
+        behind.fold((0.0, 0.0), |(both, own), (behind, velocity)| (both + behind * velocity, own + velocity * velocity));
+    let unsure = resolution / 12.0_f64.sqrt() / own.sqrt();
+    let lag = both / own;
+    if lag.abs() > SURE * unsure { lag } else { 0.0 }
+}
+
+/// What the force gains with the velocity beside what it gains with the place, N·s/m.
+fn damping(readings: &[Reading], velocity: impl Fn(usize) -> f64) -> f64 {
+    // Of each few increments: c (N·s/m), and what it tells (m²/s²).
+    let mut told: Vec<(f64, f64)> = Vec::new();
+    for (begin, end, _) in stretches(readings) {
+        // The increment in which it turned has two tangents.
+        let mut first = if begin == 0 { 0 } else { begin + 1 };
+        while first + TOGETHER <= end {
+            let increments = || {
+                (first..first + TOGETHER).map(|step| {
+                    let (near, far) = (&readings[step], &readings[step + 1]);
+                    (far.target - near.target, velocity(step + 1) - velocity(step), far.force - near.force)
+                })
+            };
+            let (along, square) = increments().fold((0.0, 0.0), |(along, square), (x, v, _)| (along + x * v, square + x * x));
+            let beside = |x: f64, v: f64| if square > 0.0 { v - x * along / square } else { v };
+            let (both, own) = increments().fold((0.0, 0.0), |(both, own), (x, v, r)| {
+                let beside = beside(x, v);
+                (both + beside * r, own + beside * beside)
+            });
+            if own > 0.0 {
+                told.push((both / own, own));
+            }
+            first += TOGETHER;
+        }
+    }
+    let Some(middle) = weighted_median(&mut told) else { return 0.0 };
+    let (all, squares) = told.iter().fold((0.0, 0.0), |(all, squares), (_, weight)| (all + weight, squares + weight * weight));
+    let mut off: Vec<(f64, f64)> = told.iter().map(|(found, weight)| ((found - middle).abs(), *weight)).collect();
+    let unsure = OF_MEDIAN * weighted_median(&mut off).unwrap_or(0.0) * squares.sqrt() / all;
+    if middle.abs() > SURE * unsure { middle } else { 0.0 }
+}
+
+/// The value that half the weight is below; None of none.
+fn weighted_median(weighed: &mut [(f64, f64)]) -> Option<f64> {
+    weighed.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+    let half = 0.5 * weighed.iter().map(|(_, weight)| weight).sum::<f64>();
+    let mut below = 0.0;
+    let found = weighed.iter().find(|(_, weight)| {
+        below += weight;
+        below >= half
+    });
+    found.map(|(value, _)| *value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::specimen::{Bilinear, RestoringForce};
+
+    const STIFFNESS: f64 = 1000.0;
+    const DAMPING: f64 = 9.0;
+    const LAG: f64 = 4e-3;
+
+    /// Two sines that fade, 10 ms a step: targets and velocities.
+    fn way() -> Vec<(f64, f64)> {
+        let at = |time: f64| {
+            let of = |size: f64, frequency: f64| {
+                let (sine, cosine) = (frequency * time).sin_cos();
+                let fade = size * (-0.3 * time).exp();
+                (fade * sine, fade * (frequency * cosine - 0.3 * sine))
+            };
+            let (slow, fast) = (of(0.05, 11.0), of(0.01, 25.0));
+            (slow.0 + fast.0, slow.1 + fast.1)
+        };
+        (0..600).map(|step| at(0.01 * f64::from(step))).collect()
+    }
+
+    fn read(model: &mut impl RestoringForce, noise: f64) -> UnderWay {
+        let way = way();
+        let reading = |(step, (target, velocity)): (usize, &(f64, f64))| {
+            let place = target - LAG * velocity;
+            let sign = if step % 7 < 3 || step % 5 == 1 { noise } else { -noise };
+            let force = model.move_to(place) + DAMPING * velocity + sign;
+            Reading { target: *target, displacement: (place / 1e-6).round() * 1e-6, force }
+        };
+        let readings = way.iter().enumerate().map(reading).collect();
+        UnderWay::of(readings, &way.iter().map(|(_, velocity)| *velocity).collect::<Vec<f64>>(), 1e-6)
+    }
+
+    /// An elastic and a yielding specimen, exactly and with a newton of noise: τ by 1 µm of quantum, c by hand.
+    #[test]
+    fn lag_and_damper_are_found_whatever_the_specimen_does() {
+        for (yield_force, noise, within) in [(1e9, 0.0, 1e-3), (20.0, 0.0, 1e-3), (1e9, 0.2, 0.1), (20.0, 0.2, 0.1)] {
+            let found = read(&mut Bilinear::new(STIFFNESS, yield_force, 0.1), noise);
+            assert!((found.lag / LAG - 1.0).abs() < 1e-3, "{} s", found.lag);
+            assert!((found.damping / DAMPING - 1.0).abs() < within, "{yield_force} N, {noise} N: {} N·s/m", found.damping);
+        }
+    }
+
+    /// What noise alone shows is no damper.
+    #[test]
+    fn noise_is_no_damper() {
+        let mut without = read(&mut Bilinear::new(STIFFNESS, 20.0, 0.1), 0.5);
+        for (reading, velocity) in &mut without.passed {
+            reading.force -= DAMPING * *velocity;
+        }
+        without.damping = 0.0;
+        assert_eq!(damping(&without.at_rest(), |step| without.passed[step].1), 0.0);
+    }
+
+    #[test]
+    fn without_its_velocity_a_reading_is_that_of_the_specimen_and_with_it_what_was_read() {
+        let found = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), 0.0);
+        for (step, (at_rest, (reading, velocity))) in found.at_rest().iter().zip(&found.passed).enumerate() {
+            assert!((at_rest.force - STIFFNESS * at_rest.target).abs() < 1e-3, "{at_rest:?}");
+            assert_eq!(found.place(reading.target, *velocity), at_rest.target);
+            assert_eq!(found.force(step, (at_rest.force, at_rest.force), *velocity), reading.force);
+        }
+    }
+}
