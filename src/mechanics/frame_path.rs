@@ -60,12 +60,12 @@ enum Bends {
 }
 
 impl FramePath {
-    /// `velocities` are those foretold for the targets (m/s), of readings made under way; `stiffness` is K at no displacement;
+    /// `velocities` are those foretold for the targets (m/s), of readings made under way each `time_step` (s); `stiffness` is K at no displacement;
     /// `force_noise` (N) and `resolution` (m) are those of one floor's readings. None of no reading.
     #[must_use]
     pub fn new(
         readings: Vec<FrameReading>,
-        velocities: Vec<Vec<f64>>,
+        (velocities, time_step): (Vec<Vec<f64>>, f64),
         stiffness: &SymmetricBand,
         force_noise: f64,
         resolution: f64,
@@ -104,7 +104,7 @@ impl FramePath {
                         return RecordedPath::new(readings, stiffness, noise, quantum);
                     }
                     let passed: Vec<f64> = passed.iter().map(|storeys| storeys[storey]).collect();
-                    RecordedPath::under_way(readings, &passed, stiffness, noise, quantum)
+                    RecordedPath::under_way(readings, (&passed, time_step), stiffness, noise, quantum)
                 };
                 Bends::Storeys(stiffnesses.into_iter().enumerate().map(path).collect::<Option<_>>()?)
             }
@@ -317,7 +317,7 @@ mod tests {
     }
 
     fn path(stiffness: &SymmetricBand) -> FramePath {
-        FramePath::new(targets().iter().map(|target| elastic(target)).collect(), Vec::new(), stiffness, 0.0, 0.0).unwrap()
+        FramePath::new(targets().iter().map(|target| elastic(target)).collect(), (Vec::new(), 0.0), stiffness, 0.0, 0.0).unwrap()
     }
 
     #[test]

@@ -268,7 +268,7 @@ impl<'run> FrameDoubts<'run> {
 
     fn passed(&self, steps: &FrameSteps, readings: Vec<FrameReading>, velocities: Vec<Vec<f64>>) -> Result<FramePath, String> {
         let stiffness = &steps.properties.matrices.stiffness;
-        let path = FramePath::new(readings, velocities, stiffness, self.noise.force, self.noise.resolution);
+        let path = FramePath::new(readings, (velocities, steps.time_step), stiffness, self.noise.force, self.noise.resolution);
         path.ok_or_else(|| "nothing was recorded".to_owned())
     }
 }

@@ -268,3 +268,44 @@ fn print_all() {
         }
     }
 }
+
+#[test]
+fn print_one() {
+    for lag in [0.0, 0.02] {
+        for resolution in [0.0, 1e-6] {
+            for dampers in [false, true] {
+                for kind in [Kind::Elastic, Kind::Bilinear, Kind::BoucWen] {
+                    let link = VirtualLink { lag, resolution, seed: 3, ..VirtualLink::default() };
+                    let case = Case { kind, continuous: true, dampers, link };
+                    eprintln!("=== {kind:?} dampers {dampers} lag {lag} resolution {resolution}");
+                    let plan = doubtful(case);
+                    let told = super::run(&plan, &mut *virtual_rig(&plan), &mut Unwatched);
+                    for event in &told.events {
+                        eprintln!("{}", event.text);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn print_bw() {
+    let link = VirtualLink::default();
+    let case = Case { kind: Kind::BoucWen, continuous: true, dampers: false, link };
+    let mut plan = plan(case);
+    let mut step = shake(&mut plan).stepping.clone();
+    let d = doubtful(case);
+    plan = d;
+    for (mode, integrator) in [(Mode::StepAndPause, Integrator::Explicit), (Mode::StepAndPause, Integrator::Tangent)] {
+        step.mode = mode;
+        step.integrator = integrator;
+        step.i_modification = false;
+        shake(&mut plan).stepping = step.clone();
+        eprintln!("=== {mode:?} {integrator:?}");
+        let told = super::run(&plan, &mut *virtual_rig(&plan), &mut Unwatched);
+        for event in &told.events {
+            eprintln!("{}", event.text);
+        }
+    }
+}

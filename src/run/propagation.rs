@@ -121,7 +121,7 @@ impl<'run> Doubts<'run> {
             return RecordedPath::new(readings, input.stiffness, input.force_noise, input.resolution);
         }
         let velocities = foretold(input, self.plan.until, setting.steps, &readings);
-        RecordedPath::under_way(readings, &velocities, input.stiffness, input.force_noise, input.resolution)
+        RecordedPath::under_way(readings, (&velocities, input.time_step), input.stiffness, input.force_noise, input.resolution)
     }
 
     /// The sources that can be moved, each once.

@@ -57,7 +57,7 @@ struct Fading {
 
 impl<'a> Again<'a> {
     pub(super) fn new(path: &'a RecordedPath, distortion: Distortion) -> Self {
-        let turns = path.branches.iter().map(|branch| path.readings[branch.end].target).collect();
+        let turns = path.branches.iter().map(|branch| branch.turn.target).collect();
         let place = path.readings[0].target;
         let maps = vec![Map::NONE; path.branches.len()];
         let fading = vec![None; path.branches.len()];
@@ -80,10 +80,9 @@ impl<'a> Again<'a> {
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let (target, velocity) = (target / self.distortion.displacement_scale, velocity / self.distortion.displacement_scale);
         let place = self.path.under_way.as_ref().map_or(target, |under_way| under_way.place(target, velocity));
-        self.velocity = velocity;
         self.step += 1;
-        self.go(place);
-        self.place = place;
+        self.go(place, velocity);
+        (self.place, self.velocity) = (place, velocity);
         self.read()
     }
 
@@ -97,7 +96,8 @@ impl<'a> Again<'a> {
         self.path.pieces[self.piece].branch
     }
 
-    fn go(&mut self, place: f64) {
+    /// Goes on to a place (m), to be there with a velocity (m/s).
+    fn go(&mut self, place: f64, velocity: f64) {
         let path = self.path;
         if let Some(aside) = self.aside {
             let branch = self.branch();
@@ -112,15 +112,18 @@ impl<'a> Again<'a> {
                 return;
             }
         } else {
-            let moved = place - self.place;
+            let under_way = path.under_way.as_ref();
+            let moved = if under_way.is_some() { velocity } else { place - self.place };
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
+                let between = under_way.and_then(|it| it.turn_between((self.place, self.velocity), (place, velocity)));
+                let from = between.unwrap_or(self.place);
                 if self.matched(self.step - 1) {
-                    self.turn(self.place);
+                    self.turn(from);
                 } else {
-                    let (displacement, force) = self.recorded();
-                    self.aside = Some(Aside { from: self.place, displacement, force, direction: moved.signum() });
-                    self.unseen = self.unseen.max(moved.abs());
+                    let (displacement, force) = self.at(from);
+                    self.aside = Some(Aside { from, displacement, force, direction: moved.signum() });
+                    self.unseen = self.unseen.max((place - from).abs());
                     return;
                 }
             } else if self.missed() {
@@ -191,7 +194,7 @@ impl<'a> Again<'a> {
         let path = self.path;
         let branch = self.branch();
         let next = branch + 1;
-        let turn = path.readings[path.branches[branch].end];
+        let turn = path.branches[branch].turn;
         let (frame, at) = self.stand(place);
         let moved = frame.back(place) - turn.target;
         // Readings so near each other tell noise.
@@ -199,7 +202,7 @@ impl<'a> Again<'a> {
         let rise = if off.abs() <= path.least {
             path.pieces[path.branches[branch].last_piece].end_tangent * off
         } else {
-            path.at(self.piece, self.nearest(), at).1 - turn.force
+            path.at(self.piece, self.nearest(), at).1 - path.branches[branch].led_to
         };
         let retraces = path.branches[next].retraces;
         let own = if retraces { Map::shifted(moved - off, 0.0) } else { self.moved(next, moved, rise) };
@@ -213,7 +216,7 @@ impl<'a> Again<'a> {
     fn moved(&self, branch: usize, moved: f64, rise: f64) -> Map {
         let path = self.path;
         let piece = path.pieces[path.branches[branch].first_piece];
-        let turn = path.readings[piece.begin];
+        let turn = piece.begin;
         let shifted = Map::shifted(moved, rise);
         match path.rule {
             Rule::Pivoted => {
@@ -268,9 +271,14 @@ impl<'a> Again<'a> {
             let back = self.place - aside.from;
             return (aside.displacement + back, aside.force + path.pieces[0].start_tangent * back);
         }
-        let (map, at) = self.stand(self.place);
-        let (displacement, force) = path.at(self.piece, self.nearest(), at);
-        (displacement + (self.place - at), map.force(force))
+        self.at(self.place)
+    }
+
+    /// The same at a place (m) on the curve that it is on.
+    fn at(&self, place: f64) -> (f64, f64) {
+        let (map, at) = self.stand(place);
+        let (displacement, force) = self.path.at(self.piece, self.nearest(), at);
+        (displacement + (place - at), map.force(force))
     }
 
     fn read(&self) -> (f64, f64) {

@@ -114,23 +114,34 @@ impl RecordedPath {
         if readings.is_empty() {
             return None;
         }
-        let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
-        let (branches, pieces) = pieces::cut(&readings, stiffness, force_noise, least);
-        Some(Self { readings, branches, pieces, least, rule: Rule::Shifted, under_way: None })
+        Some(Self::of(readings, None, stiffness, (force_noise, resolution)))
     }
 
-    /// The same of readings made under way, with the velocities foretold for their targets, m/s.
+    /// The same of readings made under way, `time_step` (s) apart, with the velocities foretold for their targets, m/s.
     #[must_use]
     pub fn under_way(
         readings: Vec<Reading>,
-        velocities: &[f64],
+        (velocities, time_step): (&[f64], f64),
         stiffness: f64,
         force_noise: f64,
         resolution: f64,
     ) -> Option<Self> {
-        let found = UnderWay::of(readings, velocities, resolution);
-        let at_rest = Self::new(found.at_rest(), stiffness, force_noise, resolution)?;
-        Some(Self { under_way: Some(found), ..at_rest })
+        if readings.is_empty() {
+            return None;
+        }
+        let found = UnderWay::of(readings, velocities, time_step, resolution);
+        Some(Self::of(found.at_rest(), Some(found), stiffness, (force_noise, resolution)))
+    }
+
+    fn of(
+        readings: Vec<Reading>,
+        under_way: Option<UnderWay>,
+        stiffness: f64,
+        (force_noise, resolution): (f64, f64),
+    ) -> Self {
+        let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
+        let (branches, pieces) = pieces::cut(&readings, (stiffness, force_noise, least), under_way.as_ref());
+        Self { readings, branches, pieces, least, rule: Rule::Shifted, under_way }
     }
 
     /// The recorded reading of a step; past the end of the record, of its last.
@@ -184,7 +195,7 @@ impl RecordedPath {
         while let Some(before) = origin.before {
             origin = self.pieces[before];
         }
-        let (begun, turn) = (self.readings[origin.begin], self.readings[self.pieces[first_piece].begin]);
+        let (begun, turn) = (origin.begin, self.pieces[first_piece].begin);
         let fallen = origin.start_tangent - (turn.force - begun.force) / (turn.target - begun.target);
         let lost = origin.start_tangent - self.pieces[first_piece].start_tangent;
         (fallen > 0.0 && lost > KEPT * fallen).then_some([begun.target, begun.force])
@@ -197,16 +208,16 @@ impl RecordedPath {
         let piece = loop {
             let piece = self.pieces[index];
             let direction = self.branches[piece.branch].direction;
-            let beyond = |reading: usize| (place - self.readings[reading].target) * direction;
+            let beyond = |reading: &Reading| (place - reading.target) * direction;
             index = match (piece.before, piece.after) {
-                (Some(before), _) if beyond(piece.begin) < 0.0 => before,
-                (_, Some(after)) if beyond(piece.last) > 0.0 => after,
+                (Some(before), _) if beyond(&piece.begin) < 0.0 => before,
+                (_, Some(after)) if beyond(&self.pieces[after].begin) > 0.0 => after,
                 _ => break piece,
             };
         };
         let direction = self.branches[piece.branch].direction;
         let count = piece.last + 1 - piece.first;
-        let reading = |point: usize| self.readings[if point == 0 { piece.begin } else { piece.first + point - 1 }];
+        let reading = |point: usize| if point == 0 { piece.begin } else { self.readings[piece.first + point - 1] };
         let mut from = (step + 1).saturating_sub(piece.first).min(count);
         let here = reading(from);
         if place == here.target {

@@ -32,6 +32,10 @@
 //! So the readings are told over the place of the specimen, x = d − τv, with c·v taken off them, and what is read again is
 //! r + c·v at the velocity of the way that is taken again. The slope is f' then, as it is of a way with a stop at each step.
 //!
+//! A specimen that yields turns between two readings, at a place that nobody reads: they lie on two curves, and the slope from
+//! one to the other, (K − f')·½as²/Δx with Δx as small as chance will have it, is none of either. The turn is where the
+//! velocity, which goes evenly from one reading to the next, vanishes; each curve leads to it along its own tangent.
+//!
 //! # How τ and c are found
 //!
 //! τ is the least squares of d − `d_m` on v. For c every few readings of a branch are taken together: their tangent f' is one
@@ -40,7 +44,7 @@
 //! the middle of all, each weighed by what it tells, is not moved by those in which the specimen yields.
 
 use super::Reading;
-use super::pieces::stretches;
+use super::pieces::stretches_of;
 
 /// Increments taken together: few enough that the tangent is one, one more than the two unknowns need.
 const TOGETHER: usize = 4;
@@ -56,18 +60,20 @@ pub(super) struct UnderWay {
     lag: f64,
     /// Of the specimen, N·s/m.
     damping: f64,
+    /// From one reading to the next, s.
+    time_step: f64,
     /// As they were read, with the velocity foretold for the target, m/s.
     passed: Vec<(Reading, f64)>,
 }
 
 impl UnderWay {
-    /// `velocities` are those foretold for the targets, m/s, of the same time as theirs; `resolution` in m.
-    pub fn of(readings: Vec<Reading>, velocities: &[f64], resolution: f64) -> Self {
+    /// `velocities` are those foretold for the targets, m/s, and of the same time as `time_step` (s); `resolution` in m.
+    pub fn of(readings: Vec<Reading>, velocities: &[f64], time_step: f64, resolution: f64) -> Self {
         let velocities = velocities.iter().copied().chain(std::iter::repeat(0.0));
         let passed: Vec<(Reading, f64)> = readings.into_iter().zip(velocities).collect();
         let lag = lag(passed.iter().map(|(reading, velocity)| (reading.target - reading.displacement, *velocity)), resolution);
-        let mut found = Self { lag, damping: 0.0, passed };
-        found.damping = damping(&found.at_rest(), |step| found.passed[step].1);
+        let mut found = Self { lag, damping: 0.0, time_step, passed };
+        found.damping = damping(&found.at_rest(), &found.velocities().collect::<Vec<f64>>());
         found
     }
 
@@ -79,6 +85,29 @@ impl UnderWay {
             ..*reading
         };
         self.passed.iter().map(at_rest).collect()
+    }
+
+    /// m/s
+    pub fn velocities(&self) -> impl Iterator<Item = f64> {
+        self.passed.iter().map(|(_, velocity)| *velocity)
+    }
+
+    /// Where the specimen turned between the reading at `step` and the next, m; None if it did not.
+    pub fn turned(&self, step: usize) -> Option<f64> {
+        let at = |step: usize| self.passed.get(step).map(|(reading, velocity)| (self.place(reading.target, *velocity), *velocity));
+        self.turn_between(at(step)?, at(step + 1)?)
+    }
+
+    /// Where it turns between two places (m) with their velocities (m/s), a step apart. What is nearer to it tells more of it.
+    pub fn turn_between(&self, (from, before): (f64, f64), (to, after): (f64, f64)) -> Option<f64> {
+        (before * after < 0.0).then(|| {
+            let share = before / (before - after);
+            let rest = 1.0 - share;
+            let onwards = from + 0.5 * before * share * self.time_step;
+            let backwards = to - 0.5 * after * rest * self.time_step;
+            let (near, far) = (rest * rest, share * share);
+            (near * onwards + far * backwards) / (near + far)
+        })
     }
 
     /// Where the specimen is as the actuator passes a target (m) with a velocity (m/s).
@@ -109,17 +138,17 @@ pub fn lag(behind: impl Iterator<Item = (f64, f64)>, resolution: f64) -> f64 {
 }
 
 /// What the force gains with the velocity beside what it gains with the place, N·s/m.
-fn damping(readings: &[Reading], velocity: impl Fn(usize) -> f64) -> f64 {
+fn damping(readings: &[Reading], velocities: &[f64]) -> f64 {
     // Of each few increments: c (N·s/m), and what it tells (m²/s²).
     let mut told: Vec<(f64, f64)> = Vec::new();
-    for (begin, end, _) in stretches(readings) {
+    for (begin, end, _) in stretches_of(velocities.iter().copied()) {
         // The increment in which it turned has two tangents.
         let mut first = if begin == 0 { 0 } else { begin + 1 };
         while first + TOGETHER <= end {
             let increments = || {
                 (first..first + TOGETHER).map(|step| {
                     let (near, far) = (&readings[step], &readings[step + 1]);
-                    (far.target - near.target, velocity(step + 1) - velocity(step), far.force - near.force)
+                    (far.target - near.target, velocities[step + 1] - velocities[step], far.force - near.force)
                 })
             };
             let (along, square) = increments().fold((0.0, 0.0), |(along, square), (x, v, _)| (along + x * v, square + x * x));
@@ -185,7 +214,7 @@ mod tests {
             Reading { target: *target, displacement: (place / 1e-6).round() * 1e-6, force }
         };
         let readings = way.iter().enumerate().map(reading).collect();
-        UnderWay::of(readings, &way.iter().map(|(_, velocity)| *velocity).collect::<Vec<f64>>(), 1e-6)
+        UnderWay::of(readings, &way.iter().map(|(_, velocity)| *velocity).collect::<Vec<f64>>(), 0.01, 1e-6)
     }
 
     /// An elastic and a yielding specimen, exactly and with a newton of noise: τ by 1 µm of quantum, c by hand.
@@ -206,7 +235,7 @@ mod tests {
             reading.force -= DAMPING * *velocity;
         }
         without.damping = 0.0;
-        assert_eq!(damping(&without.at_rest(), |step| without.passed[step].1), 0.0);
+        assert_eq!(damping(&without.at_rest(), &without.velocities().collect::<Vec<f64>>()), 0.0);
     }
 
     #[test]
