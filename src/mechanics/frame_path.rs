@@ -79,7 +79,8 @@ impl FramePath {
             None => {
                 let of_axis = |axis: usize| {
                     let passed = readings.iter().zip(&velocities);
-                    let behind = passed.map(|(reading, velocity)| (reading.target[axis] - reading.displacement[axis], velocity[axis]));
+                    let behind =
+                        passed.map(|(reading, velocity)| (reading.target[axis] - reading.displacement[axis], velocity[axis]));
                     if velocities.is_empty() { 0.0 } else { lag(behind, resolution) }
                 };
                 Bends::Together(stiffness.clone(), (0..floors).map(of_axis).collect())

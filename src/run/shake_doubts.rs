@@ -83,9 +83,9 @@ pub(super) fn propagate(
         let path = path.supposing(rule);
         let again = |job: &Job| {
             let found = take(job, &path).ok();
-            runs.taken(found.map(|FloorsOutcome { between, seen, .. }| {
-                (far(&between), Taken { values: numbers(job, &between), seen })
-            }))
+            runs.taken(
+                found.map(|FloorsOutcome { between, seen, .. }| (far(&between), Taken { values: numbers(job, &between), seen })),
+            )
         };
         study.contributions(&again(&as_it_was).values, &again, tick)
     });

@@ -4,6 +4,7 @@
 //! back as stiffly as the specimen first was, and says that it went where nothing is recorded.
 
 use super::map::Map;
+use super::under_way::Speed;
 use super::{Distortion, RecordedPath, Rule};
 
 /// A curve whose last slope is less than this share of its first has settled on that.
@@ -24,8 +25,8 @@ pub struct Again<'a> {
     turns: Vec<f64>,
     /// The last place, in metres of the record.
     place: f64,
-    /// With which it passed there, in metres of the record, m/s.
-    velocity: f64,
+    /// With which it passed there, in metres of the record.
+    speed: Speed,
     aside: Option<Aside>,
     /// m
     unseen: f64,
@@ -61,7 +62,19 @@ impl<'a> Again<'a> {
         let place = path.readings[0].target;
         let maps = vec![Map::NONE; path.branches.len()];
         let fading = vec![None; path.branches.len()];
-        Self { path, distortion, step: 0, piece: 0, maps, fading, turns, place, velocity: 0.0, aside: None, unseen: 0.0 }
+        Self {
+            path,
+            distortion,
+            step: 0,
+            piece: 0,
+            maps,
+            fading,
+            turns,
+            place,
+            speed: Speed::default(),
+            aside: None,
+            unseen: 0.0,
+        }
     }
 
     /// Where it begins (m), and what is read there: displacement (m) and force (N).
@@ -79,10 +92,11 @@ impl<'a> Again<'a> {
     /// The same of a target that is passed with a velocity, m/s.
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let (target, velocity) = (target / self.distortion.displacement_scale, velocity / self.distortion.displacement_scale);
-        let place = self.path.under_way.as_ref().map_or(target, |under_way| under_way.place(target, velocity));
+        let speed = self.path.under_way.as_ref().map(|under_way| under_way.speed(self.speed, velocity)).unwrap_or_default();
+        let place = self.path.under_way.as_ref().map_or(target, |under_way| under_way.place(target, speed.felt));
         self.step += 1;
-        self.go(place, velocity);
-        (self.place, self.velocity) = (place, velocity);
+        self.go(place, speed.felt);
+        (self.place, self.speed) = (place, speed);
         self.read()
     }
 
@@ -116,7 +130,7 @@ impl<'a> Again<'a> {
             let moved = if under_way.is_some() { velocity } else { place - self.place };
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
-                let between = under_way.and_then(|it| it.turn_between((self.place, self.velocity), (place, velocity)));
+                let between = under_way.and_then(|it| it.turn_between((self.place, self.speed.felt), (place, velocity)));
                 let from = between.unwrap_or(self.place);
                 if self.matched(self.step - 1) {
                     self.turn(from);
@@ -145,7 +159,7 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// Whether the turn after `step` is one of the record, nearer than the last one of that direction. Loops of the record
+    /// Whether the turn after `step` is one of the record, nearer than the last one of either direction. Loops of the record
     /// that were not made by then are skipped.
     fn matched(&mut self, step: usize) -> bool {
         let path = self.path;
@@ -155,8 +169,9 @@ impl<'a> Again<'a> {
         if !turned(branch) {
             return false;
         }
-        let last = branch.checked_sub(2).map_or(0, |last| path.branches[last].end);
-        if last.abs_diff(step) < off(branch) {
+        // Nearer to the turn that it came from, it only slowed down there in the record.
+        let ended = |back: usize| branch.checked_sub(back).map_or(0, |before| path.branches[before].end);
+        if [1, 2].into_iter().any(|back| ended(back).abs_diff(step) < off(branch)) {
             return false;
         }
         while turned(self.branch() + 2) && off(self.branch() + 2) < off(self.branch()) {
@@ -286,7 +301,7 @@ impl<'a> Again<'a> {
         let (displacement, force) = self.recorded();
         let step = self.nearest();
         let recorded = self.path.readings[step].force;
-        let felt = self.path.under_way.as_ref().map(|under_way| under_way.force(step, (force, recorded), self.velocity));
+        let felt = self.path.under_way.as_ref().map(|under_way| under_way.force(step, (force, recorded), self.speed.felt));
         let force = felt.unwrap_or(force);
         let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * force + zero);
         if let Some(noise) = noise {

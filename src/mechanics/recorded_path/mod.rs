@@ -133,14 +133,10 @@ impl RecordedPath {
         Some(Self::of(found.at_rest(), Some(found), stiffness, (force_noise, resolution)))
     }
 
-    fn of(
-        readings: Vec<Reading>,
-        under_way: Option<UnderWay>,
-        stiffness: f64,
-        (force_noise, resolution): (f64, f64),
-    ) -> Self {
+    fn of(readings: Vec<Reading>, under_way: Option<UnderWay>, stiffness: f64, (force_noise, resolution): (f64, f64)) -> Self {
         let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
-        let (branches, pieces) = pieces::cut(&readings, (stiffness, force_noise, least), under_way.as_ref());
+        let unsure = under_way.as_ref().map_or(0.0, |under_way| under_way.unsure(stiffness, resolution));
+        let (branches, pieces) = pieces::cut(&readings, (stiffness, force_noise.hypot(unsure), least), under_way.as_ref());
         Self { readings, branches, pieces, least, rule: Rule::Shifted, under_way }
     }
 

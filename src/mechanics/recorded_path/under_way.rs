@@ -48,6 +48,8 @@ use super::pieces::stretches_of;
 
 /// Increments taken together: few enough that the tangent is one, one more than the two unknowns need.
 const TOGETHER: usize = 4;
+/// Of the specimen's velocity after its lag and of that after its velocity.
+const ROUNDS: usize = 6;
 /// How many times its own uncertainty a number must be to count.
 const SURE: f64 = 3.0;
 /// Standard deviation of a normal number whose median distance is 1.
@@ -62,17 +64,34 @@ pub(super) struct UnderWay {
     damping: f64,
     /// From one reading to the next, s.
     time_step: f64,
-    /// As they were read, with the velocity foretold for the target, m/s.
+    /// As they were read, with the velocity that the specimen had, m/s.
     passed: Vec<(Reading, f64)>,
+}
+
+/// How fast an actuator and the specimen on it go, m/s.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Speed {
+    /// As foretold for a target.
+    foretold: f64,
+    pub felt: f64,
 }
 
 impl UnderWay {
     /// `velocities` are those foretold for the targets, m/s, and of the same time as `time_step` (s); `resolution` in m.
     pub fn of(readings: Vec<Reading>, velocities: &[f64], time_step: f64, resolution: f64) -> Self {
-        let velocities = velocities.iter().copied().chain(std::iter::repeat(0.0));
-        let passed: Vec<(Reading, f64)> = readings.into_iter().zip(velocities).collect();
-        let lag = lag(passed.iter().map(|(reading, velocity)| (reading.target - reading.displacement, *velocity)), resolution);
-        let mut found = Self { lag, damping: 0.0, time_step, passed };
+        let foretold: Vec<f64> = velocities.iter().copied().chain(std::iter::repeat(0.0)).take(readings.len()).collect();
+        let passed = readings.into_iter().zip(foretold.iter().copied()).collect();
+        let mut found = Self { lag: 0.0, damping: 0.0, time_step, passed };
+        // How fast the specimen goes hangs on how far it is behind.
+        for _ in 0..ROUNDS {
+            let behind = found.passed.iter().map(|(reading, felt)| (reading.target - reading.displacement, *felt));
+            found.lag = lag(behind, resolution);
+            let mut speed = Speed::default();
+            for step in 0..foretold.len() {
+                speed = found.speed(speed, foretold[step]);
+                found.passed[step].1 = speed.felt;
+            }
+        }
         found.damping = damping(&found.at_rest(), &found.velocities().collect::<Vec<f64>>());
         found
     }
@@ -87,14 +106,37 @@ impl UnderWay {
         self.passed.iter().map(at_rest).collect()
     }
 
-    /// m/s
+    /// Once a target is passed for which a velocity (m/s) is foretold: ẋ = (d − x)/τ, the foretold one even from step to step.
+    pub fn speed(&self, before: Speed, foretold: f64) -> Speed {
+        if self.lag <= 0.0 {
+            return Speed { foretold, felt: foretold };
+        }
+        let slower = (foretold - before.foretold) / self.time_step * self.lag;
+        let fading = (before.felt - before.foretold + slower) * (-self.time_step / self.lag).exp();
+        Speed { foretold, felt: foretold - slower + fading }
+    }
+
+    /// Of the specimen, m/s.
     pub fn velocities(&self) -> impl Iterator<Item = f64> {
         self.passed.iter().map(|(_, velocity)| *velocity)
     }
 
+    /// Standard deviation of the forces that are told without their velocity, N, of a specimen of `stiffness` (N/m): the place that τ
+    /// tells is not quite where it was read, beyond what its quantum of `resolution` (m) makes of it, and ẋ = (d − x)/τ.
+    pub fn unsure(&self, stiffness: f64, resolution: f64) -> f64 {
+        if self.lag <= 0.0 {
+            return 0.0;
+        }
+        let off = |(reading, velocity): &(Reading, f64)| (reading.displacement - self.place(reading.target, *velocity)).powi(2);
+        #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
+        let mean = self.passed.iter().map(off).sum::<f64>() / self.passed.len() as f64;
+        (stiffness + self.damping.abs() / self.lag) * (mean - resolution * resolution / 12.0).max(0.0).sqrt()
+    }
+
     /// Where the specimen turned between the reading at `step` and the next, m; None if it did not.
     pub fn turned(&self, step: usize) -> Option<f64> {
-        let at = |step: usize| self.passed.get(step).map(|(reading, velocity)| (self.place(reading.target, *velocity), *velocity));
+        let at =
+            |step: usize| self.passed.get(step).map(|(reading, velocity)| (self.place(reading.target, *velocity), *velocity));
         self.turn_between(at(step)?, at(step + 1)?)
     }
 
@@ -110,7 +152,7 @@ impl UnderWay {
         })
     }
 
-    /// Where the specimen is as the actuator passes a target (m) with a velocity (m/s).
+    /// Where the specimen is as the actuator passes a target (m), itself with a velocity (m/s).
     pub fn place(&self, target: f64, velocity: f64) -> f64 {
         target - self.lag * velocity
     }
