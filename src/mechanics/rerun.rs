@@ -100,6 +100,7 @@ pub struct Telling {
 }
 
 impl Telling {
+    /// Before the first step, which begins at `start`.
     #[must_use]
     pub fn new(input: &ImpactInput, until: Until, start: &ImpactState) -> Self {
         let mut summary = SummaryBuilder::new(input);
@@ -123,6 +124,7 @@ impl Telling {
         self.end.share
     }
 
+    /// The results, as far as steps were taken.
     #[must_use]
     pub fn finish(self) -> Outcome {
         let Self { summary, between, end, farthest, .. } = self;
