@@ -154,10 +154,9 @@ struct Told {
 impl Told {
     /// The standard uncertainty by all sources, as told and truly.
     fn uncertainties(&self) -> [f64; 2] {
-        let root = |amount: &dyn Fn(&(Source, Option<Contribution>, f64)) -> f64| {
-            self.parts.iter().map(|part| amount(part).powi(2)).sum::<f64>().sqrt()
-        };
-        [root(&|(_, told, _)| told.map_or(0.0, |told| told.amount)), root(&|(.., truth)| *truth)]
+        let root = |amounts: &mut dyn Iterator<Item = f64>| amounts.map(|amount| amount * amount).sum::<f64>().sqrt();
+        let told = |(_, told, _): &(Source, Option<Contribution>, f64)| told.map_or(0.0, |told| told.amount);
+        [root(&mut self.parts.iter().map(told)), root(&mut self.parts.iter().map(|(.., truth)| *truth))]
     }
 }
 

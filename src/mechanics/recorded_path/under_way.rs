@@ -87,8 +87,8 @@ impl UnderWay {
             let behind = found.passed.iter().map(|(reading, felt)| (reading.target - reading.displacement, *felt));
             found.lag = lag(behind, resolution);
             let mut speed = Speed::default();
-            for step in 0..foretold.len() {
-                speed = found.speed(speed, foretold[step]);
+            for (step, foretold) in foretold.iter().enumerate() {
+                speed = found.speed(speed, *foretold);
                 found.passed[step].1 = speed.felt;
             }
         }
