@@ -16,6 +16,7 @@ pub mod frame_path;
 pub mod frame_properties;
 pub mod frame_rerun;
 pub mod ground;
+pub mod growth;
 pub mod identification;
 pub mod impact;
 pub mod integrator;
