@@ -37,6 +37,8 @@ mod frame_sequence_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
+#[cfg(test)]
+mod growth_tests;
 mod hold;
 mod impact;
 #[cfg(test)]
