@@ -108,9 +108,22 @@ pub fn corrected_bic(squares: f64, count: f64, numbers: f64) -> f64 {
 /// # Errors
 /// There are too few readings, nothing relaxes, or the better law's time is out of reach.
 pub fn fit_reached(holds: &[Hold], before: f64, asked: Option<RelaxationLaw>, rate: f64) -> Result<ReachedFit, Unrelaxed> {
+    fit_reached_of(holds, before, asked, (rate, 0.0))
+}
+
+/// The same, with standard errors as of readings that scatter by `hidden` (N²) more than these do.
+///
+/// # Errors
+/// There are too few readings, nothing relaxes, or the better law's time is out of reach.
+pub fn fit_reached_of(
+    holds: &[Hold],
+    before: f64,
+    asked: Option<RelaxationLaw>,
+    (rate, hidden): (f64, f64),
+) -> Result<ReachedFit, Unrelaxed> {
     let most = holds.iter().map(|hold| hold.readings.len()).max().unwrap_or(0).max(1);
     let used = (1..=holds.len()).rev().find(|count| count * count * most <= MOST_WORK).unwrap_or(1).min(holds.len());
-    let problem = Problem::new(&holds[..used], before, rate);
+    let problem = Problem::new(&holds[..used], before, (rate, hidden));
     #[expect(clippy::cast_precision_loss, reason = "far fewer holds than 2^53")]
     let numbers = used as f64;
     if used == 0 || problem.count <= numbers + 5.0 || problem.longest <= 0.0 {
@@ -162,6 +175,8 @@ struct Problem<'a> {
     before: f64,
     /// N/s
     rate: f64,
+    /// N²
+    hidden: f64,
     count: f64,
     /// First time after nothing, and last, of the readings, s.
     shortest: f64,
@@ -170,7 +185,7 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(holds: &'a [Hold], before: f64, rate: f64) -> Self {
+    fn new(holds: &'a [Hold], before: f64, (rate, hidden): (f64, f64)) -> Self {
         let mut now = 0.0;
         let moves = holds.iter().map(|hold| {
             let took = hold.moved_for.max(0.0);
@@ -187,6 +202,7 @@ impl<'a> Problem<'a> {
             holds,
             before,
             rate,
+            hidden,
             count,
             shortest: readings().map(|(time, _)| *time).filter(|time| *time > 0.0).fold(f64::INFINITY, f64::min),
             longest: readings().fold(0.0, |most: f64, (time, _)| most.max(*time)),
@@ -309,7 +325,7 @@ impl<'a> Problem<'a> {
         let numbers = self.holds.len() as f64 + 2.0;
         let (left, by) = self.slopes(law, share, time);
         let squares: f64 = left.iter().map(|left| left * left).sum();
-        let variance = squares / (self.count - numbers);
+        let variance = squares / (self.count - numbers) + self.hidden;
         let covariance = inverse(&by)? * variance;
         let error = |of: &dyn Fn(f64, f64) -> f64| {
             let (by_share, by_time) = (1e-5_f64, 1e-4_f64);

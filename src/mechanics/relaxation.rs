@@ -112,6 +112,14 @@ const ROUNDING: f64 = 1e-10;
 /// # Errors
 /// The readings do not tell a time constant.
 pub fn fit_relaxation(holds: &[Hold], start: f64, model: RelaxationModel) -> Result<RelaxationFit, Unrelaxed> {
+    fit_relaxation_of(holds, start, model, 0.0)
+}
+
+/// The same, with standard errors as of readings that scatter by `hidden` (N²) more than these do.
+///
+/// # Errors
+/// The readings do not tell a time constant.
+pub fn fit_relaxation_of(holds: &[Hold], start: f64, model: RelaxationModel, hidden: f64) -> Result<RelaxationFit, Unrelaxed> {
     let problem = Problem { holds, start, model };
     let count: usize = holds.iter().map(|hold| hold.readings.len()).sum();
     let numbers = if model == RelaxationModel::Exponential { 2 * holds.len() + 1 } else { 4 };
@@ -141,7 +149,7 @@ pub fn fit_relaxation(holds: &[Hold], start: f64, model: RelaxationModel) -> Res
     if !(tau > 1.01 * low && tau < 0.99 * high) {
         return Err(Unrelaxed::OutOfReach);
     }
-    problem.stated(tau, count - numbers).ok_or(Unrelaxed::OutOfReach)
+    problem.stated(tau, count - numbers, hidden).ok_or(Unrelaxed::OutOfReach)
 }
 
 struct Problem<'a> {
@@ -311,10 +319,10 @@ impl Problem<'_> {
         Some(problem.residuals(&solved.holds, tau).collect())
     }
 
-    fn stated(&self, tau: f64, freedom: f64) -> Option<RelaxationFit> {
+    fn stated(&self, tau: f64, freedom: f64, hidden: f64) -> Option<RelaxationFit> {
         let (solved, change) = self.slope(tau)?;
         let own: f64 = self.own(&change, tau)?.iter().map(|part| part * part).sum();
-        let variance = solved.squares / freedom;
+        let variance = solved.squares / freedom + hidden;
         let tau_error = (variance / own).sqrt();
         let mut fit = RelaxationFit {
             model: self.model,
@@ -347,7 +355,12 @@ impl Problem<'_> {
                 fit.worst = Amplitude { force: amplitude, error, covariance: by_tau * tau_error * tau_error };
                 let (x, r): (Vec<f64>, Vec<f64>) =
                     self.holds.iter().zip(&solved.holds).map(|(hold, [relaxed, _])| (hold.displacement, *relaxed)).unzip();
-                fit.relaxed_stiffness = fit_line(&x, &r).map(|line| (line.slope, line.slope_error));
+                // What is hidden of the readings is in the relaxed force of each hold by itself.
+                let each = self.holds.iter().filter_map(|hold| Some(self::normal(&hold.readings, tau).try_inverse()?[(0, 0)]));
+                #[expect(clippy::cast_precision_loss, reason = "far fewer holds than 2^53")]
+                let hidden = hidden * each.sum::<f64>() / x.len() as f64;
+                let line = fit_line(&x, &r).map(|line| line.scattering(&x, hidden));
+                fit.relaxed_stiffness = line.map(|line| (line.slope, line.slope_error));
             }
             RelaxationModel::StandardLinearSolid => {
                 let kernel = self.kernel(tau);

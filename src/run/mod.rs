@@ -13,6 +13,9 @@ mod continuous_tests;
 mod curve;
 mod cycle;
 mod cycle_doubts;
+mod cycle_rounding;
+#[cfg(test)]
+mod cycle_rounding_tests;
 #[cfg(test)]
 mod cycle_tests;
 mod damping_sweep;
@@ -29,6 +32,9 @@ mod followed;
 mod followed_tests;
 #[cfg(test)]
 mod forecast_tests;
+mod foreseen;
+#[cfg(test)]
+mod foreseen_tests;
 mod frame_doubts;
 #[cfg(test)]
 mod frame_doubts_tests;
@@ -325,7 +331,7 @@ fn afterwards(plan: &Plan) -> &'static str {
 
 fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     match &procedure.kind {
-        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
+        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, plan, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),

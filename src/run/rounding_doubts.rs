@@ -241,7 +241,7 @@ fn smooth(sweep: &SweepHistory) -> Vec<[f64; 2]> {
 }
 
 /// Straight stretches that meet, turned so that the ramp pushes, with the standard errors that its scatter tells.
-struct Curve {
+pub(super) struct Curve {
     way: f64,
     intercept: f64,
     slopes: Vec<f64>,
@@ -254,7 +254,7 @@ struct Curve {
 type Told = (&'static str, usize, Vec<f64>, f64);
 
 impl Curve {
-    fn of_bilinear(fit: &BilinearFit) -> Self {
+    pub(super) fn of_bilinear(fit: &BilinearFit) -> Self {
         let (way, knee) = (fit.way, fit.way * fit.yield_displacement);
         let (first, last) = (fit.stiffness, fit.hardened);
         let told = [
@@ -269,7 +269,7 @@ impl Curve {
         Self { way, intercept: way * fit.intercept, slopes: vec![first, last], breaks: vec![knee], told }
     }
 
-    fn of_multilinear(fit: &MultilinearFit) -> Self {
+    pub(super) fn of_multilinear(fit: &MultilinearFit) -> Self {
         let way = fit.way;
         let breaks: Vec<f64> = fit.breaks.iter().map(|(place, _)| way * place).collect();
         let slopes: Vec<f64> = fit.stiffnesses.iter().map(|(slope, _)| *slope).collect();
@@ -304,22 +304,27 @@ impl Curve {
         curve
     }
 
+    /// 1, or −1 of a curve that pulls.
+    pub(super) const fn way(&self) -> f64 {
+        self.way
+    }
+
     fn numbers(&self) -> impl Iterator<Item = Told> {
         self.told.iter().cloned()
     }
 
     /// What intercept, stiffnesses and breaks do to the force at `x`.
-    fn effects(&self, x: f64) -> Vec<f64> {
+    pub(super) fn effects(&self, x: f64) -> Vec<f64> {
         let falls = self.breaks.iter().zip(self.slopes.windows(2));
         let beyond = falls.map(|(place, pair)| if x > *place { pair[0] - pair[1] } else { 0.0 });
         row(x, &self.breaks).chain(beyond).collect()
     }
 
-    fn force(&self, x: f64) -> f64 {
+    pub(super) fn force(&self, x: f64) -> f64 {
         row(x, &self.breaks).zip(std::iter::once(&self.intercept).chain(&self.slopes)).map(|(part, by)| part * by).sum()
     }
 
-    fn slope(&self, x: f64) -> f64 {
+    pub(super) fn slope(&self, x: f64) -> f64 {
         self.slopes[self.breaks.iter().filter(|place| x > **place).count()]
     }
 
