@@ -35,6 +35,7 @@ pub mod relaxation;
 pub mod relaxation_law;
 #[cfg(test)]
 mod relaxation_tests;
+pub mod relaxation_weights;
 pub mod relaxing;
 pub mod rerun;
 pub mod rounding;

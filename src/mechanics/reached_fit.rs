@@ -43,6 +43,8 @@ pub struct LawFit {
     pub criterion: f64,
     /// Whether the readings tell the time at all: it is neither shorter than they are nor longer than the holds.
     pub told: bool,
+    /// What every reading does to share, time, rate, what remains and the pause, in this order.
+    pub weights: [Vec<f64>; 5],
     moves: Vec<Move>,
     before: f64,
 }
@@ -326,14 +328,22 @@ impl<'a> Problem<'a> {
         let (left, by) = self.slopes(law, share, time);
         let squares: f64 = left.iter().map(|left| left * left).sum();
         let variance = squares / (self.count - numbers) + self.hidden;
-        let covariance = inverse(&by)? * variance;
-        let error = |of: &dyn Fn(f64, f64) -> f64| {
+        let normal = inverse(&by)?;
+        let effect = |of: &dyn Fn(f64, f64) -> f64| {
             let (by_share, by_time) = (1e-5_f64, 1e-4_f64);
-            let effect = Vector2::new(
+            Vector2::new(
                 (of(share + by_share, time) - of(share - by_share, time)) / (2.0 * by_share),
                 (of(share, time * by_time.exp()) - of(share, time * (-by_time).exp())) / (2.0 * by_time),
-            );
-            (effect.transpose() * covariance * effect)[(0, 0)].max(0.0).sqrt()
+            )
+        };
+        let error = |of: &dyn Fn(f64, f64) -> f64| {
+            let effect = effect(of);
+            (effect.transpose() * normal * effect)[(0, 0)].max(0.0).sqrt() * variance.sqrt()
+        };
+        // What is left changes with both by `by`: a reading that is off by e moves them by −(BᵀB)⁻¹Bᵀe.
+        let weights = |of: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+            let each = -(normal * effect(of));
+            by[0].iter().zip(&by[1]).map(|(by_share, by_time)| each[0] * by_share + each[1] * by_time).collect()
         };
         let (reached, _) = self.solve(law, share, time);
         let last = |hold: usize| self.holds[hold].readings.last().map_or(0.0, |(time, _)| *time);
@@ -366,6 +376,13 @@ impl<'a> Problem<'a> {
             degrees: self.count - numbers,
             criterion: corrected_bic(self.floored(squares), self.count, numbers),
             told,
+            weights: [
+                weights(&|share, _| share),
+                weights(&|_, time| time),
+                weights(&rate),
+                weights(&remaining),
+                weights(&needed),
+            ],
             moves: self.moves.clone(),
             before: self.before,
             reached,

@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 
 use super::identification::fit_line;
 use super::maxwell::{MaxwellBranch, Travel};
+use super::relaxation_weights::RelaxationWeights;
 
 /// A specimen held at one place.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +47,10 @@ pub struct RelaxationFit {
     pub scatter: f64,
     /// Degrees of freedom of that scatter: the readings less all that was found.
     pub degrees: f64,
+    /// Where the first move began, m.
+    pub start: f64,
+    /// The hold that loses most, from 0.
+    pub worst_hold: usize,
 }
 
 /// What the hold that loses most has to lose.
@@ -78,6 +83,12 @@ impl RelaxationFit {
         #[expect(clippy::cast_precision_loss, reason = "far fewer holds than 2^53")]
         let holds = self.holds.len() as f64;
         if self.model == RelaxationModel::Exponential { (holds - 2.0).max(1.0) } else { self.degrees }
+    }
+
+    /// What every reading of its holds does to its numbers; None where they cannot be told apart.
+    #[must_use]
+    pub fn weights(&self, holds: &[Hold]) -> Option<RelaxationWeights> {
+        RelaxationWeights::of(self, holds, self.worst_hold)
     }
 
     /// Force of a hold `seconds` after its first reading, N.
@@ -171,19 +182,8 @@ struct Steady {
 }
 
 impl Problem<'_> {
-    /// What is left to relax at the first reading of each hold, by K₁ = 1 N/m.
     fn kernel(&self, tau: f64) -> Vec<f64> {
-        let (mut branch, mut at) = (MaxwellBranch::new(1.0, tau), self.start);
-        let each = self.holds.iter().map(|hold| {
-            let moved = hold.displacement - at;
-            at = hold.displacement;
-            let seconds = hold.moved_for.max(1e-9);
-            branch.follow(&Travel::even(moved / seconds, seconds));
-            let force = branch.force();
-            branch.follow(&Travel::rest(hold.readings.last().map_or(0.0, |(time, _)| *time)));
-            force
-        });
-        each.collect()
+        kernel(self.holds, self.start, tau)
     }
 
     fn solve(&self, tau: f64) -> Option<Solved> {
@@ -333,12 +333,15 @@ impl Problem<'_> {
             worst: Amplitude { force: 0.0, error: 0.0, covariance: 0.0 },
             scatter: variance.sqrt(),
             degrees: freedom,
+            start: self.start,
+            worst_hold: 0,
             holds: solved.holds.clone(),
         };
         let last = |hold: &Hold| hold.readings.last().map_or(0.0, |(time, _)| *time);
         let left = |index: usize| (solved.holds[index][1] * (-last(&self.holds[index]) / tau).exp()).abs();
         let worst = (0..self.holds.len()).max_by(|a, b| left(*a).total_cmp(&left(*b)))?;
         let amplitude = solved.holds[worst][1];
+        fit.worst_hold = worst;
         match self.model {
             RelaxationModel::Exponential => {
                 let offset: usize = self.holds[..worst].iter().map(|hold| hold.readings.len()).sum();
@@ -392,6 +395,21 @@ impl Problem<'_> {
         fit.remaining = ((amplitude * fall).abs(), spread.max(0.0).sqrt());
         Some(fit)
     }
+}
+
+/// What is left to relax at the first reading of each hold, by K₁ = 1 N/m.
+pub(super) fn kernel(holds: &[Hold], start: f64, tau: f64) -> Vec<f64> {
+    let (mut branch, mut at) = (MaxwellBranch::new(1.0, tau), start);
+    let each = holds.iter().map(|hold| {
+        let moved = hold.displacement - at;
+        at = hold.displacement;
+        let seconds = hold.moved_for.max(1e-9);
+        branch.follow(&Travel::even(moved / seconds, seconds));
+        let force = branch.force();
+        branch.follow(&Travel::rest(hold.readings.last().map_or(0.0, |(time, _)| *time)));
+        force
+    });
+    each.collect()
 }
 
 /// Σ of the squares and products of 1 and e^(−t/τ).

@@ -17,7 +17,7 @@ pub(super) fn fitted(
     (foreseen, samples): (Foreseen, u32),
 ) -> (Option<MultilinearFit>, Vec<String>) {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-    let fit = fit_multilinear(&x, &r, count).map(|fit| foreseen.multilinear(fit, (&x, &r), samples));
+    let fit = fit_multilinear(&x, &r, count).map(|fit| foreseen.multilinear(&fit, (&x, &r), samples).unwrap_or(fit));
     let remarks = remarks(fit.as_ref(), count, points.len(), what);
     (fit, remarks)
 }

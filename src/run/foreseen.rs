@@ -72,15 +72,11 @@ impl Foreseen {
     }
 
     /// The same of more stretches; their number stays.
-    pub(super) fn multilinear(self, fit: MultilinearFit, (x, r): (&[f64], &[f64]), samples: u32) -> MultilinearFit {
+    pub(super) fn multilinear(self, fit: &MultilinearFit, (x, r): (&[f64], &[f64]), samples: u32) -> Option<MultilinearFit> {
         let count = BreakCount::Exactly(fit.breaks.len());
-        match self.about(&Curve::of_multilinear(&fit), x, samples) {
-            0.0 => fit,
-            hidden => match fit_multilinear_of(x, r, count, hidden) {
-                Some(again) => MultilinearFit { criterion: fit.criterion, ..again },
-                None => fit,
-            },
-        }
+        let hidden = self.about(&Curve::of_multilinear(fit), x, samples);
+        let again = fit_multilinear_of(x, r, count, hidden).filter(|_| hidden > 0.0)?;
+        Some(MultilinearFit { criterion: fit.criterion.clone(), ..again })
     }
 
     /// Single readings of a force, each by itself, N².

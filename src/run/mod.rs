@@ -46,6 +46,9 @@ mod gliding;
 #[cfg(test)]
 mod growth_tests;
 mod hold;
+mod hold_rounding;
+#[cfg(test)]
+mod hold_rounding_tests;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
@@ -74,6 +77,7 @@ mod rounding_doubts;
 #[cfg(test)]
 mod rounding_doubts_tests;
 mod samples;
+mod secant_doubts;
 #[cfg(test)]
 mod sequence_tests;
 mod session;

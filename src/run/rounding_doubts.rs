@@ -4,10 +4,12 @@
 
 use nalgebra::DMatrix;
 
+use super::hold_rounding::of_holds;
 use super::propagation::quanta;
 use crate::formula::{ProcedureId, ResultValue};
 use crate::mechanics::breaks::row;
 use crate::mechanics::identification::fit_line;
+use crate::mechanics::relaxation_law::RelaxationLaw;
 use crate::mechanics::rounding::{Rounded, along, line_weights};
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::{BilinearFit, History, LineFit, MultilinearFit, NamedResult, RampStep, SweepHistory};
@@ -51,6 +53,9 @@ pub(super) fn widen(
                 let points: Vec<[f64; 2]> = first.iter().map(|step| [step.command, step.displacement]).collect();
                 doubts.give_curve(&curve, &points, asked.samples, results);
             }
+            for (name, variance, own) in of_holds(ramp, quanta, results) {
+                doubts.add(results, name, 0, &[(name, (variance - own * own).max(0.0).sqrt())]);
+            }
         }
         (ProcedureKind::Cycle(asked), History::Cycle(cycle)) => {
             if let Some(mut curve) = cycle.backbone.as_ref().map(Curve::of_multilinear) {
@@ -87,6 +92,23 @@ pub(super) fn floor(history: &mut History, results: &[NamedResult]) {
             if let Some(fit) = &mut ramp.bilinear {
                 widened(&mut fit.stiffness_error, "stiffness");
                 widened(&mut fit.yield_force_error, "yield_force");
+            }
+            if let Some(fit) = &mut ramp.relaxation {
+                widened(&mut fit.time_constant.1, "time_constant");
+                widened(&mut fit.remaining.1, "remaining_relaxation");
+                for (part, name) in
+                    [(&mut fit.relaxed_stiffness, "relaxed_stiffness"), (&mut fit.branch_stiffness, "branch_stiffness")]
+                {
+                    if let Some((_, error)) = part {
+                        widened(error, name);
+                    }
+                }
+            }
+            if let Some(fit) = ramp.reached.as_mut().and_then(|fit| fit.fits.first_mut()) {
+                let time = if fit.law == RelaxationLaw::Exponential { "time_constant" } else { "reference_time" };
+                widened(&mut fit.share.1, "relaxation_share");
+                widened(&mut fit.time.1, time);
+                widened(&mut fit.rate.1, "relaxation_rate");
             }
             if let Some((_, error)) = ramp.multilinear.as_mut().and_then(|fit| fit.stiffnesses.first_mut()) {
                 widened(error, "stiffness");

@@ -36,7 +36,8 @@ pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_
     let Fits { line: fit, bilinear, multilinear, .. } = fits;
     let (multilinear, relaxation, reached) =
         (multilinear.map(Box::new), told.relaxation.map(Box::new), told.reached.map(Box::new));
-    let history = RampHistory { steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
+    let history =
+        RampHistory { start: ramp.start, steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
     Performed { history: History::Ramp(history), results, stop }
 }
 
