@@ -63,12 +63,10 @@ impl Foreseen {
         fit.scattering(speeds, variance)
     }
 
-    /// A fit of two lines, once more with what is foreseen.
-    pub(super) fn bilinear(self, fit: BilinearFit, (x, r): (&[f64], &[f64]), samples: u32) -> BilinearFit {
-        match self.about(&Curve::of_bilinear(&fit), x, samples) {
-            0.0 => fit,
-            hidden => fit_bilinear_of(x, r, hidden).unwrap_or(fit),
-        }
+    /// A fit of two lines, once more with what is foreseen; None where that is nothing.
+    pub(super) fn bilinear(self, fit: &BilinearFit, (x, r): (&[f64], &[f64]), samples: u32) -> Option<BilinearFit> {
+        let hidden = self.about(&Curve::of_bilinear(fit), x, samples);
+        fit_bilinear_of(x, r, hidden).filter(|_| hidden > 0.0)
     }
 
     /// The same of more stretches; their number stays.

@@ -32,7 +32,7 @@ fn of_decay(ramp: &RampHistory, fit: &RelaxationFit, quanta: Quanta, results: &[
     let Some(weights) = fit.weights(&ramp.holds) else { return Vec::new() };
     let tau = fit.time_constant.0;
     let forces = forces(&ramp.holds, |hold, seconds| fit.force(hold, seconds));
-    let rounding = Rounding::of(ramp, forces, tau, quanta);
+    let rounding = Rounding::of(ramp, &forces, tau, quanta);
     let amplitude = fit.worst.force;
     let last = ramp.holds.get(fit.worst_hold).and_then(|hold| hold.readings.last()).map_or(0.0, |(time, _)| *time);
     let fall = (-last / tau).exp();
@@ -63,7 +63,7 @@ fn of_law(ramp: &RampHistory, fit: &LawFit, quanta: Quanta) -> Vec<Found> {
     // As fits take as many holds as they can, so do their weights.
     let holds = &ramp.holds[..fit.reached.len().min(ramp.holds.len())];
     let forces = forces(holds, |hold, seconds| fit.force(hold, seconds));
-    let rounding = Rounding::of(ramp, forces, fit.time.0, quanta);
+    let rounding = Rounding::of(ramp, &forces, fit.time.0, quanta);
     let errors = [fit.share.1, fit.time.1, fit.rate.1, fit.remaining.map_or(f64::NAN, |(_, error)| error), fit.needed_pause.1];
     let time = if fit.law == RelaxationLaw::Exponential { "time_constant" } else { "reference_time" };
     let names = ["relaxation_share", time, "relaxation_rate", "remaining_relaxation", "needed_pause"];
@@ -86,7 +86,7 @@ struct Rounding {
 }
 
 impl Rounding {
-    fn of(ramp: &RampHistory, forces: Vec<f64>, time: f64, quanta: Quanta) -> Self {
+    fn of(ramp: &RampHistory, forces: &[f64], time: f64, quanta: Quanta) -> Self {
         let each = |quantum: f64| if quantum > 0.0 { 1.0 / quantum } else { 0.0 };
         let readings = || ramp.holds.iter().flat_map(|hold| hold.readings.iter().map(move |(seconds, _)| (hold, *seconds)));
         let places: Vec<f64> = readings().map(|(hold, _)| hold.displacement).take(forces.len()).collect();

@@ -151,7 +151,7 @@ impl Ramp {
             }
             RampFit::Bilinear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
-                let bilinear = fit_bilinear(&x, &r).map(|fit| foreseen.bilinear(fit, (&x, &r), plan.samples));
+                let bilinear = fit_bilinear(&x, &r).map(|fit| foreseen.bilinear(&fit, (&x, &r), plan.samples).unwrap_or(fit));
                 let none = "no bilinear fit: the outward steps are fewer than six, or show no knee that softens";
                 let remarks = if bilinear.is_none() { vec![none.to_owned()] } else { Vec::new() };
                 Fits { bilinear, remarks, ..Fits::default() }

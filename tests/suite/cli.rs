@@ -370,7 +370,7 @@ fn a_plan_without_a_procedure_is_not_run() {
 
 /// A sweep about a place past yield, whose first stroke is not read, holds while a force relaxes, cycles on a coarse cell, and a row
 /// of blows of which the same is to be said.
-const PAST_YIELD: &str = r#"
+const PAST_YIELD: &str = r"
 specimen bracket {
   mass      = 1 kg
   behaviour = maxwell(
@@ -417,7 +417,7 @@ escalate rising {
   speeds    = [0.1, 0.15, 0.2] m/s
   while     = max_displacement < 50 mm
 }
-"#;
+";
 
 #[test]
 fn results_of_strokes_that_nobody_reads_and_of_coarse_cells_are_made_anew_too() {
