@@ -30,6 +30,7 @@ impl Extremes {
         }
     }
 
+    /// Largest size of each place so far, m.
     #[must_use]
     pub fn largest(&self) -> &[f64] {
         &self.largest
@@ -57,6 +58,7 @@ impl Peak {
         self.last = [self.last[1], Some(now)];
     }
 
+    /// Largest size so far, in the unit of what was taken.
     #[must_use]
     pub const fn largest(&self) -> f64 {
         self.largest

@@ -2,10 +2,10 @@
 //! again with an input moved a little and no model of the frame. In: targets of all floors and what was read at them, in
 //! order. Out: what would be read at targets near those, step by step.
 //!
-//! Each storey of a shear building has a way of its own (`recorded_path`), so that what is exact of one specimen is exact of
-//! every storey, and what is supposed of one is of every storey of which it may be. A frame whose stiffness is not that of storeys is taken for what it was at the same step and, off its
-//! recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets the recorded readings
-//! come back as they were, to the bit.
+//! Each storey of a shear building has a way of its own (`recorded_path`), so that what is exact of one specimen is exact of every storey,
+//! and what is supposed of one is of every storey of which it may be. A frame whose stiffness is not that of storeys is taken for what it
+//! was at the same step and, off its recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets
+//! the recorded readings come back as they were, to the bit.
 
 use super::frame::{SymmetricBand, drifts, shears, storeys_of};
 use super::recorded_path::{Again, Distortion, Noise, Reading, RecordedPath, Rule, UNSEEN};

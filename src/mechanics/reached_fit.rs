@@ -227,8 +227,8 @@ impl<'a> Problem<'a> {
         squares.max(self.count * (ROUNDING * self.largest).powi(2)).max(f64::MIN_POSITIVE)
     }
 
-    /// R̂ of the holds, and what the readings have left, for a share and a time: hold by hold, R + share·(lost of earlier steps − L·R̂_{h−1})
-    /// = (1 − share·L)·R̂_h.
+    /// R̂ of the holds, and what the readings have left, for a share and a time: hold by hold, R + share·(lost of earlier steps −
+    /// L·R̂_{h−1}) = (1 − share·L)·R̂_h.
     fn solve(&self, law: RelaxationLaw, share: f64, time: f64) -> (Vec<f64>, Vec<f64>) {
         let mut reached: Vec<f64> = Vec::with_capacity(self.holds.len());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]

@@ -20,6 +20,7 @@ pub struct Hold {
     pub readings: Vec<(f64, f64)>,
 }
 
+/// By what the forces of holds are told; R in N, X in m, t in s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RelaxationModel {
     /// R = R∞ + A e^(−t/τ) in every hold, with one τ for all.
@@ -28,6 +29,7 @@ pub enum RelaxationModel {
     StandardLinearSolid,
 }
 
+/// What holds tell of a specimen that comes to rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RelaxationFit {
     pub model: RelaxationModel,

@@ -80,6 +80,7 @@ pub struct Telling {
 }
 
 impl Telling {
+    /// Before the first step, which begins at `start`.
     #[must_use]
     pub fn new(input: &ImpactInput, until: Until, start: &ImpactState) -> Self {
         let mut summary = SummaryBuilder::new(input);
@@ -101,6 +102,7 @@ impl Telling {
         self.end.share
     }
 
+    /// The results, as far as steps were taken.
     #[must_use]
     pub fn finish(self) -> Outcome {
         let Self { summary, between, end, .. } = self;

@@ -143,6 +143,7 @@ pub struct Table {
     pub scale: f64,
 }
 
+/// How a measured curve goes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unloading {
     /// Parallel to the steepest stretch of the table.
@@ -161,7 +162,8 @@ pub enum Breaks {
 }
 
 impl Behaviour {
-    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in bearing.
+    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in
+    /// bearing.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {
         match self {
@@ -175,11 +177,13 @@ impl Behaviour {
             Self::Bolted(bolted) if bolted.clearance == 0.0 && bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Bolted(bolted) => bolted.stiffness,
             Self::Table(table) => table.initial_stiffness(),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.initial_stiffness(),
-            Self::Maxwell { of, stiffness, .. } => of.initial_stiffness() + stiffness,
-            Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.initial_stiffness()).sum::<f64>(),
-            Self::Parallel(parts) => parts.iter().map(Self::initial_stiffness).sum(),
             Self::Portal(portal) => portal.stiffness,
+            Self::Fracture { .. }
+            | Self::Rate { .. }
+            | Self::Logarithmic { .. }
+            | Self::Maxwell { .. }
+            | Self::Series(_)
+            | Self::Parallel(_) => self.stiffness_of_parts(Self::initial_stiffness),
         }
     }
 
@@ -194,10 +198,12 @@ impl Behaviour {
             }
             Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Table(table) => table.steepest(|_| true),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.largest_stiffness(),
-            Self::Maxwell { of, stiffness, .. } => of.largest_stiffness() + stiffness,
-            Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.largest_stiffness()).sum::<f64>(),
-            Self::Parallel(parts) => parts.iter().map(Self::largest_stiffness).sum(),
+            Self::Fracture { .. }
+            | Self::Rate { .. }
+            | Self::Logarithmic { .. }
+            | Self::Maxwell { .. }
+            | Self::Series(_)
+            | Self::Parallel(_) => self.stiffness_of_parts(Self::largest_stiffness),
             Self::Elastic { .. }
             | Self::Bilinear { .. }
             | Self::Beam(_)
@@ -206,6 +212,17 @@ impl Behaviour {
             | Self::Degrading { .. }
             | Self::Bolted(_)
             | Self::Portal(_) => self.initial_stiffness(),
+        }
+    }
+
+    /// A stiffness of what is made of others, N/m, `of` each of them: behind each other the flexibilities add up, else the
+    /// stiffnesses, with that of a Maxwell spring beside them.
+    fn stiffness_of_parts(&self, of: fn(&Self) -> f64) -> f64 {
+        let parts = self.parts().iter().map(of);
+        match self {
+            Self::Series(_) => 1.0 / parts.map(|stiffness| 1.0 / stiffness).sum::<f64>(),
+            Self::Maxwell { stiffness, .. } => parts.sum::<f64>() + stiffness,
+            _ => parts.sum(),
         }
     }
 

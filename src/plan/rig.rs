@@ -2,6 +2,7 @@
 
 use super::{AxisPlan, Interval};
 
+/// The rig of a run, and what the plan says of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigPlan {
     /// `ideal` where the plan declares none.
@@ -23,6 +24,7 @@ impl RigPlan {
     }
 }
 
+/// What stands behind the rig.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a plan has one")]
 pub enum Link {
@@ -142,6 +144,18 @@ pub enum ZeroAfter {
     Nowhere,
 }
 
+impl ZeroAfter {
+    /// As a plan writes it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Free => "free",
+            Self::Nowhere => "nowhere",
+        }
+    }
+}
+
 /// Where the numbers of a rig are traced to.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Calibration {
@@ -206,6 +220,7 @@ pub struct DeviceLink {
     pub serial_number: Option<String>,
 }
 
+/// Where a device is reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PortPlan {
     Serial {

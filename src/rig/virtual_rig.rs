@@ -290,16 +290,22 @@ mod tests {
     #[test]
     fn a_reading_that_was_lost_is_made_again_under_way() {
         let damped = || VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
-        let mut whole = Vec::new();
-        damped().traverse(&[2e-3], 0.01, 4, &mut |reading| Ok(whole.push(reading.force[0]))).unwrap();
-        let (mut rig, mut parts) = (damped(), Vec::new());
-        let lost = rig.traverse(&[2e-3], 0.01, 4, &mut |reading| match parts.len() {
-            2 => Err(RigFault::Device("killed".to_owned())),
-            _ => Ok(parts.push(reading.force[0])),
-        });
-        assert!(lost.is_err());
+        /// Takes readings, and is killed at the one after so many.
+        fn up_to(read: &mut Vec<f64>, most: usize) -> impl FnMut(Reading) -> Result<(), RigFault> {
+            move |reading| {
+                if read.len() == most {
+                    return Err(RigFault::Device("killed".to_owned()));
+                }
+                read.push(reading.force[0]);
+                Ok(())
+            }
+        }
+        let (mut whole, mut parts) = (Vec::new(), Vec::new());
+        damped().traverse(&[2e-3], 0.01, 4, &mut up_to(&mut whole, 4)).unwrap();
+        let mut rig = damped();
+        assert!(rig.traverse(&[2e-3], 0.01, 4, &mut up_to(&mut parts, 2)).is_err());
         let cut_off = CutOff { from: &[0.0], to: &[2e-3], samples: 4, done: 2 };
-        rig.traverse_on(&cut_off, 0.01, &mut |reading| Ok(parts.push(reading.force[0]))).unwrap();
+        rig.traverse_on(&cut_off, 0.01, &mut up_to(&mut parts, 4)).unwrap();
         assert_eq!(parts, whole);
     }
 

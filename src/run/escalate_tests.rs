@@ -149,10 +149,6 @@ impl Observer for Counting {
     fn step_done(&mut self, report: &StepReport) {
         self.last = report.step;
     }
-    fn procedure_finished(&mut self, _: &str) {}
-    fn stop_requested(&self) -> bool {
-        false
-    }
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::go_on()
     }

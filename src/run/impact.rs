@@ -192,7 +192,8 @@ pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Sessio
     }
 }
 
-/// In the order of the reference, `worst` the largest share of the input that tracking made of the energy; every number is missing if not even the start was read.
+/// In the order of the reference, `worst` the largest share of the input that tracking made of the energy; every number is missing if not
+/// even the start was read.
 pub(super) fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, history: &ImpactHistory) -> Vec<NamedResult> {
     let of = |name, dimension, value: fn(&ImpactSummary) -> f64| result(name, dimension, summary.map(value));
     let ended = |name, dimension, value: fn(&ImpactStep) -> f64| result(name, dimension, history.steps.last().map(value));

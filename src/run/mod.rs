@@ -126,13 +126,15 @@ use stop::Stop;
 /// Who watches a run: a progress bar, a live screen, a journal, a person.
 pub trait Observer {
     /// A procedure begins; `steps` is an upper bound of its steps where one is known.
-    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
-    fn step_done(&mut self, report: &StepReport);
-    fn procedure_finished(&mut self, name: &str);
+    fn procedure_started(&mut self, _name: &str, _keyword: &str, _steps: Option<u64>) {}
+    fn step_done(&mut self, _report: &StepReport) {}
+    fn procedure_finished(&mut self, _name: &str) {}
     /// The uncertainty of the results is being worked out, by runs taken again: so many of so many are done.
     fn studying(&mut self, _done: usize, _of: usize) {}
     /// Asked after every step: true stops the run after holding the rig.
-    fn stop_requested(&self) -> bool;
+    fn stop_requested(&self) -> bool {
+        false
+    }
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
@@ -173,6 +175,9 @@ pub struct StepReport {
     pub acceleration: Option<f64>,
     /// Measured restoring force, N.
     pub force: f64,
+    /// Of the last way of the rig, m/s; only for who watches.
+    #[serde(skip)]
+    pub speed: Option<f64>,
     /// Energy error over the input energy; only of procedures that integrate.
     pub energy_error: Option<f64>,
     /// What the monitors of tracking show; only of procedures that integrate.
@@ -240,12 +245,6 @@ pub(crate) const UNLOADING: &str = "unloading to where the run began";
 pub struct Unwatched;
 
 impl Observer for Unwatched {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
-    fn stop_requested(&self) -> bool {
-        false
-    }
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::go_on()
     }
@@ -287,6 +286,10 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
     }
     for procedure in &plan.procedures {
+        if let Err(stop) = session.stop_if_requested() {
+            record.outcome = ended_by(&stop, plan, &mut session);
+            break;
+        }
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { mut history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
@@ -302,12 +305,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
             history,
         });
         if let Some(stop) = stop {
-            session.end(&stop);
-            let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
-            if unload && stop.leaves_the_rig_sound() {
-                session.unload();
-            }
-            record.outcome = stop.outcome();
+            record.outcome = ended_by(&stop, plan, &mut session);
             break;
         }
         session.leave();
@@ -315,7 +313,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     if let Some(drift) = &mut record.drift {
         drift.held = session.guard.take_held();
         if record.outcome == Outcome::Completed
-            && let Err(stop) = zero::after(drift, &home, &mut session)
+            && let Err(stop) = session.stop_if_requested().and_then(|()| zero::after(drift, &home, &mut session))
         {
             session.end(&stop);
             record.outcome = stop.outcome();
@@ -323,6 +321,16 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     }
     record.events = session.finish();
     record
+}
+
+/// Holds the rig, and takes the load off where that is its safe state and it is still to be trusted.
+fn ended_by(stop: &Stop, plan: &Plan, session: &mut Session<'_>) -> Outcome {
+    session.end(stop);
+    let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
+    if unload && stop.leaves_the_rig_sound() {
+        session.unload();
+    }
+    stop.outcome()
 }
 
 /// What a real rig does once it has proved itself.

@@ -141,9 +141,9 @@ impl<'run> Session<'run> {
     }
 
     /// Tells who watches that a step is done, and asks whether to go on.
-    pub(super) fn step_done(&mut self, report: &StepReport) -> Result<(), Stop> {
+    pub(super) fn step_done(&mut self, report: StepReport) -> Result<(), Stop> {
         self.step = Some(report.step);
-        self.observer.step_done(report);
+        self.observer.step_done(&StepReport { speed: self.guard.speed(), ..report });
         loop {
             self.stop_if_requested()?;
             match self.observer.next() {
@@ -208,7 +208,7 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Holds where a person wants the end.
+    /// Holds where a person wants the end. Asked after every step, and before anything else begins to move.
     pub(super) fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
@@ -246,7 +246,7 @@ impl<'run> Session<'run> {
         });
         let Some(first) = axes.next() else { return Ok(()) };
         let others = axes.collect();
-        self.step_done(&StepReport {
+        self.step_done(StepReport {
             step,
             time,
             command: first.command,
@@ -254,6 +254,7 @@ impl<'run> Session<'run> {
             velocity: None,
             acceleration: None,
             force: first.force,
+            speed: None,
             energy_error: None,
             others,
             tracking: None,
