@@ -161,7 +161,7 @@ fn swept_past_yield() -> Plan {
         stroke: Constant(5e-3),
         about: Some(Constant(0.03)),
         stiffness: Constant(300.0),
-        rate: Some(Constant(20.0)),
+        rate: Some(Constant(24.0)),
     };
     yielding(vec![ProcedureKind::DampingSweep(sweep), to(0.0)])
 }
