@@ -104,8 +104,10 @@ impl<'a> DryRun<'a> {
         };
         for specimen in &self.plan.specimens {
             if let Some(behaviour) = &specimen.behaviour {
-                let rows = behaviour::rows(behaviour, &stated);
-                let rows = rows.into_iter().map(|(label, text)| vec![label.to_owned(), escape(&text)]).collect();
+                let from = specimen.mass_from.as_ref().map_or_else(String::new, |formula| format!(" from {formula}"));
+                let mass = ("equivalent mass", stated(specimen.mass, Dimension::MASS) + &from);
+                let rows = std::iter::once(mass).chain(behaviour::rows(behaviour, &stated));
+                let rows = rows.map(|(label, text)| vec![label.to_owned(), escape(&text)]).collect();
                 section(&format!("Specimen {}", specimen.name), rows);
             }
         }

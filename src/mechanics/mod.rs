@@ -27,6 +27,8 @@ pub mod method;
 pub mod monitor;
 pub mod multilinear_fit;
 pub mod path;
+pub mod portal_limit;
+pub mod portal_mass;
 pub mod reached_fit;
 #[cfg(test)]
 mod reached_fit_tests;

@@ -3,6 +3,8 @@
 
 use super::portal::Portal;
 use crate::mechanics::logarithmic::lost_after_long;
+use crate::mechanics::portal_mass::EquivalentMasses;
+use crate::mechanics::{beam, portal_mass};
 
 /// Restoring force of a virtual specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +13,8 @@ pub enum Behaviour {
     Elastic { stiffness: f64 },
     /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
     Bilinear { stiffness: f64, yield_force: f64, hardening: f64 },
+    /// The same, wearing with the energy it has taken.
+    WearingBilinear { stiffness: f64, yield_force: f64, hardening: f64, deterioration: Deterioration },
     /// A beam by geometry.
     Beam(Beam),
     /// Piecewise linear, with kinematic hardening: corners of the first loading, displacement (m) and force (N), both rising,
@@ -169,6 +173,7 @@ impl Behaviour {
         match self {
             Self::Elastic { stiffness }
             | Self::Bilinear { stiffness, .. }
+            | Self::WearingBilinear { stiffness, .. }
             | Self::BoucWen { stiffness, .. }
             | Self::Degrading { stiffness, .. } => *stiffness,
             Self::Beam(beam) => beam.stiffness,
@@ -206,6 +211,7 @@ impl Behaviour {
             | Self::Parallel(_) => self.stiffness_of_parts(Self::largest_stiffness),
             Self::Elastic { .. }
             | Self::Bilinear { .. }
+            | Self::WearingBilinear { .. }
             | Self::Beam(_)
             | Self::Multilinear { .. }
             | Self::Pinching(_)
@@ -257,9 +263,9 @@ impl Behaviour {
         match self {
             // However fast it is moved, a branch resists.
             Self::Elastic { .. } | Self::Beam(_) | Self::Maxwell { .. } => f64::INFINITY,
-            Self::Bilinear { yield_force, hardening, .. } | Self::BoucWen { yield_force, hardening, .. } => {
-                hardens(*hardening, *yield_force)
-            }
+            Self::Bilinear { yield_force, hardening, .. }
+            | Self::WearingBilinear { yield_force, hardening, .. }
+            | Self::BoucWen { yield_force, hardening, .. } => hardens(*hardening, *yield_force),
             Self::Pinching(Pinching { stiffness, yield_force, hardening, capping: Some(capping), .. }) => {
                 yield_force + hardening * stiffness * (capping.displacement - yield_force / stiffness)
             }
@@ -283,6 +289,31 @@ impl Behaviour {
         }
     }
 
+    /// Equivalent masses that its geometry gives; what stands around a beam or portal goes the same way.
+    #[must_use]
+    pub fn equivalent_masses(&self) -> Option<EquivalentMasses> {
+        match self {
+            Self::Beam(beam) => beam::equivalent_masses(beam),
+            Self::Portal(portal) => portal_mass::equivalent_masses(portal),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                of.equivalent_masses()
+            }
+            _ => None,
+        }
+    }
+
+    /// The portal that it is, also inside of what goes the same way.
+    #[must_use]
+    pub fn portal(&self) -> Option<&Portal> {
+        match self {
+            Self::Portal(portal) => Some(portal),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                of.portal()
+            }
+            _ => None,
+        }
+    }
+
     /// The same with every force times `factor`: it yields and breaks at the same displacements.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
@@ -290,7 +321,9 @@ impl Behaviour {
         let mut same = self.clone();
         match &mut same {
             Self::Elastic { stiffness } | Self::Degrading { stiffness, .. } => *stiffness *= factor,
-            Self::Bilinear { stiffness, yield_force, .. } | Self::BoucWen { stiffness, yield_force, .. } => {
+            Self::Bilinear { stiffness, yield_force, .. }
+            | Self::WearingBilinear { stiffness, yield_force, .. }
+            | Self::BoucWen { stiffness, yield_force, .. } => {
                 *stiffness *= factor;
                 *yield_force *= factor;
             }

@@ -36,7 +36,7 @@ pub use identification::{
 };
 pub use integrator::{Integrator, Mode};
 pub use limits::{Interval, Limits};
-pub use portal::{Loads, Mechanism, Portal, Sections};
+pub use portal::{ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses};
 pub use rig::{
     Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
     RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
