@@ -289,7 +289,6 @@ mod tests {
     /// A way that was cut off where a reading is due is gone on with: the reading is made again, and of a damper that moves.
     #[test]
     fn a_reading_that_was_lost_is_made_again_under_way() {
-        let damped = || VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
         /// Takes readings, and is killed at the one after so many.
         fn up_to(read: &mut Vec<f64>, most: usize) -> impl FnMut(Reading) -> Result<(), RigFault> {
             move |reading| {
@@ -300,6 +299,7 @@ mod tests {
                 Ok(())
             }
         }
+        let damped = || VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
         let (mut whole, mut parts) = (Vec::new(), Vec::new());
         damped().traverse(&[2e-3], 0.01, 4, &mut up_to(&mut whole, 4)).unwrap();
         let mut rig = damped();
