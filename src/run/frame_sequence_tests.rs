@@ -2,10 +2,10 @@
 
 use super::Unwatched;
 use super::session::Session;
-use super::testing::{elastic_plan, number, struck_frame};
+use super::testing::{elastic_plan, list, number, run_unwatched, struck_frame};
 use super::unload::{of_frame, to_rest};
 use crate::formula::Formula::Constant;
-use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
+use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
     Behaviour, Between, BlowOn, Comparison, Condition, Escalate, Frame, FrameUnload, Interval, Link, Plan, Procedure,
     ProcedureKind, Storey, StoreyImpact, Striker, Test, Unload, VirtualLink,
@@ -37,17 +37,6 @@ pub(super) fn three(hardening: f64) -> Plan {
     plan.specimens[0].frame = Some(Frame::of_storeys((0..3).map(|index| storey(index, hardening)).collect()));
     plan.specimens[0].behaviour = None;
     plan
-}
-
-fn run_unwatched(plan: &Plan) -> Record {
-    super::run(plan, virtual_rig(plan).as_mut(), &mut Unwatched)
-}
-
-fn list(record: &Record, procedure: usize, name: &str) -> Vec<f64> {
-    match record.procedures[procedure].result(name).map(|result| &result.value) {
-        Some(ResultValue::List(values)) => values.clone(),
-        other => panic!("{name} is {other:?}"),
-    }
 }
 
 fn rest(within: Option<f64>) -> ProcedureKind {

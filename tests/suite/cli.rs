@@ -101,7 +101,8 @@ fn changed(from: &str, to: &str) -> String {
     SOUND.replace(from, to)
 }
 
-fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+/// The files below a folder with their bytes, by their paths in it, in order.
+pub fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(next) = open.pop() {
