@@ -3,14 +3,15 @@
 //! from readings with drawn errors. What is fitted to the backbone has its own scatter, and is not touched here.
 
 use super::cycle::results;
+use super::cycle_rounding::of_loops;
 use super::inputs::Inputs;
+use super::rounding_doubts::Quanta;
 use super::study::{draws_of, give_entry};
 use crate::formula::ResultValue;
 use crate::mechanics::cyclic::{LoopPoint, loop_of};
 use crate::mechanics::recorded_path::{Distortion, Noise};
 use crate::plan::Calibration;
 use crate::record::{CycleHistory, CycleStep, NamedResult};
-use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Source, combined};
 
 /// Results with an entry a cycle.
@@ -29,7 +30,7 @@ pub(super) fn propagate(
     samples: u32,
     calibration: &Calibration,
     inputs: &Inputs<'_>,
-    declared: &DeclaredNoise,
+    quanta: Quanta,
     told: &mut [NamedResult],
 ) {
     let procedure = inputs.procedure();
@@ -50,17 +51,24 @@ pub(super) fn propagate(
             parts.push(Contribution::new(source, 0.5 * (up - down)));
         }
     }
-    if declared.force > 0.0 || declared.resolution > 0.0 {
+    if quanta.noise > 0.0 {
         let draws = draws_of(history.steps.len() as u64);
-        let averaged = f64::from(samples).sqrt();
-        let (force, displacement) = (declared.force / averaged, declared.resolution / 12.0_f64.sqrt());
+        let force = quanta.noise / f64::from(samples).sqrt();
         for draw in 0..draws {
-            let noise = Some(Noise { force, displacement, draw });
+            let noise = Some(Noise { force, displacement: 0.0, draw });
             let found = moved(Distortion { noise, ..Distortion::NONE });
             for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(&nominal) {
                 let amount = (found - nominal) / f64::from(draws).sqrt();
                 parts.push(Contribution::new(Source::Readings { procedure, draw }, amount));
             }
+        }
+    }
+    for (name, entry, amount) in of_loops(history, quanta, samples) {
+        let rounding = Contribution::new(Source::Rounding { procedure, result: name, entry }, amount);
+        if let Some(index) = OF_LOOPS.iter().position(|of_loop| *of_loop == name) {
+            contributions[index].push(rounding);
+        } else if let Some(list) = LISTS.iter().position(|list| *list == name) {
+            contributions[OF_LOOPS.len() + list * history.cycles.len() + entry].push(rounding);
         }
     }
     let of_cycles = contributions.split_off(OF_LOOPS.len());
@@ -189,7 +197,7 @@ mod tests {
             zero_uncertainty: 0.3,
             ..Calibration::default()
         };
-        let link = VirtualLink { noise: 0.1, resolution: 1e-6, seed: 4, ..VirtualLink::default() };
+        let link = VirtualLink { noise: 0.1, seed: 4, ..VirtualLink::default() };
         let record = run_unwatched(&plan(behaviour, link, calibration));
         let listed = |name: &str| record.procedures[0].result(name).unwrap().entry_uncertainties();
         let told = |name: &str| number(&record, 0, name).1;
@@ -199,9 +207,12 @@ mod tests {
         let sum = Formula::Call(Function::Sum, vec![all]).evaluate(&record, None).unwrap().uncertainty.unwrap();
         assert!((sum / told("dissipated_energy").unwrap() - 1.0).abs() < 1e-9);
         let amplitude = listed("amplitudes")[0].unwrap();
-        // Half the difference of two readings, each rounded and scaled.
-        let by_hand = (0.003 * 0.02_f64).hypot(1e-6 / 12.0_f64.sqrt() / 4.0_f64.sqrt() / 2.0_f64.sqrt());
-        assert!((amplitude / by_hand - 1.0).abs() < 0.02, "{amplitude} {by_hand}");
+        assert!((amplitude / (0.003 * 0.02) - 1.0).abs() < 1e-9, "{amplitude}");
+        // Rounded too, the numbers are still as uncertain as their entries.
+        let link = VirtualLink { noise: 0.1, resolution: 1e-5, force_resolution: 0.05, seed: 4, ..VirtualLink::default() };
+        let record = run_unwatched(&plan(Behaviour::Elastic { stiffness: STIFFNESS }, link, Calibration::default()));
+        let listed = record.procedures[0].result("stiffnesses").unwrap().entry_uncertainties();
+        assert_eq!(listed, [number(&record, 0, "stiffness").1, number(&record, 0, "last_stiffness").1]);
     }
 
     /// ∫R dX by the trapezoid has the weight (x₊ − x₋)/2 on each R: u = σ/√n·√Σ w², of uniform steps h of ways back and

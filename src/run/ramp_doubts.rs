@@ -19,6 +19,9 @@ use crate::uncertainty::{Contribution, Source};
 pub(super) const DIRECT: [&str; 6] =
     ["secant_stiffness", "max_force", "max_displacement", "loop_energy", "relaxation", "tangent_stiffness"];
 
+/// Those of which two readings alone tell: `secant_doubts` knows them.
+const OF_TWO_READINGS: [&str; 2] = ["secant_stiffness", "tangent_stiffness"];
+
 /// A ramp as it was read.
 #[derive(Clone)]
 pub(super) struct Readings {
@@ -127,7 +130,7 @@ pub(super) fn propagate(
             }
         }
     }
-    for (name, parts) in DIRECT.into_iter().zip(contributions) {
+    for (name, parts) in DIRECT.into_iter().zip(contributions).filter(|(name, _)| !OF_TWO_READINGS.contains(name)) {
         if let Some(result) = told.iter_mut().find(|result| result.name == name)
             && matches!(result.value, ResultValue::Number { value: Some(_), .. })
         {
