@@ -283,7 +283,7 @@ fn a_row_of_blows_on_a_storey_is_the_blows_written_out() {
 /// u(`residual_drift`): of the last blow's rest, as its own results tell.
 #[test]
 fn what_stays_after_a_row_is_as_uncertain_as_the_zeros_above() {
-    let mut plan = rising(&[0.9, 1.2], 10.0, Between::Unload);
+    let mut plan = rising(&[0.9, 1.2], Between::Unload);
     plan.rig.calibration.zero_uncertainty = 0.05;
     let record = run_unwatched(&plan);
     let result = record.procedures[0].result("residual_drift").unwrap();
