@@ -5,6 +5,7 @@ mod axes;
 #[cfg(test)]
 mod balance_tests;
 mod blow;
+mod bounded;
 #[cfg(test)]
 mod contacts_tests;
 mod continuous;
@@ -37,6 +38,8 @@ mod frame_sequence_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
+#[cfg(test)]
+mod gliding_doubts_tests;
 mod hold;
 mod impact;
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use super::testing::{Uniform, elastic_plan, every, impact, number, ramp, result_of, run_unwatched, scatter};
 use crate::formula::Formula;
 use crate::mechanics::summary::ImpactSummary;
-use crate::plan::{Behaviour, Calibration, Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
+use crate::plan::{Behaviour, Calibration, Contact, Impact, Integrator, Link, Plan, ProcedureKind, Stepping, Until, VirtualLink};
 use crate::record::Record;
 use crate::uncertainty::{Contribution, Source, combined};
 
@@ -334,4 +334,28 @@ fn blows_of_one_striker_share_what_is_uncertain_of_it() {
     assert!((largest_u.unwrap() / largest.unwrap() - 0.01).abs() < 1e-4);
     let (of_blows, (_, u), _) = run(0.0, 0.5);
     assert!((u.unwrap() / of_blows[0].hypot(of_blows[1]) - 1.0).abs() < 1e-9, "{u:?} of {of_blows:?}");
+}
+
+/// Explicit steps just below 2/ω are stable; of a cell that reads 2 % more, for a step of 2.01/ω, they are not, and what such a
+/// cell would make of the results is no uncertainty of them. A tenth of that is.
+#[test]
+fn a_way_that_grows_without_bound_is_told_as_such() {
+    let with = |force_uncertainty: f64| {
+        let blow = Impact {
+            contact: Contact::Restitution { coefficient: constant(0.5) },
+            stepping: Stepping { integrator: Integrator::Explicit, ..every(1.99 / 300.0_f64.sqrt()) },
+            duration: constant(30.0),
+            until: Until::Duration,
+            ..impact(constant(300.0))
+        };
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        plan.strikers[0].mass = 0.5;
+        plan.rig.calibration = Calibration { force_uncertainty, ..Calibration::default() };
+        let record = run_unwatched(&plan);
+        let grows = record.events.iter().any(|event| event.text.contains("grow without bound"));
+        (grows, number(&record, 0, "max_displacement").1)
+    };
+    assert_eq!(with(0.02), (true, None));
+    let (grows, u) = with(0.002);
+    assert!(!grows && u.is_some(), "{u:?}");
 }
