@@ -265,6 +265,23 @@ fn a_row_of_blows_on_a_storey_is_the_blows_written_out() {
     }
 }
 
+/// After a row of blows each cell's zero z leaves the drift of a storey off by −z/k for each floor above it, and Σ of the squares is
+/// u(`residual_drift`): of the last blow's rest, as its own results tell.
+#[test]
+fn what_stays_after_a_row_is_as_uncertain_as_the_zeros_above() {
+    let mut plan = rising(&[0.9, 1.2], 10.0, Between::Unload);
+    plan.rig.calibration.zero_uncertainty = 0.05;
+    let record = run_unwatched(&plan);
+    let result = record.procedures[0].result("residual_drift").unwrap();
+    let told = result.entry_uncertainties();
+    for (storey, stiffness) in [500.0, 300.0].into_iter().enumerate() {
+        let floors: f64 = if storey == 0 { 2.0 } else { 1.0 };
+        let by_hand = 0.05 * floors.sqrt() / stiffness;
+        assert!((told[storey].unwrap() / by_hand - 1.0).abs() < 1e-6, "storey {storey}: {told:?}, by hand {by_hand}");
+    }
+    assert_eq!(result.contributions, blows(&record).blows.last().unwrap().rest.as_ref().unwrap().doubts_of_drifts());
+}
+
 /// It ends with the first blow after which a storey has drifted too far, and after the last of the list.
 #[test]
 fn a_row_on_a_storey_ends_with_the_first_blow_that_fails() {

@@ -2,7 +2,7 @@
 //! that share sources, requirements with a guard band.
 
 use super::testing::{Uniform, elastic_plan, every, impact, number, ramp, result_of, run_unwatched, scatter};
-use crate::formula::Formula;
+use crate::formula::{Formula, ProcedureId};
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Behaviour, Calibration, Contact, Impact, Integrator, Link, Plan, ProcedureKind, Stepping, Until, VirtualLink};
 use crate::record::Record;
@@ -92,6 +92,26 @@ fn an_elastic_blow_comes_out_by_its_closed_form() {
     assert!(parts.iter().all(|part| part.smooth), "{parts:?}");
     assert_eq!(number(&record, 0, "max_displacement").1, combined(parts));
     assert!(!record.events.iter().any(|event| event.text.contains("uncertainty")), "{:?}", record.events);
+}
+
+/// Δtc = (2π/10)√(M/K) of a K that a ramp told: half of its relative error, by the same source, and half of that of M; and so of the
+/// critical step of every blow of a row.
+#[test]
+fn the_critical_step_is_as_uncertain_as_the_ramp() {
+    let blow = Impact { mass_uncertainty: 0.02 * MASS, ..impact(result_of(0, "stiffness")) };
+    let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::StiffnessRamp(ramp(1e-3)), ProcedureKind::Impact(blow)]);
+    plan.rig.link = Link::Virtual(VirtualLink { noise: 0.02, seed: 9, ..VirtualLink::default() });
+    let record = run_unwatched(&plan);
+    let (stiffness, known) = number(&record, 0, "stiffness");
+    let (critical, told) = number(&record, 1, "critical_time_step");
+    let (relative, critical) = (known.unwrap() / stiffness.unwrap(), critical.unwrap());
+    let by_hand = 0.5 * critical * relative.hypot(0.02);
+    assert!(relative > 1e-3 && (told.unwrap() / by_hand - 1.0).abs() < 1e-3, "{told:?}, by hand {by_hand}");
+    let parts = contributions(&record, 1, "critical_time_step");
+    let of = |source| parts.iter().find(|part| part.source == source).map_or(0.0, |part| part.amount);
+    let fitted = Source::Fit { procedure: ProcedureId(0), result: "stiffness" };
+    assert!((of(fitted) / (-0.5 * critical * relative) - 1.0).abs() < 1e-3, "{parts:?}");
+    assert!((of(Source::SpecimenMass(0)) / (0.01 * critical) - 1.0).abs() < 1e-3, "{parts:?}");
 }
 
 /// Nothing uncertain, nothing told.
