@@ -88,7 +88,7 @@ impl<'run> Doubts<'run> {
             let distortion = Distortion { noise: Some(Noise { force, displacement, draw }), ..Distortion::NONE };
             study.draws.push((source, Job { setting: *setting, distortion }));
         }
-        let mut contributions = over_rules(&rules, tick, &mut |rule, tick| {
+        let mut contributions = over_rules(rules, tick, &mut |rule, tick| {
             let path = path.clone().supposing(rule);
             let take = |Job { setting, distortion }: &Job| {
                 taken(setting, &rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion))
