@@ -57,6 +57,7 @@ impl Stated {
     }
 }
 
+/// Between two numbers; their dimensions were checked with the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
     Add,
@@ -66,6 +67,7 @@ pub enum Operator {
     Power,
 }
 
+/// Of one number or of a list, by its name in the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     Abs,

@@ -53,6 +53,7 @@ pub struct RequirementOutcome {
     pub conditions: Vec<ConditionOutcome>,
 }
 
+/// One condition: what it was held against, and by how much it holds.
 #[derive(Clone, Debug)]
 pub struct ConditionOutcome {
     /// As the plan wrote it.

@@ -3,12 +3,10 @@
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::{shown, specimens as fault, values};
-use super::table_file;
+use super::{portal, table_file};
 use crate::mechanics::beam;
 use crate::mechanics::logarithmic::lost_after_long;
-use crate::plan::{
-    Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Loads, Pinching, Portal, Sections, Table, Unloading,
-};
+use crate::plan::{Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Pinching, Table, Unloading};
 use crate::quantity::Dimension;
 use crate::schema::Variant;
 use crate::source::Span;
@@ -30,7 +28,15 @@ pub struct Written<'a> {
     pub variants: &'static [Variant],
     pub expr: &'a Expr,
     pub place: Place,
-    /// q·A·L of the specimen, kg, where it states all three.
+    pub material: Material,
+}
+
+/// What a specimen says of its material.
+#[derive(Clone, Copy, Default)]
+pub struct Material {
+    /// q·A, kg/m, where it states both.
+    pub mass_per_length: Option<f64>,
+    /// q·A·L, kg, where it states all three.
     pub own_mass: Option<f64>,
 }
 
@@ -72,7 +78,12 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
         "elastic" => Some(Behaviour::Elastic { stiffness: number("stiffness")? }),
         "bilinear" => {
             let (stiffness, yield_force, hardening) = (number("stiffness"), number("yield_force"), number("hardening"));
-            Some(Behaviour::Bilinear { stiffness: stiffness?, yield_force: yield_force?, hardening: hardening? })
+            let (exponent, residual) = (number("deterioration_exponent"), number("residual_strength"));
+            let (stiffness, yield_force, hardening) = (stiffness?, yield_force?, hardening?);
+            Some(match deterioration(checker, &chosen, place, (exponent?, residual?))? {
+                None => Behaviour::Bilinear { stiffness, yield_force, hardening },
+                Some(deterioration) => Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration },
+            })
         }
         "bouc_wen" => {
             let (stiffness, yield_force, hardening) = (number("stiffness"), number("yield_force"), number("hardening"));
@@ -134,8 +145,8 @@ fn part<'a>(checker: &mut Checker<'a>, written: &Written<'a>, expr: &'a Expr, st
         "series" => series(checker, written, &chosen, expr.span),
         "parallel" => parts(checker, written, &chosen, expr.span)
             .map(|parts| Behaviour::Parallel(parts.into_iter().map(|(part, _)| part).collect())),
-        "portal" => portal(checker, &chosen, place, expr.span),
-        _ => beam(checker, &chosen, place, written.own_mass),
+        "portal" => portal::portal(checker, &chosen, place, expr.span, written.material.mass_per_length),
+        _ => beam(checker, &chosen, place, written.material.own_mass),
     }
 }
 
@@ -147,7 +158,11 @@ fn deterioration<'a>(
     place: Place,
     (exponent, residual): (f64, f64),
 ) -> Option<Option<Deterioration>> {
-    let mut of = |name| checker.optional_argument(chosen, name, place);
+    // Two slopes alone are not capped, and reload along their own.
+    let mut of = |name| match chosen.find(name) {
+        Some(_) => checker.optional_argument(chosen, name, place),
+        None => Some(None),
+    };
     let stated = [of("energy_capacity"), of("capping_capacity"), of("unloading_capacity"), of("reloading_capacity")];
     let [strength, capping, unloading, reloading] = stated;
     let all = [strength?, capping?, unloading?, reloading?];
@@ -354,55 +369,16 @@ fn beam<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, own_ma
     Some(Behaviour::Beam(Beam { stiffness, length, youngs_modulus, second_moment, ends, shear, own_mass }))
 }
 
-fn portal<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place, span: Span) -> Option<Behaviour> {
-    let mut number = |name: &str| checker.constant_argument(chosen, name, place);
-    let (length, height, plastic_moment) = (number("span"), number("height"), number("plastic_moment"));
-    let modulus = checker.optional_argument(chosen, "youngs_modulus", place);
-    let second_moment = checker.optional_argument(chosen, "second_moment", place);
-    let column_moment = checker.optional_argument(chosen, "column_plastic_moment", place);
-    let column_second = checker.optional_argument(chosen, "column_second_moment", place);
-    let stiffness = checker.optional_argument(chosen, "stiffness", place);
-    let loads = checker.chosen_argument(chosen, "loads")?;
-    let loads = match loads.variant.name {
-        "sway" => Loads::Sway,
-        "beam" => Loads::Beam,
-        _ => {
-            let mut number = |name: &str| checker.constant_argument(&loads, name, place);
-            let (beam_load, sway_load) = (number("beam_load"), number("sway_load"));
-            Loads::Combined { beam_load: beam_load?, sway_load: sway_load? }
+/// Whether a behaviour is written with this variant somewhere.
+pub fn names(expr: &Expr, variant: &str) -> bool {
+    match &expr.kind {
+        ExprKind::Parenthesised(inner) => names(inner, variant),
+        ExprKind::List { items, .. } => items.iter().any(|item| names(item, variant)),
+        ExprKind::Call { name, arguments, .. } => {
+            name.node == variant || arguments.iter().any(|argument| names(&argument.value, variant))
         }
-    };
-    let (length, height, plastic_moment) = (length?, height?, plastic_moment?);
-    let plastic_moment = Sections { beam: plastic_moment, column: column_moment?.unwrap_or(plastic_moment) };
-    let (second_moment, column_second) = (second_moment?, column_second?);
-    if let (Some(_), None) = (column_second, second_moment) {
-        return checker.fail(fault::missing_partner(
-            "column_second_moment",
-            "second_moment",
-            chosen.span("column_second_moment")?,
-        ));
+        _ => false,
     }
-    let portal = match (modulus?, second_moment, stiffness?) {
-        (Some(modulus), Some(beam), None) => {
-            let bending = Sections { beam: modulus * beam, column: modulus * column_second.unwrap_or(beam) };
-            Portal::of_sections(length, height, plastic_moment, bending, loads)
-        }
-        (None, None, Some(stiffness)) => {
-            Portal { span: length, height, plastic_moment, bending_stiffness: None, stiffness, loads }
-        }
-        (Some(_), None, None) => {
-            return checker.fail(fault::missing_partner("youngs_modulus", "second_moment", chosen.span("youngs_modulus")?));
-        }
-        (None, Some(_), None) => {
-            return checker.fail(fault::missing_partner("second_moment", "youngs_modulus", chosen.span("second_moment")?));
-        }
-        (modulus, second_moment, _) => {
-            let given = usize::from(modulus.is_some() || second_moment.is_some()) * 2;
-            let takes = "a `portal` takes `youngs_modulus` with `second_moment`, or its `stiffness`";
-            return checker.fail(fault::one_way_only(takes, "stiffness: 2 kN/mm", span, given));
-        }
-    };
-    Some(Behaviour::Portal(portal))
 }
 
 /// The tables that a behaviour was written with, and where each is named.

@@ -44,12 +44,21 @@ impl<'a> Checker<'a> {
                 && self.given(block, field.name).is_none()
                 && !self.replaced(block, field.name)
             {
+                let example = self.example_of(block, field);
                 self.faults.push(match field.need {
                     Need::RequiredOn(rig, _) => fault::missing_field_on(rig, kind, declared.name, declared.block.head, field),
-                    _ => fault::missing_field(kind, declared.name, declared.block.head, field.name, field.example),
+                    _ => fault::missing_field(kind, declared.name, declared.block.head, field.name, example),
                 });
             }
         }
+    }
+
+    /// What the field could be: of a rig that says what only a real one says, a real link.
+    fn example_of(&self, block: usize, field: &Field) -> &'static str {
+        const REAL: &str = "link = serial(port: \"/dev/ttyUSB0\", dialect: native)";
+        let is_link = self.scope.blocks[block].kind.kind == Kind::Rig && field.name == "link";
+        let real = is_link && super::rig::says_of_real_rigs(self, block);
+        if real { REAL } else { field.example }
     }
 
     /// What stands in place of a field that is required otherwise: storeys or matrices of a behaviour.

@@ -3,7 +3,7 @@
 
 use std::rc::Rc;
 
-use super::behaviour::{self, Written};
+use super::behaviour::{self, Material, Written};
 use super::checker::{Checker, Place};
 use super::choice::Chosen;
 use super::faults::{frames as fault, values};
@@ -108,7 +108,7 @@ fn storey<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, number: usize, at:
     let column = checker.optional_argument(chosen, "column_stiffness", place);
     let behaviour = match chosen.find("behaviour") {
         Some((Field { ty: FieldType::Choice(variants), .. }, Some(expr))) => {
-            let written = Written { field: "behaviour", variants, expr, place, own_mass: None };
+            let written = Written { field: "behaviour", variants, expr, place, material: Material::default() };
             behaviour::behaviour(checker, &written).map(Some)
         }
         _ => Some(None),

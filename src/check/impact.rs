@@ -86,6 +86,7 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Str
     integrator::stable(checker, block, impact, striker, specimen);
     let allowed = checker.faults[before..].iter().any(|fault| fault.code == Code::BeyondStability);
     warnings::impact(checker, block, impact, striker, allowed);
+    warnings::mechanism(checker, block, impact, specimen);
 }
 
 /// A run that waits for a striker to have left for good, which one that falls never has.

@@ -36,6 +36,7 @@ mod move_block;
 mod names;
 mod parameters;
 mod plan_block;
+mod portal;
 mod print;
 mod procedures;
 mod real_rig;

@@ -1,12 +1,13 @@
 //! `specimen NAME { … }`: equivalent mass and behaviour.
 
-use super::behaviour::{self, Written};
+use super::behaviour::{self, Material, Written};
 use super::checker::Checker;
 use super::faults::{frames, names as fault, specimens};
 use super::frame;
 use super::limits::CheckedLimits;
 use super::striker::uncertainty;
 use crate::formula::{Formula, Function, Stated};
+use crate::mechanics::portal_limit::mechanism_limit;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
@@ -33,8 +34,8 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     }
     let no_matrices = frame::no_matrix_uncertainties(checker, block);
     let mass = mass(checker, block);
-    if checker.misspelt(block, &["mass", "density", "area", "length"]) {
-        // A misspelt field is said already.
+    if checker.misspelt(block, &["mass", "density", "area", "length"]) || faulty_portal(checker, block) {
+        // What is misspelt or wrong is said already.
     } else if mass.is_none() && !any_given(checker, block) {
         checker.faults.push(fault::missing_field(declared.kind, name, head, "mass", "mass = 0.73 kg"));
     } else if mass.is_none()
@@ -71,23 +72,53 @@ fn any_given(checker: &Checker, block: usize) -> bool {
     ["mass", "density", "area", "length"].into_iter().any(|field| checker.given(block, field).is_some())
 }
 
-/// `mass`, else q·A·L/2, the equivalent mass at midspan (Melo et al. 2006, Fig. 5).
+/// `mass`, else what a portal's geometry gives, else q·A·L/2, the equivalent mass at midspan (Melo et al. 2006, Fig. 5).
 fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
     if checker.given(block, "mass").is_some() {
         return checker.constant(block, "mass");
+    }
+    if let Some(elastic) = mass_of_portal(checker, block) {
+        return Some(elastic);
     }
     let (density, area, length) =
         (checker.constant(block, "density")?, checker.constant(block, "area")?, checker.constant(block, "length")?);
     Some(density * area * length / 2.0)
 }
 
+/// By its elastic deflection, kg. One that weighs nothing where its load moves it has none.
+fn mass_of_portal(checker: &mut Checker, block: usize) -> Option<f64> {
+    if !names_portal(checker, block) {
+        return None;
+    }
+    let at = checker.scope.blocks[block].block.head;
+    let masses = behaviour(checker, block, at)?.equivalent_masses()?;
+    Some(masses.elastic).filter(|elastic| *elastic > 0.0)
+}
+
+/// Whether a specimen without a mass of its own is a portal.
+fn names_portal(checker: &Checker, block: usize) -> bool {
+    checker.given(block, "mass").is_none()
+        && checker.given(block, "behaviour").is_some_and(|(_, entry)| behaviour::names(&entry.value, "portal"))
+}
+
+fn faulty_portal(checker: &mut Checker, block: usize) -> bool {
+    let at = checker.scope.blocks[block].block.head;
+    names_portal(checker, block) && behaviour(checker, block, at).is_none()
+}
+
 /// How the plan comes to the mass: its formula where it writes one, and that of the geometry where it gives no mass.
-fn mass_from(checker: &Checker, block: usize) -> Option<String> {
+fn mass_from(checker: &mut Checker, block: usize) -> Option<String> {
     match checker.given(block, "mass") {
         Some((_, entry)) if matches!(entry.value.kind, ExprKind::Number { .. }) => None,
         Some((_, entry)) => Some(checker.text(entry.value.span).to_owned()),
+        None if mass_of_portal(checker, block).is_some() => Some("elastic_mass".to_owned()),
         None => Some("density * area * length / 2".to_owned()),
     }
+}
+
+/// q·A, kg/m.
+fn mass_per_length(checker: &mut Checker, block: usize) -> Option<f64> {
+    Some(checker.constant(block, "density")? * checker.constant(block, "area")?)
 }
 
 /// q·A·L, kg.
@@ -142,6 +173,19 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -
     let (value, reason) = match (name, &behaviour) {
         ("stiffness", _) => (behaviour.initial_stiffness(), ""),
         ("capacity", _) => (behaviour.capacity(), "its force has no bound"),
+        ("elastic_mass" | "plastic_mass" | "lumped_mass", _) => {
+            let masses = behaviour.equivalent_masses();
+            let value = masses.and_then(|masses| match name {
+                "elastic_mass" => Some(masses.elastic),
+                "lumped_mass" => Some(masses.lumped),
+                _ => masses.plastic,
+            });
+            (value.unwrap_or(f64::INFINITY), "its geometry does not give it")
+        }
+        ("mechanism_limit", _) => {
+            let limit = behaviour.portal().and_then(mechanism_limit);
+            (limit.unwrap_or(f64::INFINITY), "it is no `portal` under one load whose members have a mass")
+        }
         (_, Behaviour::Portal(portal)) => {
             let mechanism = Mechanism::ALL.into_iter().find(|mechanism| name.starts_with(mechanism.name()))?;
             (portal.collapse_load(mechanism), "its loads do no work on that mechanism")
@@ -154,11 +198,13 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -
 /// The behaviour; a fault in it is reported once, however often it is asked for.
 pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<Behaviour> {
     let known = checker.faults.len();
-    let stated = ["density", "area", "length"].into_iter().all(|field| checker.given(block, field).is_some());
-    let own_mass = stated.then(|| own_mass(checker, block)).flatten();
+    let stated = |checker: &Checker, fields: &[&str]| fields.iter().all(|field| checker.given(block, field).is_some());
+    let own_mass = stated(checker, &["density", "area", "length"]).then(|| own_mass(checker, block)).flatten();
+    let mass_per_length = stated(checker, &["density", "area"]).then(|| mass_per_length(checker, block)).flatten();
+    let material = Material { mass_per_length, own_mass };
     let behaviour = checker.within_entry(block, "behaviour", asked_at, |checker, expr, place| {
         let FieldType::Choice(variants) = checker.scope.blocks[block].kind.field("behaviour")?.ty else { return None };
-        behaviour::behaviour(checker, &Written { field: "behaviour", variants, expr, place, own_mass })
+        behaviour::behaviour(checker, &Written { field: "behaviour", variants, expr, place, material })
     });
     checker.drop_repeated(known);
     behaviour

@@ -1,13 +1,14 @@
 //! What runs but is unwise. In: what was checked. Out: warnings, with the numbers.
 
 use super::checker::Checker;
-use super::faults::{cyclic, values, whole as fault};
+use super::faults::{cyclic, specimens, values, whole as fault};
 use super::impact::{critical_before_the_run, time_step_before_the_run};
 use crate::formula::Formula;
 use crate::mechanics::frame::Damping;
+use crate::mechanics::portal_limit::mechanism_limit;
 use crate::plan::{
-    Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake, StoreyImpact,
-    Striker, Until,
+    Behaviour, Between, BlowOn, Condition, Contact, Escalate, Ground, Impact, Procedure, ProcedureKind, Requirement, Shake,
+    Specimen, StoreyImpact, Striker, Until,
 };
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
@@ -28,6 +29,20 @@ pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: &St
         && let Some(force) = force.constant()
     {
         limit_force(checker, at, step, (mass, force), striker);
+    }
+}
+
+/// A contact force that may grow beyond what the mechanism of a portal follows.
+pub fn mechanism(checker: &mut Checker, block: usize, impact: &Impact, specimen: Option<&Specimen>) {
+    let bound = match &impact.contact {
+        Contact::Limit { force } | Contact::Hertz { force_limit: Some(force), .. } => force.constant(),
+        _ => None,
+    };
+    let portal = specimen.and_then(|specimen| specimen.behaviour.as_ref()).and_then(Behaviour::portal);
+    if let (Some(force), Some(portal), Some((_, entry))) = (bound, portal, checker.given(block, "contact"))
+        && let Some(most) = mechanism_limit(portal).filter(|most| force > *most)
+    {
+        checker.faults.push(specimens::beyond_mechanism(portal.mechanism(), (force, most), entry.value.span));
     }
 }
 

@@ -195,12 +195,6 @@ impl Observer for Listener {
         }
     }
 
-    fn procedure_finished(&mut self, _: &str) {}
-
-    fn stop_requested(&self) -> bool {
-        false
-    }
-
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::go_on()
     }

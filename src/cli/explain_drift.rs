@@ -1,6 +1,7 @@
 //! What `psd check --explain` tells of the zeros of a rig that watches them. In: the plan, the record of its dry run. Out: rows:
 //! when zeros are read, how long there is between them, which drift that leaves room for, and what a declared one comes to.
 
+use crate::output::PredictedZeros;
 use crate::plan::{DriftCheck, Plan, ZeroAfter};
 use crate::quantity::Dimension;
 use crate::quantity::display::{readable, stated};
@@ -30,7 +31,7 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
         ZeroAfter::Nowhere => "not read again: only rest and holds are judged".to_owned(),
     };
     rows.push(row("after the test", read));
-    let judged = between.unwrap_or(0.0).max(over);
+    let judged = judged_over(found);
     let steady = readable(force / judged, Dimension::FORCE);
     rows.push(row("a steady drift", format!("of up to {steady}/s is within what is allowed")));
     if let Some(drift) = plan.rig.link.as_virtual().map(|link| link.drift).filter(|drift| *drift != 0.0) {
@@ -40,6 +41,27 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
         rows.push(row("declared of this rig", text));
     }
     rows
+}
+
+/// The same as data.
+pub fn predicted(record: &Record) -> Option<PredictedZeros> {
+    let found = record.drift.as_ref()?;
+    let DriftCheck { force, displacement, over, after } = found.check;
+    Some(PredictedZeros {
+        allowed_force_n: force,
+        allowed_displacement_m: displacement,
+        over_s: over,
+        after: after.name(),
+        holds: found.held.count,
+        longest_hold_s: (found.held.count > 0).then_some(found.held.longest),
+        between_s: time_between(found),
+        steady_force_n_per_s: force / judged_over(found),
+    })
+}
+
+/// The longest time over which a drift is judged, s.
+fn judged_over(found: &Drift) -> f64 {
+    time_between(found).unwrap_or(0.0).max(found.check.over)
 }
 
 /// s between the zeros before and after; None where they are not read again.

@@ -72,7 +72,7 @@ pub struct DryRun<'a> {
 impl<'a> DryRun<'a> {
     pub fn of(plan: &'a Plan) -> Self {
         let mut ideal = plan.clone();
-        ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig.link));
+        ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
         let model =
             format!("dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift", plan.rig.name);
         Self::on(plan, &ideal, model)
@@ -104,8 +104,10 @@ impl<'a> DryRun<'a> {
         };
         for specimen in &self.plan.specimens {
             if let Some(behaviour) = &specimen.behaviour {
-                let rows = behaviour::rows(behaviour, &stated);
-                let rows = rows.into_iter().map(|(label, text)| vec![label.to_owned(), escape(&text)]).collect();
+                let from = specimen.mass_from.as_ref().map_or_else(String::new, |formula| format!(" from {formula}"));
+                let mass = ("equivalent mass", stated(specimen.mass, Dimension::MASS) + &from);
+                let rows = std::iter::once(mass).chain(behaviour::rows(behaviour, &stated));
+                let rows = rows.map(|(label, text)| vec![label.to_owned(), escape(&text)]).collect();
                 section(&format!("Specimen {}", specimen.name), rows);
             }
         }
@@ -239,6 +241,7 @@ impl<'a> DryRun<'a> {
         Prediction {
             model: self.model.clone(),
             stopped: self.stopped(),
+            zeros: explain_drift::predicted(&self.record),
             procedures: procedures.collect(),
             limits: limits.collect(),
             requirements: required
@@ -388,6 +391,7 @@ fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::testing::empty_plan;
 
     #[test]
     fn a_span_has_one_unit() {
@@ -413,8 +417,7 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Calibration, Contact, Impact, Limits, Procedure, ProcedureKind, Report, RigPlan, Settle, Specimen,
-            Stepping, Striker, Until,
+            Behaviour, Contact, Impact, Limits, Procedure, ProcedureKind, RigPlan, Settle, Specimen, Stepping, Striker, Until,
         };
         use crate::run::testing::every;
         let specimen = Specimen::new("beam", 1.0, Some(Behaviour::Elastic { stiffness: 327.65 }));
@@ -432,45 +435,25 @@ mod tests {
         };
         Plan {
             title: "Example 1".to_owned(),
-            particulars: Vec::new(),
-            parameters: Vec::new(),
             specimens: vec![specimen],
             strikers: vec![Striker::new("hammer", 10.0, 1.0)],
-            grounds: Vec::new(),
             rig: RigPlan {
                 name: "noisy".to_owned(),
                 link: Link::Virtual(VirtualLink { noise: 5.0, lag: 0.1, ..VirtualLink::default() }),
                 settle: Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 10.0 },
-                sign: 1.0,
-                calibration: Calibration::default(),
-                drift: None,
+                ..empty_plan().rig
             },
             limits: Limits { displacement: Interval { low: -0.1, high: farthest }, ..Limits::NONE },
             procedures: vec![Procedure { name: "hit".to_owned(), kind: ProcedureKind::Impact(impact) }],
-            requirements: Vec::new(),
-            decision_rule: crate::plan::DecisionRule::Simple,
-            report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
-            golden: crate::plan::Golden::default(),
-            rehearses: None,
-            files: Vec::new(),
-            settings: Vec::new(),
+            ..empty_plan()
         }
     }
-
-    const PLAIN: Settings = Settings {
-        color: false,
-        stdout_color: false,
-        unicode: true,
-        stderr_terminal: false,
-        stdout_terminal: false,
-        can_ask: false,
-    };
 
     #[test]
     fn the_papers_first_example_is_predicted_without_the_rigs_noise() {
         let plan = example(0.2);
         let dry = DryRun::of(&plan);
-        let text = dry.text(PLAIN);
+        let text = dry.text(Settings::PLAIN);
         // Critical step (2π/10)√(M/K), the paper's largest displacement, and what is left to the limit.
         for expected in ["34.71 ms", "10.00 ms, 0.288 of it", "0.1579 m", "42.14 mm", "`noisy`"] {
             assert!(text.contains(expected), "{expected} in\n{text}");
@@ -481,10 +464,14 @@ mod tests {
     #[test]
     fn a_specimen_without_behaviour_is_not_run_dry() {
         let mut plan = example(0.2);
-        assert!(Explained::of(&plan).text(PLAIN).contains("peak displacement"));
+        assert!(Explained::of(&plan).text(Settings::PLAIN).contains("peak displacement"));
         plan.specimens[0].behaviour = None;
         let explained = Explained::of(&plan);
-        assert!(explained.text(PLAIN).starts_with("no dry run: specimen `beam`"), "{}", explained.text(PLAIN));
+        assert!(
+            explained.text(Settings::PLAIN).starts_with("no dry run: specimen `beam`"),
+            "{}",
+            explained.text(Settings::PLAIN)
+        );
         assert_eq!(explained.exit(), Exit::Met);
     }
 
@@ -492,7 +479,7 @@ mod tests {
     fn a_limit_that_would_stop_the_run_is_said() {
         let plan = example(0.1);
         let dry = DryRun::of(&plan);
-        assert!(dry.text(PLAIN).contains("The run would be stopped in hit"), "{}", dry.text(PLAIN));
+        assert!(dry.text(Settings::PLAIN).contains("The run would be stopped in hit"), "{}", dry.text(Settings::PLAIN));
         assert_eq!(dry.exit(), Exit::Stopped);
     }
 }

@@ -93,8 +93,8 @@ pub fn same_day(one: Option<&str>, other: Option<&str>) -> bool {
     apart.is_some_and(|apart| apart.get_days().abs() <= 1)
 }
 
-/// The first 16 hex digits of SHA-256 over the plan and every file it used, the settings, the rig with its seed, the
-/// version, and the date of the command line where there is one. Every part is preceded by its length, so that no two lists of parts read the same.
+/// The first 16 hex digits of SHA-256 over the plan and every file it used, the settings, the rig with its seed, the version, and the date
+/// of the command line where there is one. Every part is preceded by its length, so that no two lists of parts read the same.
 fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
     let mut digest = Sha256::new();
     let mut part = |text: &str| {
@@ -129,30 +129,19 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Calibration, DecisionRule, Limits, Link, PlanFile, Report, RigPlan, Settle, VirtualLink};
+    use crate::plan::{Link, PlanFile, VirtualLink};
+    use crate::run::testing::empty_plan;
 
     fn plan(files: &[(&str, &str)], settings: &[(&str, &str)], seed: u64) -> Plan {
         let own = |(name, text): &(&str, &str)| (String::from(*name), String::from(*text));
-        let settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 1.0 };
-        let link = Link::Virtual(VirtualLink { seed, ..VirtualLink::default() });
-        Plan {
-            title: String::new(),
+        let mut plan = Plan {
             particulars: vec![("date", "2026-05-31".to_owned())],
-            parameters: Vec::new(),
-            specimens: Vec::new(),
-            strikers: Vec::new(),
-            grounds: Vec::new(),
-            rig: RigPlan { name: "ideal".to_owned(), link, settle, sign: 1.0, calibration: Calibration::default(), drift: None },
-            limits: Limits::NONE,
-            procedures: Vec::new(),
-            requirements: Vec::new(),
-            decision_rule: DecisionRule::Simple,
-            report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
-            golden: crate::plan::Golden::default(),
-            rehearses: None,
             files: files.iter().map(own).map(|(name, text)| PlanFile { name, text }).collect(),
             settings: settings.iter().map(own).collect(),
-        }
+            ..empty_plan()
+        };
+        plan.rig.link = Link::Virtual(VirtualLink { seed, ..VirtualLink::default() });
+        plan
     }
 
     #[test]

@@ -50,23 +50,22 @@ pub struct Opened {
     pub watcher: Watcher,
 }
 
-/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on, and become `wish`.
-pub fn open(plan: &Plan, attendance: &Attendance, wish: Wish, settings: Settings) -> Result<Opened, Failure> {
-    // Caught before the first byte: to be killed in the middle of a word is no way to leave a rig.
-    let early = Signals::caught(&wish).map_err(Failure::Signals)?;
-    let connected = connect(&plan.rig, &plan.limits, &wish)?;
+/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on, and become `wish`: to be killed in
+/// the middle of a word is no way to leave a rig.
+pub fn open(plan: &Plan, attendance: &Attendance, wish: &Wish, settings: Settings) -> Result<Opened, Failure> {
+    let signals = Signals::caught(wish).map_err(Failure::Signals)?;
+    let connected = connect(&plan.rig, &plan.limits, wish)?;
     let simulated = connected.rig.identity().simulated;
-    let watcher = Watcher::new(settings, attendance, plan, simulated, wish).map_err(Failure::Signals)?;
-    // A signal that both heard counts twice, which holds at once: the safe side.
-    drop(early);
+    let watcher = Watcher::new(settings, attendance, plan, simulated, signals);
     Ok(Opened { connected, watcher })
 }
 
 /// [`open`] for a client that drives: watched in lines, and `wish` is what signals become.
 pub fn open_for_client(plan: &Plan, attendance: &Attendance, settings: Settings, wish: &Wish) -> Result<Opened, Failure> {
+    let signals = Signals::caught(wish).map_err(Failure::Signals)?;
     let connected = connect(&plan.rig, &plan.limits, wish)?;
     let simulated = connected.rig.identity().simulated;
-    let watcher = Watcher::in_lines(settings, attendance, plan, simulated, wish.clone()).map_err(Failure::Signals)?;
+    let watcher = Watcher::in_lines(settings, attendance, plan, simulated, signals);
     Ok(Opened { connected, watcher })
 }
 

@@ -55,7 +55,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
 
     let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
     let wish = Wish::default().letting_go(arguments.let_go);
-    let mut opened = real_rig::open(&plan, &attendance, wish, settings)?;
+    let mut opened = real_rig::open(&plan, &attendance, &wish, settings)?;
     let resumption = settle(arguments, &plan, &link, &read.played, &mut opened.connected.rig)?;
 
     // From here on the run goes on: until now the record has not changed.

@@ -11,7 +11,7 @@ use super::rehearse::rehearse;
 use super::run_folder::RunFolder;
 use super::settings::Settings;
 use super::trial::{self, Extent};
-use super::watch::{Attendance, Watcher};
+use super::watch::{Attendance, Signals, Watcher};
 use super::{plan_file, provenance, real_rig};
 use crate::diagnostic::json;
 use crate::golden::{Outcome, Tested, console};
@@ -86,7 +86,8 @@ pub(super) fn on_its_rig(
 
 /// Nothing is read of the machine, and no time passes.
 fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
-    let mut watcher = Watcher::new(settings, attendance, plan, true, Wish::default()).map_err(Failure::Signals)?;
+    let signals = Signals::caught(&Wish::default()).map_err(Failure::Signals)?;
+    let mut watcher = Watcher::new(settings, attendance, plan, true, signals);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
     let mut rig = virtual_rig(plan);
@@ -101,7 +102,7 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
 
 /// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
 fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
-    let mut opened = real_rig::open(plan, attendance, Wish::default(), settings)?;
+    let mut opened = real_rig::open(plan, attendance, &Wish::default(), settings)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     tell(&provenance::told_of_another_day(plan, circumstances.began.as_deref()));

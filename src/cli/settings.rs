@@ -25,6 +25,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// No terminal, no colour, nobody to ask.
+    #[cfg(test)]
+    pub const PLAIN: Self =
+        Self { color: false, stdout_color: false, unicode: true, stderr_terminal: false, stdout_terminal: false, can_ask: false };
+
     pub fn from_environment(color: Color) -> Self {
         let variable = |name: &str| std::env::var(name).unwrap_or_default();
         let stderr_terminal = std::io::stderr().is_terminal();

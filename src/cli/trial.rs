@@ -16,7 +16,7 @@ use crate::plan::Plan;
 use crate::record::Outcome;
 use crate::rig::virtual_rig;
 use crate::run::tape;
-use crate::run::{Inspection, Observer, StepReport};
+use crate::run::{Inspection, Observer};
 use crate::verdict;
 
 /// What a plan gives.
@@ -81,14 +81,6 @@ struct Unattended {
 }
 
 impl Observer for Unattended {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
-
-    fn stop_requested(&self) -> bool {
-        false
-    }
-
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::GoOn { note: Some("answered by --yes".to_owned()), by: self.operator.clone() }
     }

@@ -156,6 +156,7 @@ codes! {
     W720 BlowOnBlow Warning;
     W721 LevelsDoNotRise Warning;
     W722 FewDegreesOfFreedom Warning;
+    W724 BeyondMechanism Warning;
     W726 FewDecades Warning;
     W728 NoEffect Warning;
     W727 GateWithinNoise Warning;

@@ -1,5 +1,6 @@
 //! Beams by geometry: stiffness at the struck section and the mass that moves with it in the first mode.
 
+use super::portal_mass::EquivalentMasses;
 use crate::plan::{Beam, Ends};
 
 /// Stiffness of a uniform beam at the struck section (tip of a cantilever, middle of the others), N/m. Partly built-in
@@ -38,9 +39,6 @@ pub fn ends_of_fixity(factor: f64, length: f64, bending_stiffness: f64) -> Ends 
 }
 
 /// Equivalent mass over the beam's own, with the static deflection by bending as the shape (the paper's is ½).
-///
-/// Partly built-in: the built-in shape φ_b = s²(3 − 2s) and the rotation of the ends 2s − s² (s from a support to the middle), in
-/// the ratio (r + 2) : 6; with ∫φ_b² = 13/35, ∫φ_b(2s − s²) = 13/30, ∫(2s − s²)² = 8/15.
 #[must_use]
 pub fn first_mode_mass_factor(beam: &Beam) -> f64 {
     match beam.ends {
@@ -48,15 +46,27 @@ pub fn first_mode_mass_factor(beam: &Beam) -> f64 {
         Ends::SimplySupported => 17.0 / 35.0,
         Ends::BuiltIn => 13.0 / 35.0,
         Ends::PartlyBuiltIn { rotational_stiffness } => {
-            let ratio = rotational_stiffness * beam.length / (beam.youngs_modulus * beam.second_moment);
-            if ratio.is_infinite() {
-                return 13.0 / 35.0;
-            }
-            let (built_in, turned, all) = (ratio + 2.0, 6.0, ratio + 8.0);
-            (13.0 / 35.0 * built_in * built_in + 2.0 * 13.0 / 30.0 * built_in * turned + 8.0 / 15.0 * turned * turned)
-                / (all * all)
+            partly_built_in_mass_factor(rotational_stiffness * beam.length / (beam.youngs_modulus * beam.second_moment))
         }
     }
+}
+
+/// Of a beam whose own mass is known: by its static deflection, and half of it (Melo et al. 2006, Fig. 5).
+#[must_use]
+pub fn equivalent_masses(beam: &Beam) -> Option<EquivalentMasses> {
+    let whole = beam.own_mass?;
+    Some(EquivalentMasses { elastic: first_mode_mass_factor(beam) * whole, plastic: None, lumped: whole / 2.0, whole })
+}
+
+/// The factor with partly built-in ends, `r = k_θ L / EI` at each: the built-in shape φ_b = s²(3 − 2s) and the rotation of the ends
+/// 2s − s² (s from a support to the middle), in the ratio (r + 2) : 6; with ∫φ_b² = 13/35, ∫φ_b(2s − s²) = 13/30, ∫(2s − s²)² = 8/15.
+#[must_use]
+pub fn partly_built_in_mass_factor(ratio: f64) -> f64 {
+    if ratio.is_infinite() {
+        return 13.0 / 35.0;
+    }
+    let (built_in, turned, all) = (ratio + 2.0, 6.0, ratio + 8.0);
+    (13.0 / 35.0 * built_in * built_in + 2.0 * 13.0 / 30.0 * built_in * turned + 8.0 / 15.0 * turned * turned) / (all * all)
 }
 
 #[cfg(test)]

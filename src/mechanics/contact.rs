@@ -9,6 +9,7 @@ pub enum StepState {
 }
 
 impl StepState {
+    /// Its word in tables and figures.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

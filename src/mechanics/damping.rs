@@ -46,6 +46,7 @@ impl StrengthRate {
 }
 
 impl CellDamping {
+    /// c·v and a constant against v: `viscous` N·s/m, `coulomb` N.
     #[must_use]
     pub const fn new(viscous: f64, coulomb: f64) -> Self {
         Self { viscous, coulomb, last_direction: 0.0, rate: None }

@@ -30,6 +30,7 @@ impl Extremes {
         }
     }
 
+    /// Largest size of each place so far, m.
     #[must_use]
     pub fn largest(&self) -> &[f64] {
         &self.largest
@@ -57,10 +58,17 @@ impl Peak {
         self.last = [self.last[1], Some(now)];
     }
 
+    /// Largest size so far, in the unit of what was taken.
     #[must_use]
     pub const fn largest(&self) -> f64 {
         self.largest
     }
+}
+
+/// The farther of the farthest place so far and another, m; once one was none, that.
+#[must_use]
+pub fn farther(most: f64, place: f64) -> f64 {
+    if most.is_nan() || place.abs() <= most { most } else { place.abs() }
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ pub struct Manner {
     pub pace: Pace,
 }
 
+/// How the actuators go from target to target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
     /// Evenly at `speed` (m/s), all arriving at once; then until every one is inside `band` (m, 0: at once) and lags by no more than

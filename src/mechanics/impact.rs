@@ -45,6 +45,7 @@ pub struct ImpactInput {
 }
 
 impl ImpactInput {
+    /// What a contact law needs of both bodies and the step.
     #[must_use]
     pub const fn bodies(&self) -> Bodies {
         Bodies {
@@ -294,6 +295,7 @@ impl ImpactSolver {
         &self.step.state
     }
 
+    /// Structure and striker at the end of the last step.
     #[must_use]
     pub const fn state(&self) -> &ImpactState {
         &self.step.state

@@ -1,12 +1,12 @@
 //! Force that relaxes with the logarithm of time: what a specimen loses of the force it has reached. In: how the force changed, in
 //! time. Out: what is lost, in closed form, so that a pause of months costs as much as none and the number of looks changes nothing.
 //!
-//! Of a force reached at once, `a`·ln(1 + t/t₀) is lost ([`super::relaxation_law`]). By Frullani's integral
-//! ln(1 + t/t₀) = ∫₀^∞ (1 − e^(−t/τ)) e^(−t₀/τ) dτ/τ: the law is a spectrum of Maxwell branches, positive everywhere (Gonzáles-Santander &
-//! Mainardi, *A comparative view of Becker, Lomnitz, and Lambert linear viscoelastic models*, Mathematics 12 (2024) 3426, arXiv:2411.17025).
-//! Here it ends at τ = T, the `longest`: up to some thousandth of T nobody sees it, and after long `a`·E₁(t₀/T) ≈ `a`·(ln(T/t₀) − 0.5772) is
-//! gone. In steps of ln τ the integral is a sum of branches, and the sum of an analytic function converges faster than any power of
-//! the step: at half, 10⁻⁸ of the law is left (tested).
+//! Of a force reached at once, `a`·ln(1 + t/t₀) is lost ([`super::relaxation_law`]). By Frullani's integral ln(1 + t/t₀) = ∫₀^∞ (1 −
+//! e^(−t/τ)) e^(−t₀/τ) dτ/τ: the law is a spectrum of Maxwell branches, positive everywhere (Gonzáles-Santander & Mainardi, *A comparative
+//! view of Becker, Lomnitz, and Lambert linear viscoelastic models*, Mathematics 12 (2024) 3426, arXiv:2411.17025). Here it ends at τ = T,
+//! the `longest`: up to some thousandth of T nobody sees it, and after long `a`·E₁(t₀/T) ≈ `a`·(ln(T/t₀) − 0.5772) is gone. In steps of ln
+//! τ the integral is a sum of branches, and the sum of an analytic function converges faster than any power of the step: at half, 10⁻⁸ of
+//! the law is left (tested).
 
 use super::maxwell::{MaxwellBranch, Travel};
 

@@ -64,6 +64,7 @@ pub struct MaxwellBranch {
 }
 
 impl MaxwellBranch {
+    /// K₁ (N/m) and τ (s), at rest.
     #[must_use]
     pub const fn new(stiffness: f64, time_constant: f64) -> Self {
         Self { stiffness, time_constant, force: 0.0 }

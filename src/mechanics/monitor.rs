@@ -129,6 +129,7 @@ impl Monitor {
         self.tracking
     }
 
+    /// What following has come to so far.
     #[must_use]
     pub const fn tracking(&self) -> Tracking {
         self.tracking

@@ -45,6 +45,7 @@ impl Path {
         self.from + time * (velocity + time * (0.5 * acceleration + time * jerk / 6.0))
     }
 
+    /// Velocity (m/s), acceleration (m/s²) and jerk (m/s³) `time` (s) after its start.
     #[must_use]
     pub fn rate(&self, time: f64) -> Rate {
         let Rate { velocity, acceleration, jerk } = self.at_start();

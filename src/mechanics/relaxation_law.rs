@@ -10,6 +10,7 @@
 //! What is reached in many moves is the sum of them, each forgotten from its own instant on (Boltzmann's superposition of the increments of
 //! force, the quasi-linear viscoelasticity of Fung, *Biomechanics*, 1981): a step does not wipe out what the steps before it still lose.
 
+/// What a force has lost a time t (s) after it was reached, over its share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RelaxationLaw {
     /// 1 − e^(−t/τ)

@@ -5,6 +5,7 @@ use super::logarithmic::{LossOfReached, Went};
 use super::maxwell::{MaxwellBranch, Travel};
 use crate::plan::Behaviour;
 
+/// What the load cell feels beside the behaviour that was moved.
 #[derive(Clone, Debug, Default)]
 pub struct Relaxing {
     /// The outermost first.
@@ -13,6 +14,7 @@ pub struct Relaxing {
 }
 
 impl Relaxing {
+    /// Of a specimen that nobody has moved yet.
     #[must_use]
     pub fn of(behaviour: &Behaviour) -> Self {
         let mut left = behaviour;
@@ -30,6 +32,7 @@ impl Relaxing {
         Self { beside, lost }
     }
 
+    /// Whether nothing relaxes.
     #[must_use]
     pub const fn is_none(&self) -> bool {
         self.beside.is_empty() && self.lost.is_none()

@@ -3,10 +3,10 @@
 //!
 //! A reading that is rounded is off by e = q·s(y), s the sawtooth from −½ to ½ of the true value y in quanta. Where the zero of the grid
 //! lies is not known, and over all its places the errors of two readings have the covariance q²·B₂({yᵢ − yⱼ})/2, B₂(t) = t² − t + 1/6: the
-//! same for readings of one quantum's distance as for one and the same reading, q²/12, and as good as none for readings that lie
-//! anyhow. So a fine grid makes independent errors, and a coarse one nearly one error for all. By Fourier,
-//! B₂({t})/2 = Σ cos(2πkt)/(2π²k²), and a sum with weights wᵢ has the variance q² Σₖ |Σᵢ wᵢ e^(2πi·k·yᵢ)|²/(2π²k²). Noise of σ quanta ahead of
-//! the rounding leaves e^(−(2πkσ)²) of what two readings share (Widrow and Kollár, Quantization Noise, 2008, ch. 9 and 19).
+//! same for readings of one quantum's distance as for one and the same reading, q²/12, and as good as none for readings that lie anyhow. So
+//! a fine grid makes independent errors, and a coarse one nearly one error for all. By Fourier, B₂({t})/2 = Σ cos(2πkt)/(2π²k²), and a sum
+//! with weights wᵢ has the variance q² Σₖ |Σᵢ wᵢ e^(2πi·k·yᵢ)|²/(2π²k²). Noise of σ quanta ahead of the rounding leaves e^(−(2πkσ)²) of
+//! what two readings share (Widrow and Kollár, Quantization Noise, 2008, ch. 9 and 19).
 
 use std::f64::consts::TAU;
 

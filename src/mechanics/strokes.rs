@@ -19,6 +19,8 @@ const ROUNDING: f64 = 1e-9;
 /// Two forces at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutAndBack {
+    /// Of the way on which the place was read, m/s.
+    pub velocity: f64,
     /// m
     pub place: f64,
     /// Half of out minus back, N.
@@ -73,7 +75,7 @@ mod tests {
     fn stroke(half: impl Fn(f64) -> f64, offset: f64) -> Vec<OutAndBack> {
         let pair = |index: u32| {
             let place = 0.02 + 2e-5 * f64::from(index);
-            OutAndBack { place, half_difference: half(place), mean: offset + 4e5 * place }
+            OutAndBack { velocity: 1e-3, place, half_difference: half(place), mean: offset + 4e5 * place }
         };
         (0..40).map(pair).collect()
     }

@@ -67,6 +67,7 @@ pub struct SummaryBuilder {
 }
 
 impl SummaryBuilder {
+    /// Before step 0.
     #[must_use]
     pub fn new(input: &ImpactInput) -> Self {
         Self {
@@ -95,6 +96,7 @@ impl SummaryBuilder {
         }
     }
 
+    /// Takes the end of the next step.
     pub fn push(&mut self, state: &ImpactState) {
         let summary = &mut self.summary;
         if state.displacement > summary.max_displacement {
@@ -134,6 +136,7 @@ impl SummaryBuilder {
         };
     }
 
+    /// What the steps taken come to.
     #[must_use]
     pub fn finish(mut self) -> ImpactSummary {
         self.summary.restitution = match (self.input.law, self.first_blow) {
@@ -142,15 +145,20 @@ impl SummaryBuilder {
             (_, FirstBlow::Over { restitution }) => restitution,
             _ => None,
         };
-        // A run that goes on past its largest X has seen a peak, whichever way the structure moves as it ends.
         self.summary.still_rising =
-            self.last_velocity > 0.0 && self.summary.residual_displacement >= self.summary.max_displacement;
+            still_rising(self.last_velocity, self.summary.residual_displacement, self.summary.max_displacement);
         self.summary.last_blow_cut = self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
         if self.summary.max_displacement == f64::NEG_INFINITY {
             self.summary.max_displacement = 0.0;
         }
         self.summary
     }
+}
+
+/// Whether a structure that ends with Ẋ (m/s) at X (m) was still on its way where X was largest. A run that goes on past that has seen a
+/// peak, whichever way the structure moves as it ends.
+pub(crate) fn still_rising(velocity: f64, displacement: f64, largest: f64) -> bool {
+    velocity > 0.0 && displacement >= largest
 }
 
 /// The summary of a run that is all there.

@@ -2,7 +2,11 @@
 //! Out: labelled texts, for the certificate and for `psd check --explain`.
 
 use crate::mechanics::beam::first_mode_mass_factor;
-use crate::plan::{Beam, Behaviour, Breaks, Ends, Loads, Mechanism, Pinching, Portal, Sections, Unloading};
+use crate::mechanics::portal_limit::mechanism_limit;
+use crate::mechanics::portal_mass::{EquivalentMasses, equivalent_masses};
+use crate::plan::{
+    Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal, Sections, Unloading,
+};
 use crate::quantity::Dimension;
 
 /// Shows a number that somebody stated, or that follows from such.
@@ -44,6 +48,10 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                 ("hardening", *hardening, Of::NUMBER),
             ],
         ),
+        Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration } => {
+            let plain = Behaviour::Bilinear { stiffness: *stiffness, yield_force: *yield_force, hardening: *hardening };
+            words(&plain, shown) + &worn(*deterioration, yield_force * yield_force / stiffness, shown)
+        }
         Behaviour::Multilinear { corners } => {
             let corners: Vec<String> =
                 corners.iter().map(|[x, force]| format!("{} at {}", shown(*force, Of::FORCE), shown(*x, Of::LENGTH))).collect();
@@ -72,7 +80,8 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                     ("unloading exponent", pinching.unloading_exponent, Of::NUMBER),
                 ],
             );
-            told + &capped(pinching, shown) + &worn(pinching, shown)
+            let unit = pinching.yield_force * pinching.yield_force / pinching.stiffness;
+            told + &capped(pinching, shown) + &pinching.deterioration.map_or_else(String::new, |lost| worn(lost, unit, shown))
         }
         Behaviour::Degrading { stiffness, half_displacement, residual } => list(
             "degrading",
@@ -136,9 +145,8 @@ fn capped(pinching: &Pinching, shown: Shown<'_>) -> String {
     })
 }
 
-/// What is lost with energy, mode by mode.
-fn worn(pinching: &Pinching, shown: Shown<'_>) -> String {
-    let Some(lost) = pinching.deterioration else { return String::new() };
+/// What is lost with energy, mode by mode; `unit` is `F_y` `x_y`, J.
+fn worn(lost: Deterioration, unit: f64, shown: Shown<'_>) -> String {
     let residual = shown(lost.residual, Dimension::NUMBER);
     let modes = [
         (format!("strength lost with energy: all but {residual} of it"), lost.strength),
@@ -146,10 +154,10 @@ fn worn(pinching: &Pinching, shown: Shown<'_>) -> String {
         ("unloading stiffness".to_owned(), lost.unloading),
         ("reloading stiffness".to_owned(), lost.reloading),
     ];
-    let told = modes.into_iter().filter(|(_, capacity)| capacity.is_finite()).map(|(words, capacity)| {
-        let energy = capacity * pinching.yield_force * pinching.yield_force / pinching.stiffness;
-        format!(", {words} with {}", shown(energy, Dimension::ENERGY))
-    });
+    let told = modes
+        .into_iter()
+        .filter(|(_, capacity)| capacity.is_finite())
+        .map(|(words, capacity)| format!(", {words} with {}", shown(capacity * unit, Dimension::ENERGY)));
     format!("{}, exponent {}", told.collect::<String>(), shown(lost.exponent, Dimension::NUMBER))
 }
 
@@ -188,6 +196,7 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
     };
     // N·m² has no name among the dimensions: shown as what bends a beam of 1 m.
     let section = portal.bending_stiffness.map_or_else(String::new, |bending| format!(", EI {}", of_both(bending, "N·m²")));
+    let weighs = portal.masses.map_or_else(String::new, |masses| frame_words(masses, shown));
     let loads = match portal.loads {
         Loads::Sway => "sway load".to_owned(),
         Loads::Beam => "load at midspan".to_owned(),
@@ -198,7 +207,7 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
         ),
     };
     format!(
-        "portal, fixed feet, span {}, height {}, plastic moment {}{section}, {loads}: stiffness {}",
+        "portal, fixed feet, span {}, height {}, plastic moment {}{section}{weighs}, {loads}: stiffness {}",
         shown(portal.span, Dimension::LENGTH),
         shown(portal.height, Dimension::LENGTH),
         of_both(portal.plastic_moment, "N·m"),
@@ -206,7 +215,32 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
     )
 }
 
-/// What follows from a geometry: a beam's own mass in its first mode, a portal's mechanism.
+fn frame_words(masses: FrameMasses, shown: Shown<'_>) -> String {
+    let FrameMasses { per_length, midspan, corner } = masses;
+    let one = |value: f64| shown(value, Dimension::MASS_PER_LENGTH);
+    let members = match (per_length.beam > 0.0, per_length.are_same()) {
+        (false, _) => String::new(),
+        (true, true) => format!(", mass {}", one(per_length.beam)),
+        (true, false) => format!(", mass {} of the beam and {} of the columns", one(per_length.beam), one(per_length.column)),
+    };
+    let lump = |mass: f64, place: &str| {
+        if mass > 0.0 { format!(", {} {place}", shown(mass, Dimension::MASS)) } else { String::new() }
+    };
+    members + &lump(midspan, "at midspan") + &lump(corner, "at each corner")
+}
+
+/// Equivalent masses of a frame, each with the shape that it is of and the share of the whole that it is.
+fn portal_masses(masses: EquivalentMasses, shown: Shown<'_>, rows: &mut Vec<(&'static str, String)>) {
+    let all = shown(masses.whole, Dimension::MASS);
+    let of = |mass: f64, shape: &str| {
+        format!("{} ({:.4} of the frame's {all}, {shape})", shown(mass, Dimension::MASS), mass / masses.whole)
+    };
+    rows.push(("elastic equivalent mass", of(masses.elastic, "static deflection as the shape")));
+    rows.extend(masses.plastic.map(|plastic| ("plastic equivalent mass", of(plastic, "the mechanism as the shape"))));
+    rows.push(("lumped equivalent mass", of(masses.lumped, "half of each member at its ends, as the paper's Fig. 5")));
+}
+
+/// What follows from a geometry: a beam's own mass in its first mode, a portal's mechanism and masses.
 fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str, String)>) {
     match behaviour {
         Behaviour::Beam(beam) => {
@@ -230,6 +264,13 @@ fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str,
                 .collect();
             rows.push(("collapse loads", loads.join(", ")));
             rows.push(("capacity", shown(portal.capacity(), Dimension::FORCE)));
+            rows.push(("yields at", shown(portal.capacity() / portal.stiffness, Dimension::LENGTH)));
+            if let Some(masses) = equivalent_masses(portal) {
+                portal_masses(masses, shown, rows);
+            }
+            if let Some(most) = mechanism_limit(portal).filter(|most| most.is_finite()) {
+                rows.push(("follows its mechanism up to", shown(most, Dimension::FORCE)));
+            }
         }
         _ => behaviour.parts().iter().for_each(|part| follow(part, shown, rows)),
     }

@@ -32,7 +32,7 @@ use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
 
-pub use prediction::{PredictedLimit, PredictedProcedure, PredictedRequirement, Prediction, REHEARSAL_FILE};
+pub use prediction::{PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros, Prediction, REHEARSAL_FILE};
 
 pub use amendment::{Amendment, Amends, Change};
 

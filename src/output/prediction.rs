@@ -22,6 +22,27 @@ pub struct Prediction {
     pub procedures: Vec<PredictedProcedure>,
     pub limits: Vec<PredictedLimit>,
     pub requirements: Vec<PredictedRequirement>,
+    /// Of a rig that says how far its zeros may drift.
+    pub zeros: Option<PredictedZeros>,
+}
+
+/// When the zeros of the rig would be read, and the drift that leaves room for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PredictedZeros {
+    pub allowed_force_n: f64,
+    /// None: told, and not judged.
+    pub allowed_displacement_m: Option<f64>,
+    /// Time over which a zero is read; a hold as long tells a slope.
+    pub over_s: f64,
+    /// `start`, `free` or `nowhere`.
+    pub after: &'static str,
+    /// Holds that are long enough, and the longest of them.
+    pub holds: u64,
+    pub longest_hold_s: Option<f64>,
+    /// From the zeros before to those after; None: they are not read again.
+    pub between_s: Option<f64>,
+    /// A steady drift up to this size is within what is allowed.
+    pub steady_force_n_per_s: f64,
 }
 
 /// What one procedure would ask of the rig.

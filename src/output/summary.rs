@@ -14,7 +14,7 @@ use serde::ser::SerializeMap as _;
 use crate::inert;
 
 pub use drift::{AxisDriftSummary, DriftSummary, ZeroSummary};
-pub(super) use of_run::{event_kind, governing};
+pub(super) use of_run::governing;
 
 /// Name and version of the format; a change that breaks a reader raises the number.
 pub const SCHEMA: &str = "psd.summary/1";

@@ -3,6 +3,8 @@
 
 use super::portal::Portal;
 use crate::mechanics::logarithmic::lost_after_long;
+use crate::mechanics::portal_mass::EquivalentMasses;
+use crate::mechanics::{beam, portal_mass};
 
 /// Restoring force of a virtual specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +13,8 @@ pub enum Behaviour {
     Elastic { stiffness: f64 },
     /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
     Bilinear { stiffness: f64, yield_force: f64, hardening: f64 },
+    /// The same, wearing with the energy it has taken.
+    WearingBilinear { stiffness: f64, yield_force: f64, hardening: f64, deterioration: Deterioration },
     /// A beam by geometry.
     Beam(Beam),
     /// Piecewise linear, with kinematic hardening: corners of the first loading, displacement (m) and force (N), both rising,
@@ -143,6 +147,7 @@ pub struct Table {
     pub scale: f64,
 }
 
+/// How a measured curve goes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unloading {
     /// Parallel to the steepest stretch of the table.
@@ -161,12 +166,14 @@ pub enum Breaks {
 }
 
 impl Behaviour {
-    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in bearing.
+    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in
+    /// bearing.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {
         match self {
             Self::Elastic { stiffness }
             | Self::Bilinear { stiffness, .. }
+            | Self::WearingBilinear { stiffness, .. }
             | Self::BoucWen { stiffness, .. }
             | Self::Degrading { stiffness, .. } => *stiffness,
             Self::Beam(beam) => beam.stiffness,
@@ -175,11 +182,13 @@ impl Behaviour {
             Self::Bolted(bolted) if bolted.clearance == 0.0 && bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Bolted(bolted) => bolted.stiffness,
             Self::Table(table) => table.initial_stiffness(),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.initial_stiffness(),
-            Self::Maxwell { of, stiffness, .. } => of.initial_stiffness() + stiffness,
-            Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.initial_stiffness()).sum::<f64>(),
-            Self::Parallel(parts) => parts.iter().map(Self::initial_stiffness).sum(),
             Self::Portal(portal) => portal.stiffness,
+            Self::Fracture { .. }
+            | Self::Rate { .. }
+            | Self::Logarithmic { .. }
+            | Self::Maxwell { .. }
+            | Self::Series(_)
+            | Self::Parallel(_) => self.stiffness_of_parts(Self::initial_stiffness),
         }
     }
 
@@ -194,18 +203,32 @@ impl Behaviour {
             }
             Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Table(table) => table.steepest(|_| true),
-            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Logarithmic { of, .. } => of.largest_stiffness(),
-            Self::Maxwell { of, stiffness, .. } => of.largest_stiffness() + stiffness,
-            Self::Series(parts) => 1.0 / parts.iter().map(|part| 1.0 / part.largest_stiffness()).sum::<f64>(),
-            Self::Parallel(parts) => parts.iter().map(Self::largest_stiffness).sum(),
+            Self::Fracture { .. }
+            | Self::Rate { .. }
+            | Self::Logarithmic { .. }
+            | Self::Maxwell { .. }
+            | Self::Series(_)
+            | Self::Parallel(_) => self.stiffness_of_parts(Self::largest_stiffness),
             Self::Elastic { .. }
             | Self::Bilinear { .. }
+            | Self::WearingBilinear { .. }
             | Self::Beam(_)
             | Self::Multilinear { .. }
             | Self::Pinching(_)
             | Self::Degrading { .. }
             | Self::Bolted(_)
             | Self::Portal(_) => self.initial_stiffness(),
+        }
+    }
+
+    /// A stiffness of what is made of others, N/m, `of` each of them: behind each other the flexibilities add up, else the
+    /// stiffnesses, with that of a Maxwell spring beside them.
+    fn stiffness_of_parts(&self, of: fn(&Self) -> f64) -> f64 {
+        let parts = self.parts().iter().map(of);
+        match self {
+            Self::Series(_) => 1.0 / parts.map(|stiffness| 1.0 / stiffness).sum::<f64>(),
+            Self::Maxwell { stiffness, .. } => parts.sum::<f64>() + stiffness,
+            _ => parts.sum(),
         }
     }
 
@@ -240,9 +263,9 @@ impl Behaviour {
         match self {
             // However fast it is moved, a branch resists.
             Self::Elastic { .. } | Self::Beam(_) | Self::Maxwell { .. } => f64::INFINITY,
-            Self::Bilinear { yield_force, hardening, .. } | Self::BoucWen { yield_force, hardening, .. } => {
-                hardens(*hardening, *yield_force)
-            }
+            Self::Bilinear { yield_force, hardening, .. }
+            | Self::WearingBilinear { yield_force, hardening, .. }
+            | Self::BoucWen { yield_force, hardening, .. } => hardens(*hardening, *yield_force),
             Self::Pinching(Pinching { stiffness, yield_force, hardening, capping: Some(capping), .. }) => {
                 yield_force + hardening * stiffness * (capping.displacement - yield_force / stiffness)
             }
@@ -266,6 +289,31 @@ impl Behaviour {
         }
     }
 
+    /// Equivalent masses that its geometry gives; what stands around a beam or portal goes the same way.
+    #[must_use]
+    pub fn equivalent_masses(&self) -> Option<EquivalentMasses> {
+        match self {
+            Self::Beam(beam) => beam::equivalent_masses(beam),
+            Self::Portal(portal) => portal_mass::equivalent_masses(portal),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                of.equivalent_masses()
+            }
+            _ => None,
+        }
+    }
+
+    /// The portal that it is, also inside of what goes the same way.
+    #[must_use]
+    pub fn portal(&self) -> Option<&Portal> {
+        match self {
+            Self::Portal(portal) => Some(portal),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } | Self::Maxwell { of, .. } | Self::Logarithmic { of, .. } => {
+                of.portal()
+            }
+            _ => None,
+        }
+    }
+
     /// The same with every force times `factor`: it yields and breaks at the same displacements.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
@@ -273,7 +321,9 @@ impl Behaviour {
         let mut same = self.clone();
         match &mut same {
             Self::Elastic { stiffness } | Self::Degrading { stiffness, .. } => *stiffness *= factor,
-            Self::Bilinear { stiffness, yield_force, .. } | Self::BoucWen { stiffness, yield_force, .. } => {
+            Self::Bilinear { stiffness, yield_force, .. }
+            | Self::WearingBilinear { stiffness, yield_force, .. }
+            | Self::BoucWen { stiffness, yield_force, .. } => {
                 *stiffness *= factor;
                 *yield_force *= factor;
             }

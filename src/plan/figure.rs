@@ -6,6 +6,7 @@ use crate::formula::ProcedureId;
 /// Procedures on one chart, at most: more curves cannot be told apart.
 pub const MOST_TOGETHER: usize = 6;
 
+/// One chart of a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
     pub kind: FigureKind,
@@ -21,6 +22,7 @@ impl Figure {
     }
 }
 
+/// What a chart shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FigureKind {
     /// Displacement of structure and striker against virtual time (paper Fig. 9–11, 16).

@@ -12,6 +12,7 @@ mod frame;
 mod golden;
 mod identification;
 mod integrator;
+mod limits;
 mod portal;
 mod rig;
 mod stepping;
@@ -19,7 +20,6 @@ mod undeclared;
 mod unload;
 
 use crate::formula::{Formula, ResultReference};
-use crate::mechanics::monitor;
 use crate::quantity::Dimension;
 use crate::uncertainty::Source;
 
@@ -35,7 +35,8 @@ pub use identification::{
     BreakCount, DampingSweep, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
 };
 pub use integrator::{Integrator, Mode};
-pub use portal::{Loads, Mechanism, Portal, Sections};
+pub use limits::{Interval, Limits};
+pub use portal::{ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses};
 pub use rig::{
     Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
     RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
@@ -43,6 +44,7 @@ pub use rig::{
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::{FrameUnload, Unload};
 
+/// All that a run needs to know beforehand. Numbers are SI, names are resolved to places in its lists.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub title: String,
@@ -84,6 +86,7 @@ impl Plan {
     }
 }
 
+/// A file of the plan, as it was read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanFile {
     pub name: String,
@@ -100,6 +103,7 @@ pub struct Parameter {
     pub set: bool,
 }
 
+/// What is tested: one degree of freedom, or a frame.
 #[derive(Clone, Debug)]
 pub struct Specimen {
     pub name: String,
@@ -169,97 +173,14 @@ impl Striker {
     }
 }
 
-/// Closed intervals (SI); an absent bound is infinite, so that `lo <= x && x <= hi` is the whole test.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    pub low: f64,
-    pub high: f64,
-}
-
-impl Interval {
-    pub const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
-
-    /// Whether `x` lies inside; NaN never does.
-    #[must_use]
-    pub fn contains(self, x: f64) -> bool {
-        self.low <= x && x <= self.high
-    }
-
-    #[must_use]
-    pub fn intersection(self, other: Self) -> Self {
-        Self { low: self.low.max(other.low), high: self.high.min(other.high) }
-    }
-
-    #[must_use]
-    pub fn is_bounded(self) -> bool {
-        self.low > f64::NEG_INFINITY || self.high < f64::INFINITY
-    }
-}
-
-/// What nothing may drive the rig past.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// m, of every target and every reading.
-    pub displacement: Interval,
-    /// N, of every reading.
-    pub force: Interval,
-    /// m/s, of the actuator; 0 ≤ speed ≤ high.
-    pub speed: Interval,
-    /// m, largest change of target in one step, by size.
-    pub increment: Interval,
-    /// m, |measured − target| after settling.
-    pub tracking_error: Interval,
-    /// |energy error| over the input energy.
-    pub energy_error: Interval,
-    /// |energy error of tracking| over the input energy; where it bounds nothing, the default holds.
-    pub tracking_energy_error: Interval,
-    /// Root mean square of the tracking error over that of the command.
-    pub nrms_error: Interval,
-}
-
-impl Limits {
-    pub const NONE: Self = Self {
-        displacement: Interval::ALL,
-        force: Interval::ALL,
-        speed: Interval::ALL,
-        increment: Interval::ALL,
-        tracking_error: Interval::ALL,
-        energy_error: Interval::ALL,
-        tracking_energy_error: Interval::ALL,
-        nrms_error: Interval::ALL,
-    };
-
-    /// As the guard holds them: what tracking does to the energy has a limit always.
-    #[must_use]
-    pub fn held(&self) -> Self {
-        if self.tracking_energy_error.is_bounded() {
-            return *self;
-        }
-        Self { tracking_energy_error: Interval { low: 0.0, high: monitor::HOLD }, ..*self }
-    }
-
-    /// Every limit by the name of its field.
-    #[must_use]
-    pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
-        [
-            ("displacement", self.displacement, Dimension::LENGTH),
-            ("force", self.force, Dimension::FORCE),
-            ("speed", self.speed, Dimension::VELOCITY),
-            ("increment", self.increment, Dimension::LENGTH),
-            ("tracking_error", self.tracking_error, Dimension::LENGTH),
-            ("energy_error", self.energy_error, Dimension::NUMBER),
-            ("tracking_energy_error", self.tracking_energy_error, Dimension::NUMBER),
-            ("nrms_error", self.nrms_error, Dimension::NUMBER),
-        ]
-    }
-}
-
+/// One block that acts, in the order of the plan.
 #[derive(Clone, Debug)]
 pub struct Procedure {
     pub name: String,
     pub kind: ProcedureKind,
 }
 
+/// What a procedure does.
 #[derive(Clone, Debug)]
 pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
@@ -313,6 +234,7 @@ impl ProcedureKind {
     }
 }
 
+/// A striker, which is computed, meets one degree of freedom, which is on the rig (Melo et al. 2006, eqs. 4 and 5).
 #[derive(Clone, Debug)]
 pub struct Impact {
     pub specimen: usize,
@@ -333,6 +255,7 @@ pub struct Impact {
     pub until: Until,
 }
 
+/// The contact law of striker and structure.
 #[derive(Clone, Debug)]
 pub enum Contact {
     Rigid,
@@ -351,6 +274,7 @@ pub enum Contact {
     },
 }
 
+/// When an impact is over, before its `duration` at the latest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Until {
     /// The first step end with Ẋs ≤ 0 and Ẋ ≤ 0.
@@ -383,6 +307,7 @@ pub enum InspectTrigger {
     At(f64),
 }
 
+/// The actuator goes to a place.
 #[derive(Clone, Debug)]
 pub struct Move {
     /// m, absolute.
@@ -398,6 +323,7 @@ pub struct Requirement {
     pub conditions: Vec<Condition>,
 }
 
+/// A value and what it is held against.
 #[derive(Clone, Debug)]
 pub struct Condition {
     /// As the plan wrote it.
@@ -449,6 +375,7 @@ impl DecisionRule {
     }
 }
 
+/// What a value must be; limits, targets and tolerances in the SI unit of its dimension.
 #[derive(Clone, Debug)]
 pub enum Test {
     Compare {
@@ -463,6 +390,7 @@ pub enum Test {
     },
 }
 
+/// Of a value, on the left, with a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comparison {
     Less,
@@ -473,6 +401,7 @@ pub enum Comparison {
     NotEqual,
 }
 
+/// What a run leaves beside its record and its summary.
 #[derive(Clone, Debug)]
 pub struct Report {
     pub title: Option<String>,
@@ -481,6 +410,7 @@ pub struct Report {
     pub sign: Vec<String>,
 }
 
+/// A kind of file of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Html,

@@ -1,8 +1,9 @@
 //! A portal frame by plastic hinges: fixed feet, a section of the beam and one of the columns, point loads at midspan and at the
 //! beam's end. In: geometry, plastic moments, EI or a stiffness. Out: the mechanism that governs, its load, and the elastic stiffness.
-//! Axial and shear strains are left out, and so is the effect of axial force on the plastic moment.
+//! Axial and shear strains are left out, and so is the effect of axial force on the plastic moment. What mass moves with it stands in
+//! `mechanics/portal_mass.rs`.
 
-/// A portal frame and the loads on it (Melo et al. 2006, Figs. 3 and 4).
+/// A portal frame and the loads on it (Melo et al. 2006, Fig. 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Portal {
     /// L, m
@@ -16,6 +17,19 @@ pub struct Portal {
     /// Of the load against its own displacement, N/m.
     pub stiffness: f64,
     pub loads: Loads,
+    /// None where the plan does not say what it weighs.
+    pub masses: Option<FrameMasses>,
+}
+
+/// What a portal is made of and carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameMasses {
+    /// q·A, kg/m
+    pub per_length: Sections,
+    /// At midspan, kg
+    pub midspan: f64,
+    /// At each corner, kg
+    pub corner: f64,
 }
 
 /// A property of the beam and of either column.
@@ -106,8 +120,18 @@ impl Portal {
     /// A portal of flexural rigidity `bending_stiffness` EI, N·m².
     #[must_use]
     pub fn of_sections(span: f64, height: f64, plastic_moment: Sections, bending_stiffness: Sections, loads: Loads) -> Self {
-        let stiffness = elastic_stiffness(span, height, bending_stiffness, loads);
-        Self { span, height, plastic_moment, bending_stiffness: Some(bending_stiffness), stiffness, loads }
+        let each = elastic_stiffnesses(span, height, bending_stiffness);
+        let (on_beam, on_sway) = loads.shares();
+        // Neither load moves the other's point (one is symmetric, the other antisymmetric): the flexibilities add with the squares
+        // of the shares.
+        let stiffness = 1.0 / (on_beam * on_beam / each.beam + on_sway * on_sway / each.sway);
+        Self { span, height, plastic_moment, bending_stiffness: Some(bending_stiffness), stiffness, loads, masses: None }
+    }
+
+    /// The same with what it weighs.
+    #[must_use]
+    pub const fn weighing(self, masses: Option<FrameMasses>) -> Self {
+        Self { masses, ..self }
     }
 
     /// Load W + H at which the frame would collapse by one mechanism, N; infinite where the loads do no work on it. Work
@@ -142,19 +166,27 @@ impl Portal {
     }
 }
 
-/// Stiffness of the load W + H against the displacement it does work on, by slope-deflection, k = (EI_b/L)/(EI_c/h).
+/// Stiffness of each load against its own displacement, N/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticStiffnesses {
+    /// W/δ
+    pub beam: f64,
+    /// H/Δ
+    pub sway: f64,
+}
+
+/// By slope-deflection, k = (EI_b/L)/(EI_c/h).
 ///
 /// Sway, joint rotations θ, column rotation ψ = Δ/h: joint 4θ − 6ψ + 6kθ = 0, so θ = 3ψ/(2 + 3k); shear
 /// H·h = 2(EI_c/h)(12ψ − 6θ), so H/Δ = (24EI_c/h³)(6k + 1)/(6k + 4).
 /// Midspan load, joint rotations ±θ: 4EI_cθ/h + 2EI_bθ/L = WL/8, and the midspan deflection WL³/192EI_b + θL/4 gives
 /// W/δ = (192EI_b/L³)(k + 2)/(4k + 2).
-/// Neither load moves the other's point (one is symmetric, the other antisymmetric), so that the flexibilities add with
-/// the squares of the shares.
-fn elastic_stiffness(span: f64, height: f64, bending_stiffness: Sections, loads: Loads) -> f64 {
+#[must_use]
+pub fn elastic_stiffnesses(span: f64, height: f64, bending_stiffness: Sections) -> ElasticStiffnesses {
     let Sections { beam: of_beam, column: of_columns } = bending_stiffness;
     let k = of_beam / of_columns * (height / span);
-    let sway = 24.0 * of_columns / height.powi(3) * (6.0 * k + 1.0) / (6.0 * k + 4.0);
-    let beam = 192.0 * of_beam / span.powi(3) * (k + 2.0) / (4.0 * k + 2.0);
-    let (on_beam, on_sway) = loads.shares();
-    1.0 / (on_beam * on_beam / beam + on_sway * on_sway / sway)
+    ElasticStiffnesses {
+        beam: 192.0 * of_beam / span.powi(3) * (k + 2.0) / (4.0 * k + 2.0),
+        sway: 24.0 * of_columns / height.powi(3) * (6.0 * k + 1.0) / (6.0 * k + 4.0),
+    }
 }

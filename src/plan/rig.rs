@@ -2,6 +2,7 @@
 
 use super::{AxisPlan, Interval};
 
+/// The rig of a run, and what the plan says of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigPlan {
     /// `ideal` where the plan declares none.
@@ -23,6 +24,7 @@ impl RigPlan {
     }
 }
 
+/// What stands behind the rig.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a plan has one")]
 pub enum Link {
@@ -74,8 +76,8 @@ pub struct VirtualLink {
 impl VirtualLink {
     /// An ideal rig in place of another: nothing is done to its readings, and uncertainties are foretold with their errors.
     #[must_use]
-    pub fn ideal_of(link: &Link) -> Self {
-        let (seed, foretold) = match link {
+    pub fn ideal_of(rig: &RigPlan) -> Self {
+        let (seed, foretold) = match &rig.link {
             Link::Virtual(link) => {
                 let Self { seed, noise, resolution, force_resolution, .. } = *link;
                 (seed, ReadingErrors { noise, resolution, force_resolution })
@@ -84,7 +86,8 @@ impl VirtualLink {
                 let axes = || (0..link.axes.len().max(1)).map(|axis| link.readings_of(axis));
                 let noise = axes().map(|rules| rules.noise).fold(0.0, f64::max);
                 let resolution = axes().map(|rules| rules.resolution).fold(0.0, f64::max);
-                (0, ReadingErrors { noise, resolution, force_resolution: 0.0 })
+                let force_resolution = rig.calibration.newtons_per_count.unwrap_or(0.0).abs();
+                (0, ReadingErrors { noise, resolution, force_resolution })
             }
         };
         Self { seed, foretold: Some(foretold), ..Self::default() }
@@ -139,6 +142,18 @@ pub enum ZeroAfter {
     Free,
     /// Nowhere: only what no load and no relaxation can do is judged.
     Nowhere,
+}
+
+impl ZeroAfter {
+    /// As a plan writes it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Free => "free",
+            Self::Nowhere => "nowhere",
+        }
+    }
 }
 
 /// Where the numbers of a rig are traced to.
@@ -205,6 +220,7 @@ pub struct DeviceLink {
     pub serial_number: Option<String>,
 }
 
+/// Where a device is reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PortPlan {
     Serial {

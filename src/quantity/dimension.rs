@@ -98,6 +98,7 @@ impl Dimension {
     pub const AREA: Self = dimension(2, 0, 0);
     pub const SECOND_MOMENT: Self = dimension(4, 0, 0);
     pub const DENSITY: Self = dimension(-3, 1, 0);
+    pub const MASS_PER_LENGTH: Self = dimension(-1, 1, 0);
     pub const VELOCITY: Self = dimension(1, 0, -1);
     pub const ACCELERATION: Self = dimension(1, 0, -2);
     pub const FREQUENCY: Self = dimension(0, 0, -1);
@@ -181,6 +182,7 @@ const NAMES: &[(Dimension, &str, &str)] = &[
     (Dimension::AREA, "area", "mm^2"),
     (Dimension::SECOND_MOMENT, "second moment of area", "mm^4"),
     (Dimension::DENSITY, "density", "kg/m^3"),
+    (Dimension::MASS_PER_LENGTH, "mass per length", "kg/m"),
     (Dimension::VELOCITY, "velocity", "m/s"),
     (Dimension::ACCELERATION, "acceleration", "m/s^2"),
     (Dimension::FREQUENCY, "frequency", "Hz"),

@@ -48,6 +48,7 @@ pub struct WholeCycle {
     pub found: Loop,
 }
 
+/// Cyclic loading, target by target, and each cycle that closed.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
     /// The first is where the cycles begin.

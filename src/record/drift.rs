@@ -6,6 +6,7 @@ use crate::quantity::Dimension;
 use crate::quantity::display::{readable, stated};
 use crate::rig::{Held, named_axis, of_axis};
 
+/// What the zeros of a rig did in a run, beside what they may.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
     pub check: DriftCheck,

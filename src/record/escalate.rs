@@ -79,6 +79,7 @@ impl Blow {
     }
 }
 
+/// A row of blows, in the order struck.
 #[derive(Clone, Debug, Default)]
 pub struct EscalateHistory {
     pub blows: Vec<Blow>,

@@ -5,67 +5,93 @@ use super::{ImpactHistory, Modes};
 use crate::mechanics::frame::{drifts, shears};
 use crate::mechanics::monitor::Tracking;
 
-/// A step of a frame, its floors from the ground up.
-pub trait Floors {
+/// What the steps of every frame tell, an entry a floor from the ground up; empty where nothing was computed.
+#[derive(Clone, Copy, Debug)]
+pub struct FloorsAt<'a> {
     /// Virtual time, s.
-    fn time(&self) -> f64;
+    pub time: f64,
+    /// Targets, m.
+    pub command: &'a [f64],
+    /// Measured, m.
+    pub measured: &'a [f64],
+    /// Computed X, m.
+    pub computed: &'a [f64],
+    /// m/s
+    pub velocity: &'a [f64],
+    /// m/s²
+    pub acceleration: &'a [f64],
+    /// Measured, N.
+    pub restoring_force: &'a [f64],
+    /// What following each floor has come to.
+    pub tracking: &'a [Tracking],
+}
+
+/// A step of a frame.
+pub trait Floors {
+    /// Its floors.
+    fn at(&self) -> FloorsAt<'_>;
+
+    /// Virtual time, s.
+    fn time(&self) -> f64 {
+        self.at().time
+    }
 
     /// Computed displacement of each floor, m.
-    fn computed(&self) -> &[f64];
+    fn computed(&self) -> &[f64] {
+        self.at().computed
+    }
 
     /// Measured restoring force of each floor, N.
-    fn restoring_force(&self) -> &[f64];
+    fn restoring_force(&self) -> &[f64] {
+        self.at().restoring_force
+    }
 
     /// Target of each floor, m.
-    fn command(&self) -> &[f64];
+    fn command(&self) -> &[f64] {
+        self.at().command
+    }
 
     /// Measured displacement of each floor, m.
-    fn measured(&self) -> &[f64];
+    fn measured(&self) -> &[f64] {
+        self.at().measured
+    }
 
     /// What following each floor has come to.
-    fn tracking(&self) -> &[Tracking];
+    fn tracking(&self) -> &[Tracking] {
+        self.at().tracking
+    }
 
     /// Drift of each storey, m, of the computed displacements.
     #[must_use]
     fn drift(&self) -> Vec<f64> {
-        let mut drift = vec![0.0; self.computed().len()];
-        drifts(self.computed(), &mut drift);
-        drift
+        drift_of(self.computed())
     }
 
     /// Shear of each storey, N: the forces of the floors it carries; the first is the base shear.
     #[must_use]
     fn shear(&self) -> Vec<f64> {
-        let mut shear = vec![0.0; self.restoring_force().len()];
-        shears(self.restoring_force(), &mut shear);
-        shear
+        shear_of(self.restoring_force())
     }
 }
 
 impl<F: Floors> Floors for &F {
-    fn time(&self) -> f64 {
-        F::time(self)
+    fn at(&self) -> FloorsAt<'_> {
+        F::at(self)
     }
+}
 
-    fn computed(&self) -> &[f64] {
-        F::computed(self)
-    }
+/// Drift of each storey, m, by the displacement of each floor, m.
+pub(super) fn drift_of(floors: &[f64]) -> Vec<f64> {
+    let mut drift = vec![0.0; floors.len()];
+    drifts(floors, &mut drift);
+    drift
+}
 
-    fn restoring_force(&self) -> &[f64] {
-        F::restoring_force(self)
-    }
-
-    fn command(&self) -> &[f64] {
-        F::command(self)
-    }
-
-    fn measured(&self) -> &[f64] {
-        F::measured(self)
-    }
-
-    fn tracking(&self) -> &[Tracking] {
-        F::tracking(self)
-    }
+/// Shear of each storey, N, by the force of each floor, N.
+pub(super) fn shear_of(floors: &[f64]) -> Vec<f64> {
+    let mut shear = vec![0.0; floors.len()];
+    shears(floors, &mut shear);
+    shear
 }
 
 /// All floors of one step of an impact on a storey; step, striker and contact stand beside it.
@@ -92,28 +118,17 @@ pub struct FloorStep {
 }
 
 impl Floors for FloorStep {
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn computed(&self) -> &[f64] {
-        &self.computed
-    }
-
-    fn restoring_force(&self) -> &[f64] {
-        &self.restoring_force
-    }
-
-    fn command(&self) -> &[f64] {
-        &self.command
-    }
-
-    fn measured(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    fn tracking(&self) -> &[Tracking] {
-        &self.tracking
+    fn at(&self) -> FloorsAt<'_> {
+        FloorsAt {
+            time: self.time,
+            command: &self.command,
+            measured: &self.displacement,
+            computed: &self.computed,
+            velocity: &self.velocity,
+            acceleration: &self.acceleration,
+            restoring_force: &self.restoring_force,
+            tracking: &self.tracking,
+        }
     }
 }
 

@@ -21,15 +21,17 @@ use crate::mechanics::monitor::Tracking;
 pub use crate::mechanics::multilinear_fit::MultilinearFit;
 pub use crate::mechanics::reached_fit::{LawFit, ReachedFit};
 pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
+use crate::mechanics::summary::still_rising;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use drift::{AxisDrift, Beyond, Drift, Zero};
 pub use escalate::{Blow, BlowHistory, EscalateHistory};
-pub use floors::{FloorStep, Floors, StoreyImpactHistory};
+pub use floors::{FloorStep, Floors, FloorsAt, StoreyImpactHistory};
 pub use unload::{Rest, UnloadStep};
 
+/// What a run measured and did, all numbers in SI. Every output is a function of it, its plan and its assessment.
 #[derive(Clone, Debug)]
 pub struct Record {
     pub rig: Identity,
@@ -66,6 +68,7 @@ pub struct Event {
     pub text: String,
 }
 
+/// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventKind {
@@ -84,6 +87,25 @@ pub enum EventKind {
     Amendment,
 }
 
+impl EventKind {
+    /// Its word for people, also in `summary.json`.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Inspection => "inspection",
+            Self::LimitBreach => "limit breach",
+            Self::Hold => "hold",
+            Self::Fault => "fault",
+            Self::Mended => "mended",
+            Self::Remark => "remark",
+            Self::Resume => "resume",
+            Self::Amendment => "amendment",
+        }
+    }
+}
+
+/// What one procedure took in and came to.
 #[derive(Clone, Debug)]
 pub struct ProcedureRecord {
     pub name: String,
@@ -98,6 +120,7 @@ pub struct ProcedureRecord {
     pub history: History,
 }
 
+/// A result under its name in the language.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedResult {
     pub name: &'static str,
@@ -145,8 +168,11 @@ pub struct RampStep {
     pub returning: bool,
 }
 
+/// A stiffness ramp, place by place, and what was fitted to it.
 #[derive(Clone, Debug)]
 pub struct RampHistory {
+    /// The reading before the first increment, m and N.
+    pub start: Option<(f64, f64)>,
     pub steps: Vec<RampStep>,
     /// None if too few steps were recorded, or the fit is of two lines.
     pub fit: Option<LineFit>,
@@ -178,6 +204,7 @@ pub struct SweepStep {
     pub steady: bool,
 }
 
+/// A damping sweep, reading by reading, and the line through its pairs.
 #[derive(Clone, Debug)]
 pub struct SweepHistory {
     pub steps: Vec<SweepStep>,
@@ -224,6 +251,7 @@ pub struct ImpactStep {
     pub tracking: Tracking,
 }
 
+/// An impact on one degree of freedom, step by step.
 #[derive(Clone, Debug)]
 pub struct ImpactHistory {
     pub steps: Vec<ImpactStep>,
@@ -238,7 +266,7 @@ impl ImpactHistory {
     #[must_use]
     pub fn still_rising(&self) -> bool {
         let largest = self.steps.iter().map(|step| step.computed).fold(f64::NEG_INFINITY, f64::max);
-        self.steps.last().is_some_and(|last| last.velocity > 0.0 && last.computed >= largest)
+        self.steps.last().is_some_and(|last| still_rising(last.velocity, last.computed, largest))
     }
 }
 
@@ -270,31 +298,21 @@ pub struct ShakeStep {
 }
 
 impl Floors for ShakeStep {
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn computed(&self) -> &[f64] {
-        &self.computed
-    }
-
-    fn restoring_force(&self) -> &[f64] {
-        &self.restoring_force
-    }
-
-    fn command(&self) -> &[f64] {
-        &self.command
-    }
-
-    fn measured(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    fn tracking(&self) -> &[Tracking] {
-        &self.tracking
+    fn at(&self) -> FloorsAt<'_> {
+        FloorsAt {
+            time: self.time,
+            command: &self.command,
+            measured: &self.displacement,
+            computed: &self.computed,
+            velocity: &self.velocity,
+            acceleration: &self.acceleration,
+            restoring_force: &self.restoring_force,
+            tracking: &self.tracking,
+        }
     }
 }
 
+/// A frame on moving ground, step by step.
 #[derive(Clone, Debug, Default)]
 pub struct ShakeHistory {
     pub steps: Vec<ShakeStep>,
@@ -333,6 +351,7 @@ impl History {
 }
 
 impl Record {
+    /// The procedure of this name; None where the run did not get to it.
     #[must_use]
     pub fn procedure(&self, name: &str) -> Option<&ProcedureRecord> {
         self.procedures.iter().find(|procedure| procedure.name == name)
@@ -340,6 +359,7 @@ impl Record {
 }
 
 impl ProcedureRecord {
+    /// The result of this name.
     #[must_use]
     pub fn result(&self, name: &str) -> Option<&NamedResult> {
         self.results.iter().find(|result| result.name == name)

@@ -1,7 +1,6 @@
 //! What an unloading of a frame records: the floors after every move. In: numbers of a run, SI. It moves nothing.
 
-use super::Floors;
-use crate::mechanics::monitor::Tracking;
+use super::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
 
 /// All floors after one move, from the ground up; step 0 is where the unloading began.
@@ -20,31 +19,19 @@ pub struct UnloadStep {
     pub tangent_stiffness: Vec<Option<f64>>,
 }
 
-/// Nothing is computed here: a place is where it was measured, a time the rig's.
+/// Nothing is computed here: a place is where it was measured, a time the rig's, and no recursion runs whose tracking could err.
 impl Floors for UnloadStep {
-    fn time(&self) -> f64 {
-        self.wall_time
-    }
-
-    fn computed(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    fn restoring_force(&self) -> &[f64] {
-        &self.restoring_force
-    }
-
-    fn command(&self) -> &[f64] {
-        &self.command
-    }
-
-    fn measured(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    /// Of a recursion, and none runs.
-    fn tracking(&self) -> &[Tracking] {
-        &[]
+    fn at(&self) -> FloorsAt<'_> {
+        FloorsAt {
+            time: self.wall_time,
+            command: &self.command,
+            measured: &self.displacement,
+            computed: &self.displacement,
+            velocity: &[],
+            acceleration: &[],
+            restoring_force: &self.restoring_force,
+            tracking: &[],
+        }
     }
 }
 
@@ -71,17 +58,13 @@ impl Rest {
     /// Drift of each storey, m.
     #[must_use]
     pub fn drift(&self) -> Vec<f64> {
-        let mut drift = vec![0.0; self.displacement.len()];
-        crate::mechanics::frame::drifts(&self.displacement, &mut drift);
-        drift
+        drift_of(&self.displacement)
     }
 
     /// Shear of each storey, N.
     #[must_use]
     pub fn shear(&self) -> Vec<f64> {
-        let mut shear = vec![0.0; self.force.len()];
-        crate::mechanics::frame::shears(&self.force, &mut shear);
-        shear
+        shear_of(&self.force)
     }
 
     /// The place farthest out, m, and the largest force left, N, each with its sign.

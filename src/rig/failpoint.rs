@@ -34,6 +34,12 @@ pub enum Guarding {
     SampleDurable,
     FailedSync,
     Lock,
+    /// A panic in any thread holds the rig.
+    PanicHook,
+    /// So does a program that hangs.
+    HostWatchdog,
+    /// Whether a disk has room for the whole run.
+    Room,
 }
 
 /// Whether the guard is on.

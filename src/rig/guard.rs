@@ -19,8 +19,10 @@ pub struct Guard<'rig> {
     pub(super) going: Vec<f64>,
     /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
     pub(super) settled: bool,
-    /// Checked, and not yet carried out, m.
-    proposed: Option<Vec<f64>>,
+    /// Checked, and not yet carried out: targets, m, and the speed that the bytes say, m/s.
+    proposed: Option<(Vec<f64>, f64)>,
+    /// Of the last way, m/s.
+    pub(super) speed: Option<f64>,
     /// Rig time when the rig last answered, s.
     pub(super) heard: f64,
     /// Where holds are to be told.
@@ -50,7 +52,8 @@ impl<'rig> Guard<'rig> {
     pub fn of_axes(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
         let heard = rig.time();
         let (commanded, going) = (Vec::new(), Vec::new());
-        let mut guard = Self { rig, limits, own, commanded, going, settled: false, proposed: None, heard, holds: None };
+        let mut guard =
+            Self { rig, limits, own, commanded, going, settled: false, proposed: None, speed: None, heard, holds: None };
         guard.commanded = guard.read()?.displacement;
         Ok(guard)
     }
@@ -110,7 +113,7 @@ impl<'rig> Guard<'rig> {
         // What the bytes say is what moves: they are held against the limits once more, as they will be sent.
         self.check_targets(&offer.targets)?;
         self.check(LimitedQuantity::Speed, self.limits.speed, offer.speed)?;
-        self.proposed = Some(targets.to_vec());
+        self.proposed = Some((targets.to_vec(), offer.speed));
         Ok(())
     }
 
@@ -119,7 +122,7 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// The rig fails, or nothing was proposed that may be carried out.
     pub fn execute(&mut self) -> Result<(), RigFault> {
-        let Some(targets) = self.proposed.take() else {
+        let Some((targets, told)) = self.proposed.take() else {
             self.hold();
             return Err(RigFault::Device("nothing was proposed to execute".to_owned()));
         };
@@ -127,6 +130,7 @@ impl<'rig> Guard<'rig> {
         self.going.clear();
         let executed = self.rig.execute();
         self.or_hold(executed)?;
+        self.went(told);
         self.commanded = targets;
         self.settled = true;
         Ok(())
@@ -178,6 +182,7 @@ impl<'rig> Guard<'rig> {
         }
         self.leave();
         self.going.clear();
+        self.speed = Some(velocity.abs());
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         let mut heard = self.heard;
@@ -453,9 +458,10 @@ mod tests {
             let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
-            let (commanded, own, going, holds) = (vec![0.001], Vec::new(), Vec::new(), None);
+            let (commanded, own, going, holds, speed) = (vec![0.001], Vec::new(), Vec::new(), None, None);
+            let (settled, proposed, heard) = (true, None, 0.0);
             let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled: true, proposed: None, heard: 0.0, holds };
+                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled, proposed, speed, heard, holds };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

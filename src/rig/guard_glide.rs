@@ -15,6 +15,7 @@ impl Guard<'_> {
             return refused(fault);
         }
         self.leave();
+        self.speed = paths.iter().map(Path::fastest).reduce(f64::max);
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         let mut heard = self.heard;

@@ -1,12 +1,12 @@
 //! Holds: settled readings of one place, with time between them. In: readings as the guard lets them through. Out: how fast force
 //! and displacement changed while nothing moved. It reads nothing itself, and judges nothing.
 //!
-//! In a hold a force changes by drift and by what relaxes. What relaxes has a known sign in one case. Let a specimen be a spring
-//! beside Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ): each branch holds its stiffness
-//! times d less a weighted mean of where the specimen has been since it rested at 0. Where it is farther out than ever, that mean is no larger
-//! than d, every bᵢ ≥ 0, and at rest all of them die away towards 0: the force can only fall. A force that grows there is
-//! drift. After an unloading it may grow by itself, so that those holds are told and not judged; so are those of frames, whose
-//! storeys are not farthest out when their floors are.
+//! In a hold a force changes by drift and by what relaxes. What relaxes has a known sign in one case. Let a specimen be a spring beside
+//! Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ): each branch holds its stiffness times d less a
+//! weighted mean of where the specimen has been since it rested at 0. Where it is farther out than ever, that mean is no larger than d,
+//! every bᵢ ≥ 0, and at rest all of them die away towards 0: the force can only fall. A force that grows there is drift. After an unloading
+//! it may grow by itself, so that those holds are told and not judged; so are those of frames, whose storeys are not farthest out when
+//! their floors are.
 
 use super::{Guard, Reading};
 

@@ -10,6 +10,7 @@ pub mod failpoint;
 mod fault_table;
 mod guard;
 mod guard_glide;
+mod guard_speed;
 mod guard_way;
 mod holds;
 mod load_cell;
@@ -317,11 +318,18 @@ pub trait Rig {
     /// Stops all motion and keeps the load.
     fn hold(&mut self);
 
-    /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent stiffness.
+    /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent
+    /// stiffness.
     fn declared_noise(&self) -> DeclaredNoise;
 
     /// Speed of a move for which none is asked, m/s; None: as fast as the plan's limits allow.
     fn own_speed(&self) -> Option<f64> {
+        None
+    }
+
+    /// Mean speed of the last move as it was seen, m/s: its way over the time from its sending until every axis was there, so never
+    /// more than it went at. None: nothing but what it was told is known.
+    fn seen_speed(&self) -> Option<f64> {
         None
     }
 

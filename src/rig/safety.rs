@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, Once, TryLockError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use super::failpoint::{Guarding, on};
 use super::port::{Clock as _, Emergency, MonotonicClock};
 
 /// Lines, each with the bytes that stop what is on it.
@@ -54,11 +55,12 @@ impl Armed {
     /// Also sends the bytes, once, when no [`beat`] came for `watchdog` seconds.
     pub fn watched(mut self, watchdog: f64) -> Self {
         let (stop, stopped) = channel();
+        let guarded = on(Guarding::HostWatchdog);
         let thread = std::thread::spawn(move || {
             let clock = MonotonicClock::start();
             let mut pulse = Pulse::new(watchdog, BEATS.load(Ordering::SeqCst), clock.now());
             while stopped.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
-                if pulse.stopped(BEATS.load(Ordering::SeqCst), clock.now()) {
+                if guarded && pulse.stopped(BEATS.load(Ordering::SeqCst), clock.now()) {
                     hold_everything();
                     TRIPPED.store(true, Ordering::SeqCst);
                 }
@@ -119,7 +121,9 @@ fn hook() {
     ONCE.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
-            hold_everything();
+            if on(Guarding::PanicHook) {
+                hold_everything();
+            }
             before(info);
         }));
     });
@@ -152,15 +156,35 @@ impl Pulse {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig::failpoint::without;
     use std::sync::Arc;
+    use std::thread::{ThreadId, current, spawn};
 
+    /// What was sent, and which thread sent it: other tests panic and hold too, and theirs reach every armed line.
     #[derive(Clone, Default)]
-    struct Recorder(Arc<Mutex<Vec<u8>>>);
+    struct Recorder(Arc<Mutex<Vec<Sent>>>);
+
+    type Sent = (ThreadId, Vec<u8>);
 
     impl Emergency for Recorder {
         fn send(&mut self, bytes: &[u8]) {
-            self.0.lock().unwrap().extend_from_slice(bytes);
+            self.0.lock().unwrap().push((current().id(), bytes.to_vec()));
         }
+    }
+
+    impl Recorder {
+        fn sent_by(&self, thread: ThreadId) -> Vec<u8> {
+            let sent = self.0.lock().unwrap();
+            sent.iter().filter(|(by, _)| *by == thread).flat_map(|(_, bytes)| bytes.clone()).collect()
+        }
+    }
+
+    /// A thread that ends by a panic in `what`.
+    fn panicked(what: impl FnOnce() + Send + 'static) -> ThreadId {
+        let thread = spawn(what);
+        let id = thread.thread().id();
+        assert!(thread.join().is_err());
+        id
     }
 
     #[test]
@@ -171,14 +195,14 @@ mod tests {
             (Box::new(second.clone()), b"\x85".to_vec()),
             (Box::new(without_words.clone()), Vec::new()),
         ]);
-        let panicked = std::thread::spawn(|| panic!("on purpose, to see the rig held")).join();
-        assert!(panicked.is_err());
-        assert!(first.0.lock().unwrap().starts_with(b"!") && second.0.lock().unwrap().starts_with(b"\x85"));
+        let thread = panicked(|| panic!("on purpose, to see the rig held"));
+        assert_eq!((first.sent_by(thread), second.sent_by(thread)), (b"!".to_vec(), b"\x85".to_vec()));
         assert!(without_words.0.lock().unwrap().is_empty());
+        let unguarded = panicked(|| without(Guarding::PanicHook, || panic!("on purpose, to see nothing held")));
+        assert!(first.sent_by(unguarded).is_empty(), "it is the hook that holds");
         drop(armed);
-        let sent = first.0.lock().unwrap().len();
         hold_everything();
-        assert_eq!(first.0.lock().unwrap().len(), sent, "disarmed");
+        assert!(first.sent_by(current().id()).is_empty(), "disarmed");
     }
 
     #[test]
@@ -191,14 +215,24 @@ mod tests {
         assert!(!pulse.stopped(8, 60.0));
     }
 
-    #[test]
-    fn the_watch_sends_the_bytes_when_nobody_beats() {
+    /// Lines whose watch takes any silence for too long, what they are sent, and the thread of the watch.
+    fn nobody_beats() -> (Armed, Recorder, ThreadId) {
         let recorder = Recorder::default();
         let armed = arm(vec![(Box::new(recorder.clone()), b"!".to_vec())]).watched(-1.0);
-        while !tripped() {
+        let watch = armed.watch.as_ref().map(|(_, thread)| thread.thread().id()).unwrap();
+        (armed, recorder, watch)
+    }
+
+    #[test]
+    fn the_watch_sends_the_bytes_when_nobody_beats() {
+        let (armed, recorder, watch) = nobody_beats();
+        while !(tripped() && recorder.sent_by(watch) == b"!") {
             std::thread::yield_now();
         }
-        assert!(recorder.0.lock().unwrap().starts_with(b"!"));
         drop(armed);
+        let (armed, recorder, watch) = without(Guarding::HostWatchdog, nobody_beats);
+        std::thread::sleep(LOOK * 4);
+        drop(armed);
+        assert!(recorder.sent_by(watch).is_empty(), "it is the watch that holds");
     }
 }

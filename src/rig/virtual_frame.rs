@@ -161,6 +161,7 @@ const fn seed_of(seed: u64, axis: u64) -> u64 {
 }
 
 impl VirtualFrame {
+    /// At rest, a floor of the frame an axis; `sign` is +1 or −1, and turns what actuators and cells count.
     #[must_use]
     pub fn new(name: &str, link: VirtualLink, settle: Settle, frame: &Frame, sign: f64) -> Self {
         let viscous = damping_rows(frame);

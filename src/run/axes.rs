@@ -57,6 +57,7 @@ pub(super) fn report(state: &FrameState, told: &Told) -> StepReport {
         velocity: Some(first.velocity),
         acceleration: Some(first.acceleration),
         force: first.force,
+        speed: None,
         energy_error: Some(told.energy_error),
         tracking: Some(told.tracking),
         tracking_energy_error: told.tracking_energy_error,

@@ -12,6 +12,7 @@
 use std::ops::Range;
 
 use super::Performed;
+use super::foreseen::Foreseen;
 use super::inputs::Inputs;
 use super::results::{largest, measured, result};
 use super::session::{Session, first};
@@ -53,20 +54,19 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     let lag = link.map_or(0.0, |link| link.lag);
     let mut sweep = Sweep { steps: Vec::new(), strokes: Vec::new(), stiffness: None, lag, exact: link.is_some() };
     let stop = sweep.run(plan, inputs, session).err();
-    let told = sweep.told();
-    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = sweep
-        .strokes
-        .iter()
-        .filter(|stroke| !told.left_out.contains(&stroke.out.start))
-        .flat_map(|stroke| sweep.pairs(stroke))
-        .unzip();
-    let fit = fit_of(&pairs);
+    let paired = sweep.paired();
+    let told = sweep.told(&paired);
+    let kept = paired.iter().filter(|(stroke, _)| !told.left_out.contains(&stroke.out.start));
+    let of_history = |pair: &OutAndBack| ((pair.velocity, pair.half_difference), [pair.place, pair.mean]);
+    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = kept.flat_map(|(_, pairs)| pairs.iter().map(of_history)).unzip();
+    let foreseen = Foreseen::of(whole);
+    let fit = fit_of(&pairs).map(|fit| widened(foreseen, fit, &pairs, &middles));
     if fit.is_none() && stop.is_none() {
         let text =
             "no damping: the steady parts of the strokes hold too few readings, or too few velocities, for a line".to_owned();
         session.event(EventKind::Remark, text);
     }
-    for text in sweep.remarks().into_iter().chain(told.remarks).chain(fit.as_ref().and_then(negative)) {
+    for text in sweep.remarks(&paired).into_iter().chain(told.remarks).chain(fit.as_ref().and_then(negative)) {
         session.event(EventKind::Remark, text);
     }
     let own_stiffness = told.own_stiffness;
@@ -97,6 +97,14 @@ pub(super) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
         None if steady > 0.0 => (STEADY_SAMPLES / steady).ceil() + 1.0,
         None => STEADY_SAMPLES,
     }
+}
+
+/// With what readings are yet to scatter by.
+fn widened(foreseen: Foreseen, fit: LineFit, pairs: &[(f64, f64)], middles: &[[f64; 2]]) -> LineFit {
+    let moving = || pairs.iter().zip(middles).filter(|((velocity, _), _)| *velocity != 0.0);
+    let speeds: Vec<f64> = moving().map(|((velocity, _), _)| velocity.abs()).collect();
+    let forces: Vec<[f64; 2]> = moving().map(|((_, half), [_, mean])| [mean + half, mean - half]).collect();
+    foreseen.damping(fit, &speeds, &forces)
 }
 
 fn fit_of(pairs: &[(f64, f64)]) -> Option<LineFit> {
@@ -226,16 +234,19 @@ impl Sweep {
         traversed.fault.map_or(Ok(began..self.steps.len()), |fault| Err(fault.into()))
     }
 
-    /// Pairs of readings over what is steady on both ways.
-    fn pairs(&self, stroke: &Stroke) -> Vec<Pair> {
-        let (out, back) = (&self.steps[stroke.out.clone()], &self.steps[stroke.back.clone()]);
-        if stroke.on_grid { paired_by_time(out, back) } else { paired_by_place(out, back) }
+    /// Every stroke with its pairs of readings over what is steady on both ways.
+    fn paired(&self) -> Vec<Paired<'_>> {
+        let pairs = |stroke: &Stroke| {
+            let (out, back) = (&self.steps[stroke.out.clone()], &self.steps[stroke.back.clone()]);
+            if stroke.on_grid { paired_by_time(out, back) } else { paired_by_place(out, back) }
+        };
+        self.strokes.iter().map(|stroke| (stroke, pairs(stroke))).collect()
     }
 
     /// What a person should know of the readings before believing c.
-    fn remarks(&self) -> Vec<String> {
-        let told = |stroke: &Stroke| {
-            let pairs = self.pairs(stroke).len();
+    fn remarks(&self, paired: &[Paired<'_>]) -> Vec<String> {
+        let told = |(stroke, pairs): &Paired<'_>| {
+            let pairs = pairs.len();
             let shown = readable(stroke.speed, Dimension::VELOCITY);
             let few = (!stroke.on_grid && pairs < FEW).then(|| {
                 format!(
@@ -253,16 +264,11 @@ impl Sweep {
             });
             few.into_iter().chain(off)
         };
-        self.strokes.iter().flat_map(told).collect()
+        paired.iter().flat_map(told).collect()
     }
 
     /// What the strokes tell of the specimen beside its damping.
-    fn told(&self) -> Told {
-        let pairs = |stroke: &Stroke| -> Vec<OutAndBack> {
-            let pairs = self.pairs(stroke).into_iter();
-            pairs.map(|((_, half_difference), [place, mean])| OutAndBack { place, half_difference, mean }).collect()
-        };
-        let strokes: Vec<(&Stroke, Vec<OutAndBack>)> = self.strokes.iter().map(|stroke| (stroke, pairs(stroke))).collect();
+    fn told(&self, strokes: &[Paired<'_>]) -> Told {
         let flowed: Vec<(&Stroke, f64)> =
             strokes.iter().filter_map(|(stroke, pairs)| Some((*stroke, change_along(pairs)?))).collect();
         let all = flowed.len() == strokes.len();
@@ -313,22 +319,24 @@ impl Sweep {
     }
 }
 
-/// Velocity and half the difference of `F_d` between the way out and the way back at one place; that place, and the mean force.
-type Pair = ((f64, f64), [f64; 2]);
+/// A stroke with its pairs of readings; the half difference is that of `F_d`.
+type Paired<'a> = (&'a Stroke, Vec<OutAndBack>);
 
 /// Pairs of readings at the same place by their times: the last reading of a way is where the next one starts, and has no
 /// partner.
-fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<Pair> {
+fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAndBack> {
     let steady = out.iter().zip(back.iter().rev().skip(1)).filter(|(out, back)| out.steady && back.steady);
-    let pair = |(out, back): (&SweepStep, &SweepStep)| {
-        let middle = [0.5 * (out.displacement + back.displacement), 0.5 * (out.restoring_force + back.restoring_force)];
-        ((out.velocity, 0.5 * (out.damping_force - back.damping_force)), middle)
+    let pair = |(out, back): (&SweepStep, &SweepStep)| OutAndBack {
+        velocity: out.velocity,
+        place: 0.5 * (out.displacement + back.displacement),
+        half_difference: 0.5 * (out.damping_force - back.damping_force),
+        mean: 0.5 * (out.restoring_force + back.restoring_force),
     };
     steady.map(pair).collect()
 }
 
 /// Pairs at the places where the sparser way was read; there the other one lies between two of its readings.
-fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<Pair> {
+fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAndBack> {
     let steady = |way: &[SweepStep]| {
         let mut way: Vec<SweepStep> = way.iter().filter(|step| step.steady).copied().collect();
         way.sort_by(|one, other| one.displacement.total_cmp(&other.displacement));
@@ -337,10 +345,10 @@ fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<Pair> {
     let (out, back) = (steady(out), steady(back));
     let (sparse, dense) = if out.len() <= back.len() { (out, back) } else { (back, out) };
     let pair = |step: &SweepStep| {
-        let there = interpolated(&dense, step.displacement)?;
+        let half_difference = 0.5 * (step.damping_force - interpolated(&dense, step.displacement)?);
         // At one place the elastic force is the same.
-        let middle = step.restoring_force - 0.5 * (step.damping_force - there);
-        Some(((step.velocity, 0.5 * (step.damping_force - there)), [step.displacement, middle]))
+        let mean = step.restoring_force - half_difference;
+        Some(OutAndBack { velocity: step.velocity, place: step.displacement, half_difference, mean })
     };
     sparse.iter().filter_map(pair).collect()
 }

@@ -287,6 +287,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
             velocity: nothing,
             acceleration: nothing,
             force,
+            speed: self.guard.speed(),
             energy_error: nothing,
             others,
             tracking: None,

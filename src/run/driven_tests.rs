@@ -3,10 +3,10 @@
 
 use std::cell::Cell;
 
-use super::driven::{Driver, Specimen};
-use super::tape::{self, Header, HeaderFile, Played};
+use super::driven::{DrivenStep, Driver, Specimen};
+use super::tape::{self, Header, Played};
 use super::testing::elastic_plan;
-use super::{Inspection, Observer, Parting, StepReport};
+use super::{Inspection, Observer, Parting};
 use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, Journal, recover};
@@ -41,9 +41,6 @@ struct Person {
 }
 
 impl Observer for Person {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
     fn stop_requested(&self) -> bool {
         self.wants.replace(false)
     }
@@ -53,28 +50,26 @@ impl Observer for Person {
 }
 
 fn header() -> Header {
-    let files = vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }];
-    let text = || "0".to_owned();
-    Header {
-        run_id: "0123456789abcdef".to_owned(),
-        psd: text(),
-        build: text(),
-        toolchain: String::new(),
-        files,
-        settings: Vec::new(),
-        rig: None,
-        equipment: None,
-        rehearsal: false,
-        served: Some("nees".to_owned()),
-        date: None,
-        operator: None,
-        host: None,
-        began: None,
-    }
+    Header { served: Some("nees".to_owned()), ..super::testing::header() }
 }
 
 /// The record of a served rig; the same from the journal alone says the same.
 fn served(plan: &Plan, wants: bool) -> Record {
+    let (disk, record, steps) = recorded(plan, wants);
+    let again = played(plan, &disk);
+    assert_eq!(format!("{:?}", again.record), format!("{record:?}"));
+    assert_eq!(again.steps, Some(steps));
+    record
+}
+
+/// The record of a served rig from its journal alone.
+fn played(plan: &Plan, disk: &PowerLoss) -> tape::Replayed {
+    let again = tape::replay(plan, Played::of(&recover(&disk.written()).unwrap()).unwrap());
+    assert_eq!(again.mismatch, None);
+    again
+}
+
+fn recorded(plan: &Plan, wants: bool) -> (PowerLoss, Record, Vec<DrivenStep>) {
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
     tape::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
@@ -82,12 +77,7 @@ fn served(plan: &Plan, wants: bool) -> Record {
     let wall = Box::new(|| None);
     let (recorded, steps) =
         tape::record_driven(plan, rig.as_mut(), &mut person, journal, wall, Driver::Client, &mut |specimen| client(specimen));
-    let played = Played::of(&recover(&disk.written()).unwrap()).unwrap();
-    let again = tape::replay(plan, played);
-    assert_eq!(again.mismatch, None);
-    assert_eq!(format!("{:?}", again.record), format!("{:?}", recorded.record));
-    assert_eq!(again.steps, Some(steps));
-    recorded.record
+    (disk, recorded.record, steps)
 }
 
 #[test]
@@ -117,4 +107,17 @@ fn a_rig_that_does_not_say_is_not_asked() {
     assert!(served(&plan, false).drift.unwrap().axes[0].after.is_none());
     plan.rig.drift = None;
     assert_eq!(served(&plan, false).drift, None);
+}
+
+/// A version that read no zeros of a served rig wrote what this one writes of a rig that does not say how far they may drift.
+#[test]
+fn a_record_without_the_zeros_that_its_plan_asks_for_is_played_back_without_them() {
+    let asking = plan(5.0, ZeroAfter::Start);
+    let mut unread = asking.clone();
+    unread.rig.drift = None;
+    let (disk, record, steps) = recorded(&unread, false);
+    let again = played(&asking, &disk);
+    assert_eq!((again.record.drift.as_ref(), &again.record.outcome), (None, &Outcome::Completed));
+    assert_eq!(format!("{:?}", again.record), format!("{record:?}"));
+    assert_eq!(again.steps, Some(steps));
 }

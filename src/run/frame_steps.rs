@@ -137,7 +137,7 @@ pub(super) fn run<S: Stepped>(
         session.guard.check_energy_error(told.energy_error)?;
         session.guard.check_tracking(told.tracking_energy_error, told.tracking.nrms_error)?;
         let reported = report(&state, &told);
-        session.step_done(&StepReport { step: stepped.before() + reported.step, ..reported })?;
+        session.step_done(StepReport { step: stepped.before() + reported.step, ..reported })?;
         if stepped.over() {
             break;
         }

@@ -40,6 +40,7 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
     }
     let mut before = at_rest.clone();
     for (axis, gate) in gates.iter().enumerate() {
+        session.stop_if_requested()?;
         // Each is held against the reading at rest before it: that after the one before it had come back.
         let (column, back) = probe(axis, gate, &before, session)?;
         before = back;

@@ -1,7 +1,7 @@
 //! Impacts on plans built by hand: the paper's first example, remarks, limits, inspections, resolution of the rig.
 
 use super::testing::{elastic_plan, every, number, result_of, run_unwatched};
-use super::{Inspection, Observer, StepReport, run};
+use super::{Inspection, Observer, run};
 use crate::formula::Formula;
 use crate::mechanics::contact::StepState;
 use crate::plan::{Contact, Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Stepping, Until, VirtualLink};
@@ -166,12 +166,6 @@ fn an_energy_error_past_its_limit_aborts_after_recording_the_step() {
 struct Onlooker(Vec<String>);
 
 impl Observer for Onlooker {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
-    fn stop_requested(&self) -> bool {
-        false
-    }
     fn inspect(&mut self, note: &str) -> Inspection {
         self.0.push(note.to_owned());
         Inspection::go_on()

@@ -5,6 +5,7 @@ mod axes;
 #[cfg(test)]
 mod balance_tests;
 mod blow;
+mod bounded;
 #[cfg(test)]
 mod contacts_tests;
 mod continuous;
@@ -13,6 +14,9 @@ mod continuous_tests;
 mod curve;
 mod cycle;
 mod cycle_doubts;
+mod cycle_rounding;
+#[cfg(test)]
+mod cycle_rounding_tests;
 #[cfg(test)]
 mod cycle_tests;
 mod damping_sweep;
@@ -29,6 +33,9 @@ mod followed;
 mod followed_tests;
 #[cfg(test)]
 mod forecast_tests;
+mod foreseen;
+#[cfg(test)]
+mod foreseen_tests;
 mod frame_doubts;
 #[cfg(test)]
 mod frame_doubts_tests;
@@ -37,7 +44,14 @@ mod frame_sequence_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
+#[cfg(test)]
+mod gliding_doubts_tests;
+#[cfg(test)]
+mod growth_tests;
 mod hold;
+mod hold_rounding;
+#[cfg(test)]
+mod hold_rounding_tests;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
@@ -66,6 +80,7 @@ mod rounding_doubts;
 #[cfg(test)]
 mod rounding_doubts_tests;
 mod samples;
+mod secant_doubts;
 #[cfg(test)]
 mod sequence_tests;
 mod session;
@@ -114,13 +129,15 @@ use stop::Stop;
 /// Who watches a run: a progress bar, a live screen, a journal, a person.
 pub trait Observer {
     /// A procedure begins; `steps` is an upper bound of its steps where one is known.
-    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>);
-    fn step_done(&mut self, report: &StepReport);
-    fn procedure_finished(&mut self, name: &str);
+    fn procedure_started(&mut self, _name: &str, _keyword: &str, _steps: Option<u64>) {}
+    fn step_done(&mut self, _report: &StepReport) {}
+    fn procedure_finished(&mut self, _name: &str) {}
     /// The uncertainty of the results is being worked out, by runs taken again: so many of so many are done.
     fn studying(&mut self, _done: usize, _of: usize) {}
     /// Asked after every step: true stops the run after holding the rig.
-    fn stop_requested(&self) -> bool;
+    fn stop_requested(&self) -> bool {
+        false
+    }
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
@@ -161,6 +178,9 @@ pub struct StepReport {
     pub acceleration: Option<f64>,
     /// Measured restoring force, N.
     pub force: f64,
+    /// Of the last way of the rig, m/s; only for who watches.
+    #[serde(skip)]
+    pub speed: Option<f64>,
     /// Energy error over the input energy; only of procedures that integrate.
     pub energy_error: Option<f64>,
     /// What the monitors of tracking show; only of procedures that integrate.
@@ -228,12 +248,6 @@ pub(crate) const UNLOADING: &str = "unloading to where the run began";
 pub struct Unwatched;
 
 impl Observer for Unwatched {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
-    fn stop_requested(&self) -> bool {
-        false
-    }
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::go_on()
     }
@@ -275,6 +289,10 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         }
     }
     for procedure in &plan.procedures {
+        if let Err(stop) = session.stop_if_requested() {
+            record.outcome = ended_by(&stop, plan, &mut session);
+            break;
+        }
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { mut history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
@@ -290,12 +308,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
             history,
         });
         if let Some(stop) = stop {
-            session.end(&stop);
-            let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
-            if unload && stop.leaves_the_rig_sound() {
-                session.unload();
-            }
-            record.outcome = stop.outcome();
+            record.outcome = ended_by(&stop, plan, &mut session);
             break;
         }
         session.leave();
@@ -303,7 +316,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     if let Some(drift) = &mut record.drift {
         drift.held = session.guard.take_held();
         if record.outcome == Outcome::Completed
-            && let Err(stop) = zero::after(drift, &home, &mut session)
+            && let Err(stop) = session.stop_if_requested().and_then(|()| zero::after(drift, &home, &mut session))
         {
             session.end(&stop);
             record.outcome = stop.outcome();
@@ -311,6 +324,16 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     }
     record.events = session.finish();
     record
+}
+
+/// Holds the rig, and takes the load off where that is its safe state and it is still to be trusted.
+fn ended_by(stop: &Stop, plan: &Plan, session: &mut Session<'_>) -> Outcome {
+    session.end(stop);
+    let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
+    if unload && stop.leaves_the_rig_sound() {
+        session.unload();
+    }
+    stop.outcome()
 }
 
 /// What a real rig does once it has proved itself.
@@ -323,7 +346,7 @@ fn afterwards(plan: &Plan) -> &'static str {
 
 fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     match &procedure.kind {
-        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
+        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, plan, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),

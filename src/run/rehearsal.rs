@@ -81,7 +81,6 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
     };
     link.noise = link.noise.max(scatter(measured));
     model.rig.link = Link::Virtual(link);
-    model.rig.drift = None;
     for (procedure, record) in plan.procedures.iter().zip(&measured.procedures) {
         let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else { continue };
         let stiffness = match record.result("stiffness").map(|result| &result.value) {

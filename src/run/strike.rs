@@ -95,7 +95,7 @@ impl Strike {
         self.watch.judge(share, session);
         session.guard.check_energy_error(error)?;
         session.guard.check_tracking(share, tracking.nrms_error)?;
-        session.step_done(&StepReport {
+        session.step_done(StepReport {
             step: self.before + state.step,
             time: state.time,
             command: state.target,
@@ -103,6 +103,7 @@ impl Strike {
             velocity: Some(state.velocity),
             acceleration: Some(state.acceleration),
             force: state.restoring_force,
+            speed: None,
             energy_error: Some(error),
             tracking: Some(tracking),
             tracking_energy_error: share,

@@ -255,11 +255,9 @@ struct Person {
 }
 
 impl Observer for Person {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
     fn step_done(&mut self, _: &StepReport) {
         self.steps_left -= 1;
     }
-    fn procedure_finished(&mut self, _: &str) {}
     fn stop_requested(&self) -> bool {
         self.steps_left == 0
     }
@@ -301,13 +299,8 @@ struct Pausing {
 }
 
 impl Observer for Pausing {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
     fn step_done(&mut self, report: &StepReport) {
         self.steps = report.step;
-    }
-    fn procedure_finished(&mut self, _: &str) {}
-    fn stop_requested(&self) -> bool {
-        false
     }
     fn inspect(&mut self, _: &str) -> Inspection {
         self.looks += 1;

@@ -36,6 +36,22 @@ const ENDS: &[Variant] = &[
     ),
 ];
 
+const ENERGY_CAPACITY: Field =
+    Field::quantity("energy_capacity", Dimension::NUMBER, "γ: energy that takes all its strength, over F_y x_y")
+        .above_zero()
+        .or_said("its strength is kept");
+
+const UNLOADING_CAPACITY: Field =
+    Field::quantity("unloading_capacity", Dimension::NUMBER, "γ of the unloading stiffness").above_zero().or_said("it is kept");
+
+const DETERIORATION_EXPONENT: Field =
+    Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of what is lost in each mode").or(1.0, "").within(0.5, 4.0);
+
+const RESIDUAL_STRENGTH: Field =
+    Field::quantity("residual_strength", Dimension::NUMBER, "strength that is never lost, over the first one")
+        .or(0.05, "")
+        .within(0.01, 1.0);
+
 const UNLOADING: &[Variant] = &[
     Variant::word("initial_stiffness", "parallel to the steepest stretch of the table; what it flowed stays"),
     Variant::word("along_curve", "back the way it came: elastic"),
@@ -58,7 +74,11 @@ const LOADS: &[Variant] = &[
 
 pub(super) const BEHAVIOURS: &[Variant] = &[
     Variant::with("elastic", &[STIFFNESS], "a linear spring"),
-    Variant::with("bilinear", &[STIFFNESS, YIELD_FORCE, HARDENING], "elastic–plastic with kinematic hardening"),
+    Variant::with(
+        "bilinear",
+        &[STIFFNESS, YIELD_FORCE, HARDENING, ENERGY_CAPACITY, UNLOADING_CAPACITY, DETERIORATION_EXPONENT, RESIDUAL_STRENGTH],
+        "elastic–plastic with kinematic hardening; wears with the energy it takes where a capacity is stated",
+    ),
     Variant::with(
         "multilinear",
         &[
@@ -101,12 +121,8 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("unloading_exponent", Dimension::NUMBER, "a of the unloading stiffness K (x_y/x_max)^a")
                 .or(0.0, "")
                 .within(0.0, 1.0),
-            Field::quantity("energy_capacity", Dimension::NUMBER, "γ: energy that takes all its strength, over F_y x_y")
-                .above_zero()
-                .or_said("its strength is kept"),
-            Field::quantity("unloading_capacity", Dimension::NUMBER, "γ of the unloading stiffness")
-                .above_zero()
-                .or_said("it is kept"),
+            ENERGY_CAPACITY,
+            UNLOADING_CAPACITY,
             Field::quantity("reloading_capacity", Dimension::NUMBER, "γ of the peak that it reloads to, which moves out")
                 .above_zero()
                 .or_said("it is kept"),
@@ -119,12 +135,8 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("capping_capacity", Dimension::NUMBER, "γ of the falling line, which moves in")
                 .above_zero()
                 .or_said("it is kept"),
-            Field::quantity("deterioration_exponent", Dimension::NUMBER, "c of what is lost in each mode")
-                .or(1.0, "")
-                .within(0.5, 4.0),
-            Field::quantity("residual_strength", Dimension::NUMBER, "strength that is never lost, over the first one")
-                .or(0.05, "")
-                .within(0.01, 1.0),
+            DETERIORATION_EXPONENT,
+            RESIDUAL_STRENGTH,
         ],
         "pinched hysteresis that reloads towards its peaks (Ibarra, Medina and Krawinkler 2005)",
     ),
@@ -255,6 +267,18 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("column_second_moment", Dimension::SECOND_MOMENT, "second moment of area of the columns")
                 .above_zero()
                 .or_said("as the beam's"),
+            Field::quantity(
+                "mass_per_length",
+                Dimension::MASS_PER_LENGTH,
+                "of the beam; gives the specimen its mass where it states none",
+            )
+            .above_zero()
+            .or_said("density * area of the specimen"),
+            Field::quantity("column_mass_per_length", Dimension::MASS_PER_LENGTH, "of the columns")
+                .above_zero()
+                .or_said("as the beam's"),
+            Field::quantity("midspan_mass", Dimension::MASS, "carried at midspan").or(0.0, "kg").at_least_zero(),
+            Field::quantity("corner_mass", Dimension::MASS, "carried at each corner").or(0.0, "kg").at_least_zero(),
         ],
         "a portal frame with fixed feet by plastic hinges: elastic up to the least collapse load",
     ),

@@ -13,7 +13,7 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
     fields: &[
         Field::quantity("mass", Dimension::MASS, "equivalent mass at the struck section")
             .above_zero()
-            .or_said("density * area * length / 2"),
+            .or_said("density * area * length / 2, or that of a `portal` as it deflects elastically"),
         Field::quantity("mass_uncertainty", Dimension::MASS, "standard uncertainty of the mass").or(0.0, "kg").at_least_zero(),
         Field::quantity("length", Dimension::LENGTH, "length of the beam").above_zero(),
         Field::quantity("area", Dimension::AREA, "area of the cross-section").above_zero(),
@@ -37,9 +37,17 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
         ResultKind::new("mass", Dimension::MASS, "equivalent mass; of storeys, all floors together"),
         ResultKind::new("stiffness", Dimension::STIFFNESS, "stiffness of the behaviour at no displacement"),
         ResultKind::new("capacity", Dimension::FORCE, "largest force of a behaviour that has one"),
+        ResultKind::new("elastic_mass", Dimension::MASS, "of a beam or portal, by its elastic deflection"),
+        ResultKind::new("plastic_mass", Dimension::MASS, "of a portal, by the mechanism that governs"),
+        ResultKind::new("lumped_mass", Dimension::MASS, "of a beam or portal, its members' halves at their ends"),
         ResultKind::new("beam_collapse_load", Dimension::FORCE, "of a portal, W + H of the beam mechanism"),
         ResultKind::new("sway_collapse_load", Dimension::FORCE, "of a portal, W + H of the sway mechanism"),
         ResultKind::new("combined_collapse_load", Dimension::FORCE, "of a portal, W + H of the combined mechanism"),
+        ResultKind::new(
+            "mechanism_limit",
+            Dimension::FORCE,
+            "of a portal under one load, the largest that its mechanism follows",
+        ),
     ],
     results: &[],
     example: "specimen beam {\n  mass = 0.73 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}",

@@ -8,10 +8,10 @@
 //! its steps with NaN, which nobody takes for a result, and says its 99. So whatever stands in the way holds the rig, and
 //! from then on every question is answered with NaN, until the client leaves, is silent or has been heard out.
 //!
-//! A trial comes more than once: only a target that is not the last one moves the rig. Between moves the specimen is at
-//! rest: velocity and acceleration are zero, so are damping and mass, which are the client's own; both stiffnesses are the constant
-//! that was given. A rig of n axes is driven by vectors of n words, and a stiffness, damping or mass is n·n words. One message moves
-//! all axes; where a limit stands in the way of one, none moves. The messages of a `GenericTCP` with an init file are taken, noted and otherwise ignored.
+//! A trial comes more than once: only a target that is not the last one moves the rig. Between moves the specimen is at rest: velocity and
+//! acceleration are zero, so are damping and mass, which are the client's own; both stiffnesses are the constant that was given. A rig of n
+//! axes is driven by vectors of n words, and a stiffness, damping or mass is n·n words. One message moves all axes; where a limit stands in
+//! the way of one, none moves. The messages of a `GenericTCP` with an init file are taken, noted and otherwise ignored.
 
 use std::time::{Duration, Instant};
 

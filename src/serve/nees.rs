@@ -1,10 +1,10 @@
 //! The NEES "LabVIEW plugin" protocol, psd as the rig. In: a coordinator's connection. Out: motion through the guard, one
 //! answer a line. What a limit stands in the way of is refused when it is proposed, before anything moves.
 //!
-//! Every axis is a control point with a name, of the form `MDL-00-01` or `MDL-00-01:floor`; on a rig of one axis any name is taken
-//! for it. One proposal may name several: they are proposed, refused, moved and settled together, and an axis that it does not
-//! name stays where it was sent last. Control points of cameras and the like (`MDL-AUX`) move nothing. Names and directions are echoed as they were
-//! written; answers end as the client ends its lines.
+//! Every axis is a control point with a name, of the form `MDL-00-01` or `MDL-00-01:floor`; on a rig of one axis any name is taken for it.
+//! One proposal may name several: they are proposed, refused, moved and settled together, and an axis that it does not name stays where it
+//! was sent last. Control points of cameras and the like (`MDL-AUX`) move nothing. Names and directions are echoed as they were written;
+//! answers end as the client ends its lines.
 
 use super::Ended;
 use super::connection::Connection;

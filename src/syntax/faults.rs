@@ -41,6 +41,9 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
             "a field ends with its line: take the `,` away, or put several values into `[ ]`".to_owned()
         }
         "`+`" if expected == "a value" => "a number without a sign is positive: take the `+` away".to_owned(),
+        "`/`" | "`~`" | "`\\`" if expected == "a value" => {
+            "the name of a file or a port is a text: it stands in quotes".to_owned()
+        }
         _ if expected == "a field" => "write `key = value`".to_owned(),
         _ if expected == "a value" => "a value is a number with its unit, a text, a name, a list or a range".to_owned(),
         "`<`" | "`<=`" | "`>`" | "`>=`" | "`==`" | "`!=`" if expected.contains("the end of the line") => {

@@ -6,6 +6,8 @@ mod frame;
 mod identification;
 mod methods;
 mod portal;
+mod portal_limit;
+mod portal_mass;
 mod reference;
 mod relaxation;
 mod specimens;

@@ -161,6 +161,28 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
     assert!(!fs::read_to_string(place.path().join("real/certificate.html")).unwrap().contains("Prediction of the whole run"));
 }
 
+/// The rehearsal itself reads no zeros; the run that it foretells does, and takes the time for it.
+#[test]
+fn a_rig_that_watches_its_zeros_is_foretold_to() {
+    let place = Place::new("15");
+    let plan = fs::read_to_string(place.path().join("plan.psd")).unwrap();
+    let watched = plan.replace("seed: 7)\n}", "seed: 7)\n  drift = within(20 N, over: 5 s, after: start)\n}");
+    assert_ne!(watched, plan);
+    fs::write(place.path().join("plan.psd"), watched).unwrap();
+    let (code, told, log) = place.psd(&["run", "plan.psd", "--rehearse", "--yes", "--out", "out"]);
+    assert_eq!(code, Some(0), "{told}{log}");
+    assert!(told.contains("Zeros") && told.contains("back to where it began"), "{told}");
+    let foretold: Value = serde_json::from_slice(&fs::read(place.path().join("out/rehearsal.json")).unwrap()).unwrap();
+    let zeros = &foretold["zeros"];
+    let expected = [("allowed_force_n", 20.0), ("over_s", 5.0)];
+    assert!(expected.iter().all(|(name, value)| zeros[name] == *value) && zeros["after"] == "start", "{zeros}");
+    let (between, steady) = (zeros["between_s"].as_f64().unwrap(), zeros["steady_force_n_per_s"].as_f64().unwrap());
+    assert!(between > 5.0 && (steady * between - 20.0).abs() < 1e-9, "{zeros}");
+    assert_eq!(place.summary()["drift"], Value::Null, "the rehearsal read none");
+    let page = fs::read_to_string(place.path().join("out/certificate.html")).unwrap();
+    assert!(page.contains("The zeros of the rig would be read over"), "on the page too");
+}
+
 #[test]
 fn a_limit_that_the_run_would_reach_is_exit_4_with_its_procedure_and_step() {
     // √(20 kg·300 kN/m)·1 m/s is some 2.4 kN.

@@ -3,17 +3,11 @@
 //! its first move and after its last; that a panic between the two sends the word to hold is shown in `src/rig/safety.rs`.
 
 use std::process::Command;
-use std::time::Duration;
 
 use rustix::process::Signal;
 
 use crate::needs;
-use crate::stage::{Ended, PSD, Stage, finish, signal, start, wait};
-
-/// A rig that holds by itself after four seconds.
-fn watched() -> Stage {
-    Stage::of(|plan| plan.replace("watchdog   = 30 s", "watchdog   = 4 s").replace(", reply_timeout: 2 s", ""), "")
-}
+use crate::stage::{Ended, PSD, Stage, finish, let_it_trip, signal, start, wait, watched};
 
 #[test]
 fn by_an_abort_in_any_phase() {
@@ -26,7 +20,7 @@ fn by_an_abort_in_any_phase() {
 
 /// The run of a watched rig ends by this signal after so many moves; the rig holds itself, and the run goes on.
 fn aborted(word: Signal, moves: usize) {
-    let stage = watched();
+    let stage = Stage::of(watched, "");
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(moves);
     signal(&run, word);
@@ -34,7 +28,7 @@ fn aborted(word: Signal, moves: usize) {
     assert_eq!(run.code, None, "ended by the signal at move {moves}: {:?}", run.told.lines().last());
     let (done, asked) = (stage.moves().len(), stage.requests().len());
     // What is on the line after the end of the program is nothing; the rig trips its watchdog alone.
-    std::thread::sleep(Duration::from_secs(5));
+    let_it_trip();
     assert_eq!((stage.moves().len(), stage.requests().len()), (done, asked));
     stage.goes_on(&[]);
     assert!(stage.requests()[asked..].iter().any(|request| request.contains(">CLR")), "it had tripped");

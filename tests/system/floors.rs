@@ -79,10 +79,10 @@ limits {
 }
 
 rig bench {
-  link        = serial(port: "PORT", dialect: native, reply_timeout: 0.5 s)
+  link        = serial(port: "PORT", dialect: native, reply_timeout: 2 s)
   settle      = within(0.01 mm, 5 kN/s, for: 0.01 s, timeout: 20 s)
   safe_state  = hold
-  watchdog    = 4 s
+  watchdog    = 30 s
   rate        = 500 Hz
   samples     = 1
   speed       = 100 mm/s

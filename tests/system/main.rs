@@ -1,5 +1,6 @@
 //! Whole runs as processes: `psd` against `psd rig simulate` over real pseudo-terminals, killed, starved, frozen and
-//! talked at. What needs a program of the system is skipped without it, and fails where `PSD_REQUIRE_SYSTEM=1`.
+//! talked at. What needs a program of the system is skipped without it, and fails where `PSD_REQUIRE_SYSTEM=1`, also where
+//! the machine forbids what the program does.
 
 mod amended;
 mod build;
@@ -19,6 +20,7 @@ mod needs;
 mod person;
 mod resumed;
 mod served;
+mod signals;
 mod signed;
 mod stage;
 mod terminal;

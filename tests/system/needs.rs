@@ -1,5 +1,6 @@
 //! What a test needs of the system. In: a program and something it must be able to do here. Out: whether it can; if
-//! not, the test says that it is skipped, and fails where `PSD_REQUIRE_SYSTEM=1` asks for a program that is missing.
+//! not, the test says that it is skipped, and fails where `PSD_REQUIRE_SYSTEM=1` wants every test, whether the program is
+//! missing or the machine forbids what it does.
 
 use std::process::{Command, Stdio};
 
@@ -48,25 +49,47 @@ pub fn faketime() -> bool {
         return false;
     }
     let here = std::path::Path::new(FAKETIME).exists();
-    if !here {
-        println!("SKIPPED: the library of faketime is not at {FAKETIME}");
-    }
-    here
+    here || skipped(&format!("the library of faketime is not at {FAKETIME}"), required())
+}
+
+/// Whether a program can be given a terminal of its own, as a shell gives it one.
+pub fn setsid() -> bool {
+    able("setsid", "say its version", Command::new("setsid").arg("--version"))
 }
 
 fn able(program: &str, what: &str, proof: &mut Command) -> bool {
-    let proven = proof.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
-    let missing = match proven {
-        Ok(status) if status.success() => return true,
-        // A machine that forbids it lacks no program: no installation would help.
-        Ok(_) => {
-            println!("SKIPPED: {program} cannot {what} here");
-            return false;
-        }
-        Err(_) => format!("no {program}"),
-    };
-    println!("SKIPPED: {missing}");
-    let required = std::env::var_os("PSD_REQUIRE_SYSTEM").is_some_and(|value| value == "1");
-    assert!(!required, "{missing}, and PSD_REQUIRE_SYSTEM=1 wants every test");
+    lacking(program, what, proof).is_none_or(|lacking| skipped(&lacking, required()))
+}
+
+/// What stands in the way, if anything.
+fn lacking(program: &str, what: &str, proof: &mut Command) -> Option<String> {
+    match proof.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status() {
+        Ok(status) if status.success() => None,
+        Ok(_) => Some(format!("{program} cannot {what} here")),
+        Err(_) => Some(format!("no {program}")),
+    }
+}
+
+/// Whether every test is wanted.
+fn required() -> bool {
+    std::env::var_os("PSD_REQUIRE_SYSTEM").is_some_and(|value| value == "1")
+}
+
+/// False: the test is not done, and says so.
+fn skipped(lacking: &str, required: bool) -> bool {
+    println!("SKIPPED: {lacking}");
+    assert!(!required, "{lacking}, and PSD_REQUIRE_SYSTEM=1 wants every test");
     false
+}
+
+#[test]
+fn what_is_missing_and_what_is_forbidden_are_skipped_or_fail_alike() {
+    let lacks = |program: &str| lacking(program, "trace", &mut Command::new(program));
+    assert_eq!(lacks("true"), None);
+    assert_eq!(lacks("false").as_deref(), Some("false cannot trace here"));
+    assert_eq!(lacks("no-such-program").as_deref(), Some("no no-such-program"));
+    assert!(!skipped("false cannot trace here", false));
+    let failed = std::panic::catch_unwind(|| skipped("false cannot trace here", true));
+    let told = failed.unwrap_err().downcast::<String>().unwrap();
+    assert_eq!(*told, "false cannot trace here, and PSD_REQUIRE_SYSTEM=1 wants every test");
 }

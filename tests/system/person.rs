@@ -8,26 +8,10 @@ use rustix::process::Signal;
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
 use crate::terminal::Terminal;
 
-/// The rig stands where it was held, and the record can be gone on with.
+/// Held, on record, and gone on with.
 fn held_and_sound(stage: &Stage, ran: &Ended) {
-    assert_eq!(ran.code, Some(4), "{}", ran.told);
-    let requests = stage.requests();
-    let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
-    assert!(last(">STOP").max(last("!")) > last(">MOVE"), "not held: {requests:#?}");
-    let verified = stage.verify();
-    assert!(verified.code == Some(0) && verified.told.contains("INCOMPLETE"), "{}", verified.told);
+    stage.held_and_sound(ran);
     stage.goes_on(&[]);
-}
-
-#[test]
-fn each_signal_stops_at_the_end_of_the_step() {
-    for sent in [Signal::INT, Signal::TERM, Signal::HUP] {
-        let stage = Stage::new();
-        let run = start(&mut stage.run_with(&["--yes"]));
-        stage.after_moves(10);
-        signal(&run, sent);
-        held_and_sound(&stage, &finish(run));
-    }
 }
 
 #[test]
@@ -93,11 +77,11 @@ fn a_record_cut_short_says_so() {
     assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
 }
 
-/// Waits until the run stands still.
+/// Waits until the run stands still: for longer than a step takes on a machine with much else to do.
 fn standing(stage: &Stage) -> usize {
     loop {
         let before = stage.moves().len();
-        std::thread::sleep(std::time::Duration::from_millis(300));
+        std::thread::sleep(std::time::Duration::from_secs(2));
         if stage.moves().len() == before {
             return before;
         }

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use rustix::process::Signal;
 
-use crate::stage::{Stage, code, signal, until};
+use crate::stage::{Stage, code, impatient, let_it_trip, signal, until, watched};
 
 /// `psd rig serve` on a stage's rig, ready for clients.
 pub struct Served {
@@ -28,10 +28,7 @@ impl Served {
     }
 
     pub fn start(script: &str, protocol: &str, more: &[&str]) -> Self {
-        let quick = |plan: &str| {
-            plan.replace("reply_timeout: 2 s", "reply_timeout: 0.5 s").replace("watchdog   = 30 s", "watchdog   = 4 s")
-        };
-        Self::start_on(Stage::of(quick, script), protocol, more)
+        Self::start_on(Stage::of(str::to_owned, script), protocol, more)
     }
 
     /// The rig of a stage of its own.
@@ -76,7 +73,7 @@ impl Served {
     }
 
     /// A person ends it.
-    fn stop(&mut self, sent: Signal) -> (Option<i32>, String) {
+    pub fn stop(&mut self, sent: Signal) -> (Option<i32>, String) {
         signal(&self.program, sent);
         self.ended()
     }
@@ -241,7 +238,8 @@ fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
 #[test]
 fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
     // The gate makes two moves.
-    let mut served = Served::nees("after 3 moves: drop replies for ever");
+    let silent = || Stage::of(impatient, "after 3 moves: drop replies for ever");
+    let mut served = Served::start_on(silent(), "nees", &[]);
     let mut client = Coordinator::come(&served);
     let answers = client.go(1e-3);
     let failed = answers.last().unwrap();
@@ -251,7 +249,7 @@ fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
     assert!(code == Some(3) && printed.contains("no usable answer within"), "{printed}");
     served.held();
 
-    let mut served = Served::generic("after 3 moves: drop replies for ever");
+    let mut served = Served::start_on(silent(), "generic-client", &[]);
     let mut element = Element::come(&served);
     assert!(element.force_at(1e-3).is_nan());
     element.send([99.0, 0.0]);
@@ -372,7 +370,7 @@ fn a_second_client_at_the_same_time_is_turned_away_and_disturbs_nothing() {
 
 #[test]
 fn a_program_that_is_killed_leaves_a_record_and_a_rig_that_holds_itself() {
-    let mut served = Served::nees("");
+    let mut served = Served::start_on(Stage::of(watched, ""), "nees", &[]);
     let mut client = Coordinator::come(&served);
     client.go(1e-3);
     served.program.kill().unwrap();
@@ -380,8 +378,7 @@ fn a_program_that_is_killed_leaves_a_record_and_a_rig_that_holds_itself() {
     let verified = served.stage.verify();
     assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
     assert!(verified.told.contains("3 came out again"), "two of the gate, and the client's: {}", verified.told);
-    // Nobody is heard for longer than the rig waits.
-    std::thread::sleep(Duration::from_secs(5));
+    let_it_trip();
     let probed = crate::stage::wait(&mut served.stage.tool("probe", &[]));
     let log = served.stage.log();
     // Bit 7 of the flags: its watchdog tripped.

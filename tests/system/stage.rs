@@ -12,7 +12,7 @@ use tempfile::TempDir;
 pub const PSD: &str = env!("CARGO_BIN_EXE_psd");
 
 /// Longest wait for anything, far beyond what it takes: only a program that hangs reaches it.
-const PATIENCE: Duration = Duration::from_mins(1);
+const PATIENCE: Duration = Duration::from_mins(3);
 
 /// Some forty steps without noise, so that two runs measure the same.
 const PLAN: &str = r#"plan "A short run on a real rig" {
@@ -74,6 +74,27 @@ report {
   formats = [html, csv]
 }
 "#;
+
+/// The plan where a request is given up after 4 s, not after 16: for what is about a rig that falls silent, and nothing else. A machine
+/// with much else to do keeps a stand-in from its words for seconds.
+pub fn impatient(plan: &str) -> String {
+    swapped(plan, "reply_timeout: 2 s", "reply_timeout: 0.5 s")
+}
+
+/// The plan where the rig holds by itself once it has heard nothing for 8 s.
+pub fn watched(plan: &str) -> String {
+    swapped(&swapped(plan, "watchdog   = 30 s", "watchdog   = 8 s"), "reply_timeout: 2 s", "reply_timeout: 1 s")
+}
+
+/// Nobody speaks with a rig that is [`watched`] until it has tripped.
+pub fn let_it_trip() {
+    std::thread::sleep(Duration::from_secs(9));
+}
+
+fn swapped(plan: &str, words: &str, others: &str) -> String {
+    assert!(plan.contains(words), "no `{words}` in the plan");
+    plan.replace(words, others)
+}
 
 /// What a program that has ended left.
 #[derive(Debug)]
@@ -217,6 +238,21 @@ impl Stage {
         let verified = self.verify();
         assert_eq!(verified.code, Some(0), "{}", verified.told);
         verified.told
+    }
+
+    /// Whether the last word about moving is the one to stop.
+    pub fn is_held(&self) -> bool {
+        let requests = self.requests();
+        let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
+        last(">STOP").max(last("!")) > last(">MOVE").max(last(">GLIDE"))
+    }
+
+    /// A person stopped the run: the rig stands where it was held, and the record is sound as far as it goes.
+    pub fn held_and_sound(&self, ran: &Ended) {
+        assert_eq!(ran.code, Some(4), "{}", ran.told);
+        assert!(self.is_held(), "not held: {:#?}", self.requests());
+        let verified = self.verify();
+        assert!(verified.code == Some(0) && verified.told.contains("INCOMPLETE"), "{}", verified.told);
     }
 
     /// Goes on with the run to its end, whose record is then proven.

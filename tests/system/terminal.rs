@@ -2,10 +2,13 @@
 //! typed. Out: a program whose questions are answered, or not.
 
 use std::fs::File;
-use std::io::{Read as _, Write as _};
+use std::io::{ErrorKind, Read as _, Write as _};
 use std::os::unix::ffi::OsStrExt as _;
 use std::process::{Child, Command};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
 use rustix::process::Signal;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
@@ -17,6 +20,8 @@ pub struct Terminal {
     pub child: Child,
     keys: File,
     shown: Arc<Mutex<Vec<u8>>>,
+    closed: Arc<AtomicBool>,
+    reader: JoinHandle<()>,
 }
 
 impl Terminal {
@@ -31,7 +36,8 @@ impl Terminal {
     }
 
     fn of_size(columns: u16, command: &mut Command) -> Self {
-        let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        // No program started meanwhile keeps it open.
+        let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&keys).unwrap();
         unlockpt(&keys).unwrap();
         tcsetwinsize(&keys, size(columns)).unwrap();
@@ -41,15 +47,33 @@ impl Terminal {
         let (output, error) = (end.try_clone().unwrap(), end.try_clone().unwrap());
         let child = command.stdin(end).stdout(output).stderr(error).spawn().unwrap();
         let shown = Arc::new(Mutex::new(Vec::new()));
+        // Read without waiting, so that it can be closed at any time.
+        rustix::io::ioctl_fionbio(&keys, true).unwrap();
         let (mut screen, sink) = (File::from(keys.try_clone().unwrap()), Arc::clone(&shown));
-        std::thread::spawn(move || {
+        let closed = Arc::new(AtomicBool::new(false));
+        let close = Arc::clone(&closed);
+        let reader = std::thread::spawn(move || {
             let mut buffer = [0; 4096];
-            // A terminal that nobody writes to any more ends with an error.
-            while let Ok(count) = screen.read(&mut buffer) {
-                sink.lock().unwrap().extend_from_slice(&buffer[..count]);
+            while !close.load(Ordering::SeqCst) {
+                match screen.read(&mut buffer) {
+                    Ok(count) => sink.lock().unwrap().extend_from_slice(&buffer[..count]),
+                    Err(error) if error.kind() == ErrorKind::WouldBlock => std::thread::sleep(Duration::from_millis(2)),
+                    // A terminal that nobody writes to any more ends with an error.
+                    Err(_) => return,
+                }
             }
         });
-        Self { child, keys: File::from(keys), shown }
+        Self { child, keys: File::from(keys), shown, closed, reader }
+    }
+
+    /// Its window is closed. The program, and what it had shown by then.
+    pub fn dies(self) -> (Child, String) {
+        let shown = self.shown();
+        let Self { child, keys, closed, reader, .. } = self;
+        closed.store(true, Ordering::SeqCst);
+        reader.join().unwrap();
+        drop(keys);
+        (child, shown)
     }
 
     pub fn shown(&self) -> String {

@@ -72,7 +72,7 @@ pub fn link_and_device(link: Span, field: &str, other: Span) -> Diagnostic {
 pub fn load_cell_alone(at: Span) -> Diagnostic {
     Diagnostic::new(Code::RigLinks, "a `load_cell` without an `actuator` moves nothing")
         .at(at, "nothing moves")
-        .help("add a line such as `actuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)`")
+        .help("add a line such as\nactuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)")
 }
 
 pub fn cannot_move(field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
@@ -92,11 +92,11 @@ pub fn cannot_weigh(own: bool, field: &str, dialect: &Dialect, at: Span) -> Diag
     let name = dialect.name();
     let help = match dialect {
         Dialect::Modbus(_) => "give the `force` register with its `force_unit`, or another device that reads the force",
-        _ if own => "name a device that reads the force, as in `load_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)`",
+        _ if own => "name a device that reads the force, as in\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)",
         _ if field == "link" => {
-            "make this the `actuator`, and add a `load_cell`, as in `load_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)`"
+            "make this the `actuator`, and add\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)"
         }
-        _ => "add a line such as `load_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)`",
+        _ => "add a line such as\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)",
     };
     let message = if own {
         format!("`load_cell` must read the force, and a device that speaks `{name}` cannot")
@@ -230,7 +230,7 @@ pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> 
         format!("`{field}`{of} takes whatever device answers on `{}`", port.to_string().escape_debug()),
     )
     .at(span, "no `serial_number`")
-    .help("write the serial number that must answer, as in `serial_number: \"PSD-0001\"`")
+    .help("write the serial number that must answer, as in\nserial_number: \"PSD-0001\"")
 }
 
 pub fn nobody_to_free_it(at: Span) -> Diagnostic {

@@ -1,8 +1,8 @@
-//! Faults of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W726.
+//! Faults of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W724, W726.
 
 use super::shown;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::Interval;
+use crate::plan::{Interval, Mechanism};
 use crate::quantity::Dimension;
 use crate::source::Span;
 use crate::syntax::ast::Ident;
@@ -139,4 +139,18 @@ pub fn table_too_short(file: &str, table: Interval, limit: Interval, named_at: S
         .at(named_at, format!("points over {}", range(table)))
         .at(limit_at, format!("allows {}", range(limit)))
         .help("narrow the limits to what was measured, or measure further")
+}
+
+/// A contact force (N) may grow beyond the most that a mechanism follows (N).
+pub fn beyond_mechanism(mechanism: Mechanism, (force, most): (f64, f64), span: Span) -> Diagnostic {
+    let [force, most] = [force, most].map(|force| shown(force, Dimension::FORCE));
+    let name = mechanism.name();
+    Diagnostic::new(
+        Code::BeyondMechanism,
+        format!("a contact force above {most} makes other hinges than those of the {name} mechanism"),
+    )
+    .at(span, format!("may come to {force}"))
+    .help(
+        "bound the force by what the mechanism follows, or expect hinges nearer to the blow, which one degree of freedom has not",
+    )
 }

@@ -146,7 +146,10 @@ pub fn choice_wanted(field: &str, variants: &[Variant], span: Span, text: &str) 
     let known = one_of(variants.iter().map(|variant| variant.name));
     Diagnostic::new(Code::WrongType, format!("`{field}` wants one of its words, found `{text}`"))
         .at(span, "not one of its words")
-        .help(format!("it takes {known}"))
+        .help(match variants.iter().find(|variant| variant.name == text.trim_matches('"')) {
+            Some(meant) => format!("write it without quotes: `{}`", meant.name),
+            None => format!("it takes {known}"),
+        })
 }
 
 pub fn range_wanted(span: Span, text: &str) -> Diagnostic {

@@ -63,6 +63,7 @@ fn step(number: u64, reading: &Reading) -> StepReport {
         velocity: None,
         acceleration: None,
         force: first(&reading.force),
+        speed: None,
         energy_error: None,
         others: reading.displacement.iter().zip(&reading.force).skip(1).map(|(x, force)| at_rest(*x, *force)).collect(),
         tracking: None,

@@ -12,7 +12,7 @@ use crate::cli::output::{give, tell};
 use crate::cli::record_file::{self, Circumstances};
 use crate::cli::run_folder::RunFolder;
 use crate::cli::settings::Settings;
-use crate::cli::watch::{Attendance, Watcher};
+use crate::cli::watch::{Attendance, Signals, Watcher};
 use crate::cli::{plan_file, provenance, real_rig};
 use crate::diagnostic::excerpt::escape;
 use crate::output::{self, Provenance};
@@ -40,7 +40,8 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let wish = Wish::default();
     match plan.rig.link {
         Link::Virtual(_) => {
-            let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, wish.clone()).map_err(Failure::Signals)?;
+            let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+            let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, signals);
             let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..Circumstances::default() };
             let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
             let mut rig = virtual_rig(plan);

@@ -114,8 +114,6 @@ impl Observer for Screen {
         self.shared.lock().model.study = Some((done, of));
     }
 
-    fn procedure_finished(&mut self, _: &str) {}
-
     fn stop_requested(&self) -> bool {
         self.wish.wants_end()
     }

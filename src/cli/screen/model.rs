@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use super::curve::Curve;
 use crate::plan::{Interval, Limits, Plan};
 use crate::quantity::Dimension;
-use crate::record::{Event, EventKind};
+use crate::record::Event;
 use crate::run::StepReport;
 
 /// Events kept for the screen.
@@ -56,6 +56,8 @@ pub struct LimitRow {
     pub limit: Interval,
     /// Whether it bounds a size, to which 0 is no danger.
     pub size: bool,
+    /// Whether psd itself keeps to it: at its bound the rig goes as it was told, and only past it something is wrong.
+    pub kept: bool,
     /// None where nothing is known of it yet.
     pub value: Option<f64>,
 }
@@ -138,7 +140,7 @@ impl Model {
 
     /// The limits of the plan that a step says something of, those that bound nothing left out.
     pub fn limit_rows(&self) -> Vec<LimitRow> {
-        let Limits { displacement, force, increment, tracking_error, energy_error, tracking_energy_error, nrms_error, .. } =
+        let Limits { displacement, force, speed, increment, tracking_error, energy_error, tracking_energy_error, nrms_error } =
             self.limits;
         // Of several axes the one with the largest size.
         let of = |value: fn((f64, f64, f64)) -> f64| {
@@ -150,10 +152,12 @@ impl Model {
         let share = last.and_then(|last| last.tracking_energy_error).map(f64::abs);
         let nrms = last.and_then(|last| last.tracking).map(|tracking| tracking.nrms_error);
         let sizes = |limit: Interval| Interval { low: limit.low.max(0.0), ..limit };
-        let row = |name, dimension, limit, size, value| LimitRow { name, dimension, limit, size, value };
+        let row = |name, dimension, limit, size, value| LimitRow { name, dimension, limit, size, kept: false, value };
+        let went = last.and_then(|last| last.speed);
         [
             row("displacement", Dimension::LENGTH, displacement, false, of(|(_, displacement, _)| displacement)),
             row("force", Dimension::FORCE, force, false, of(|(.., force)| force)),
+            LimitRow { kept: true, ..row("speed", Dimension::VELOCITY, sizes(speed), true, went) },
             row("increment", Dimension::LENGTH, sizes(increment), true, self.increment),
             row("tracking error", Dimension::LENGTH, sizes(tracking_error), true, self.tracking_error()),
             row("energy error", Dimension::NUMBER, sizes(energy_error), true, energy),
@@ -164,26 +168,12 @@ impl Model {
         .filter(|row| row.limit.high < f64::INFINITY || row.limit.low > if row.size { 0.0 } else { f64::NEG_INFINITY })
         .collect()
     }
-
-    /// The word for an event's kind, as in `summary.json`.
-    pub const fn kind(event: &Event) -> &'static str {
-        match event.kind {
-            EventKind::Note => "note",
-            EventKind::Inspection => "inspection",
-            EventKind::LimitBreach => "limit breach",
-            EventKind::Hold => "hold",
-            EventKind::Fault => "fault",
-            EventKind::Mended => "mended",
-            EventKind::Remark => "remark",
-            EventKind::Resume => "resume",
-            EventKind::Amendment => "amendment",
-        }
-    }
 }
 
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use crate::record::EventKind;
     use crate::run::testing::empty_plan;
 
     pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {
@@ -195,6 +185,7 @@ pub mod tests {
             velocity: None,
             acceleration: None,
             force,
+            speed: Some(0.4),
             energy_error: Some(-1e-4),
             others: Vec::new(),
             tracking: None,
@@ -212,15 +203,16 @@ pub mod tests {
         model.procedure_started("hit", "impact", Some(3));
         assert_eq!(
             model.limit_rows().iter().map(|row| (row.name, row.value)).collect::<Vec<_>>(),
-            [("displacement", None), ("increment", None)]
+            [("displacement", None), ("speed", None), ("increment", None)]
         );
         model.step_done(&step(1, 0.1, 0.01, 5.0));
         model.step_done(&step(2, 0.2, 0.025, 6.0));
         let rows = model.limit_rows();
         assert_eq!(rows[0].margin(), Some(0.024_998 + 0.01));
-        assert!((rows[1].margin().unwrap() - 0.005).abs() < 1e-12);
+        assert!((rows[1].margin().unwrap() - 0.6).abs() < 1e-12, "0.4 m/s of 1 m/s");
+        assert!((rows[2].margin().unwrap() - 0.005).abs() < 1e-12);
         model.step_done(&step(3, 0.3, 0.026, 6.0));
-        assert!((model.limit_rows()[1].margin().unwrap() - 0.019).abs() < 1e-12, "no increment at all is as far as can be");
+        assert!((model.limit_rows()[2].margin().unwrap() - 0.019).abs() < 1e-12, "no increment at all is as far as can be");
         assert!((model.tracking_error().unwrap() - 2e-6).abs() < 1e-12);
         model.procedure_started("c", "damping sweep", None);
         model.step_done(&step(1, 0.1, 0.01, 5.0));

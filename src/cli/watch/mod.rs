@@ -57,21 +57,15 @@ pub struct Attendance {
 }
 
 impl Watcher {
-    /// Watches a run on a simulated or a real rig. Keys and signals become `wish`, which a rig that can hold in the
-    /// middle of a step is given too.
-    pub fn new(settings: Settings, attendance: &Attendance, plan: &Plan, simulated: bool, wish: Wish) -> std::io::Result<Self> {
-        Self::watching(settings, attendance, plan, simulated, wish, true)
+    /// Watches a run on a simulated or a real rig. Keys and signals become the wish of `signals`, which a rig that can hold in
+    /// the middle of a step is given too.
+    pub fn new(settings: Settings, attendance: &Attendance, plan: &Plan, simulated: bool, signals: Signals) -> Self {
+        Self::watching(settings, attendance, plan, simulated, signals, true)
     }
 
     /// Watches in lines, also on a terminal: a client drives, and there is no procedure to draw.
-    pub fn in_lines(
-        settings: Settings,
-        attendance: &Attendance,
-        plan: &Plan,
-        simulated: bool,
-        wish: Wish,
-    ) -> std::io::Result<Self> {
-        Self::watching(settings, attendance, plan, simulated, wish, false)
+    pub fn in_lines(settings: Settings, attendance: &Attendance, plan: &Plan, simulated: bool, signals: Signals) -> Self {
+        Self::watching(settings, attendance, plan, simulated, signals, false)
     }
 
     fn watching(
@@ -79,10 +73,10 @@ impl Watcher {
         attendance: &Attendance,
         plan: &Plan,
         simulated: bool,
-        wish: Wish,
+        signals: Signals,
         drawn: bool,
-    ) -> std::io::Result<Self> {
-        let signals = Signals::caught(&wish)?;
+    ) -> Self {
+        let wish = signals.wish().clone();
         let named = plan.particulars.iter().find(|(field, _)| *field == "operator").map(|(_, name)| name.clone());
         let operator = attendance.operator.clone().or(named).filter(|name| !name.trim().is_empty());
         let face = if drawn && settings.can_ask && settings.unicode && screen::is_large_enough() {
@@ -99,7 +93,7 @@ impl Watcher {
             (false, false, true, _) => Asking::NobodyNeeded,
             (false, false, false, _) => Asking::Nobody,
         };
-        Ok(Self { face, asking, operator, wish, _signals: signals })
+        Self { face, asking, operator, wish, _signals: signals }
     }
 
     /// Takes screen and bar off the terminal.
@@ -177,19 +171,13 @@ mod tests {
 
     #[test]
     fn a_real_rig_stops_where_nobody_can_be_asked() {
-        let settings = Settings {
-            color: false,
-            stdout_color: false,
-            unicode: true,
-            stderr_terminal: false,
-            stdout_terminal: false,
-            can_ask: false,
-        };
+        let settings = Settings::PLAIN;
         let mut plan = empty_plan();
         plan.particulars.push(("operator", "A. Engineer".to_owned()));
         let ask = |yes, simulated| {
             let attendance = Attendance { yes, operator: None };
-            Watcher::new(settings, &attendance, &plan, simulated, Wish::default()).unwrap().inspect("look")
+            let signals = Signals::caught(&Wish::default()).unwrap();
+            Watcher::new(settings, &attendance, &plan, simulated, signals).inspect("look")
         };
         assert!(matches!(ask(false, false), Inspection::Stop { .. }));
         let yes = Inspection::GoOn { note: Some("answered by --yes".to_owned()), by: Some("A. Engineer".to_owned()) };

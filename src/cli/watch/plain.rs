@@ -72,10 +72,6 @@ impl Observer for Bar {
         self.clear();
     }
 
-    fn stop_requested(&self) -> bool {
-        false
-    }
-
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::Wait
     }
@@ -119,10 +115,6 @@ impl Observer for Lines {
 
     fn procedure_finished(&mut self, name: &str) {
         tell(&self.line(name));
-    }
-
-    fn stop_requested(&self) -> bool {
-        false
     }
 
     fn inspect(&mut self, _: &str) -> Inspection {

@@ -1,5 +1,5 @@
-//! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the
-//! second holds the rig now; by hand, where there are no steps, the first holds it. The signal of a file that is too large is caught too, and does nothing.
+//! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the second holds the
+//! rig now; by hand, where there are no steps, the first holds it. The signal of a file that is too large is caught too, and does nothing.
 
 use std::sync::Arc;
 
@@ -8,9 +8,11 @@ use signal_hook::iterator;
 
 use crate::rig::Wish;
 
-/// Signals are caught as long as this lives. Afterwards they do nothing: what a run leaves is still being written.
+/// Signals are caught as long as this lives. Afterwards they do nothing: what a run leaves is still being written. One for all
+/// of a run: what came while one was given up for another would be lost.
 pub struct Signals {
     handle: iterator::Handle,
+    wish: Wish,
 }
 
 impl Signals {
@@ -26,13 +28,18 @@ impl Signals {
     fn become_wishes(wish: &Wish, become_wish: fn(&Wish)) -> std::io::Result<Self> {
         let mut signals = iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
         let handle = signals.handle();
-        let wish = wish.clone();
+        let (wish, theirs) = (wish.clone(), wish.clone());
         std::thread::spawn(move || {
             for _ in signals.forever() {
-                become_wish(&wish);
+                become_wish(&theirs);
             }
         });
-        Ok(Self { handle })
+        Ok(Self { handle, wish })
+    }
+
+    /// What they become.
+    pub const fn wish(&self) -> &Wish {
+        &self.wish
     }
 }
 

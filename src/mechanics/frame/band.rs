@@ -31,6 +31,7 @@ impl SymmetricBand {
         Self { order, half_bandwidth, entries: vec![0.0; count] }
     }
 
+    /// Of these entries on the diagonal, and nothing beside it.
     #[must_use]
     pub fn diagonal(values: &[f64]) -> Self {
         Self { order: values.len(), half_bandwidth: 0, entries: values.to_vec() }
@@ -67,11 +68,13 @@ impl SymmetricBand {
         Ok(band)
     }
 
+    /// Rows, and columns.
     #[must_use]
     pub const fn order(&self) -> usize {
         self.order
     }
 
+    /// Diagonals below the main one.
     #[must_use]
     pub const fn half_bandwidth(&self) -> usize {
         self.half_bandwidth
@@ -88,11 +91,13 @@ impl SymmetricBand {
         &self.entries[self.start(k)..self.start(k) + self.order - k]
     }
 
+    /// [`Self::band`], to be written; `k` is at most the half bandwidth.
     pub fn band_mut(&mut self, k: usize) -> &mut [f64] {
         let start = self.start(k);
         &mut self.entries[start..start + self.order - k]
     }
 
+    /// (row, column), from 0; 0 outside the band.
     #[must_use]
     pub fn entry(&self, row: usize, column: usize) -> f64 {
         let k = row.abs_diff(column);
@@ -132,12 +137,14 @@ impl SymmetricBand {
         self.entries.clone_from(&other.entries);
     }
 
+    /// Every entry times `factor`.
     pub fn scale(&mut self, factor: f64) {
         for entry in &mut self.entries {
             *entry *= factor;
         }
     }
 
+    /// Whether every entry is exactly 0.
     #[must_use]
     pub fn is_zero(&self) -> bool {
         self.entries.iter().all(|entry| *entry == 0.0)

@@ -33,6 +33,7 @@ fn apart(passage: &mut Passage, striker: Striker, start: &Start, from: &Course, 
     }
     let mean: Vec<f64> = from.velocity.iter().zip(&to.velocity).map(|(from, to)| 0.5 * (from + to)).collect();
     Some(Passed {
+        structure: (),
         striker_displacement,
         striker_velocity,
         state: StepState::Free,
@@ -60,6 +61,7 @@ fn follow(law: &HertzContact, passage: &mut Passage, striker: Striker, start: &S
     let mut now = from;
     let mut mean = vec![0.0; response.len()];
     let mut passed = Passed {
+        structure: (),
         striker_displacement: start.striker_displacement,
         striker_velocity: start.striker_velocity,
         state: StepState::Free,

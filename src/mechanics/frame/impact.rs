@@ -303,6 +303,7 @@ impl FrameImpactSolver {
         // A force acts at both ends of a step, of which the trapezoid gives the structure the mean.
         let way = 0.5 * time_step * (start.velocity + speed);
         Passed {
+            structure: (),
             striker_displacement: displacement,
             striker_velocity: velocity,
             state: self.state,
@@ -344,6 +345,7 @@ impl FrameImpactSolver {
         };
     }
 
+    /// All floors at the end of the last step.
     #[must_use]
     pub const fn frame(&self) -> &FrameState {
         self.frame.state()
@@ -355,6 +357,7 @@ impl FrameImpactSolver {
         self.frame.taken(read)
     }
 
+    /// The striker and its contact there.
     #[must_use]
     pub const fn striker(&self) -> &StrikerState {
         &self.now

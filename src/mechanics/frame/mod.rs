@@ -41,6 +41,7 @@ pub struct FrameMatrices {
 }
 
 impl FrameMatrices {
+    /// Degrees of freedom.
     #[must_use]
     pub const fn order(&self) -> usize {
         self.mass.order()

@@ -4,7 +4,7 @@
 use super::band::SymmetricBand;
 use super::factor::{BandFactor, NotPositiveDefinite};
 use super::schemes::{Course, Moment, Schemes};
-use crate::mechanics::contact::StepState;
+use crate::mechanics::law::Advance;
 
 /// The striker of a frame, and where it strikes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,24 +28,7 @@ pub(super) struct Start {
 }
 
 /// What a step through a contact came to; the frame's own end is its course.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Passed {
-    pub striker_displacement: f64,
-    pub striker_velocity: f64,
-    pub state: StepState,
-    /// Impulse of the step over Δt, N.
-    pub contact_force: f64,
-    /// δp, m
-    pub indentation: f64,
-    /// Energy that left both bodies through their contact, J.
-    pub contact_loss: f64,
-    /// ∫ ẊᵀCẊ dt over the step, J.
-    pub damping_work: f64,
-    /// `F_lim` Δδp, J.
-    pub indentation_work: f64,
-    /// Contacts that began.
-    pub contacts: u32,
-}
+pub(super) type Passed = Advance<()>;
 
 /// A frame between two instants of a step.
 pub(super) struct Passage<'a> {
@@ -163,6 +146,7 @@ fn mixed(x: &[f64], factor: f64, y: &[f64]) -> Vec<f64> {
 }
 
 impl Course {
+    /// Where a frame is at this moment, a degree of freedom an entry.
     pub fn at(moment: Moment) -> Self {
         Self {
             displacement: moment.displacement.to_vec(),

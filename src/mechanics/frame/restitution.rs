@@ -8,7 +8,7 @@
 use super::passage::{Passage, Passed, Start, Striker};
 use super::schemes::Course;
 use crate::mechanics::contact::StepState;
-use crate::mechanics::law::{MOST_BOUNCES, SHORTEST_FLIGHT, locate};
+use crate::mechanics::law::{Collision, MOST_BOUNCES, locate};
 
 /// Separation speed = `coefficient` × closing speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,6 +122,7 @@ impl Restitution {
         // A pair that parts as the step begins has not touched in it.
         let touched = self.joined || way.impulse > 0.0;
         let passed = Passed {
+            structure: (),
             striker_displacement: way.striker_displacement,
             striker_velocity: way.striker_velocity,
             state: if touched { StepState::Contact } else { StepState::Free },
@@ -170,22 +171,21 @@ impl Restitution {
     fn collide(&mut self, way: &mut Way, may_bounce: bool) {
         let Striker { struck, mass, gravity } = way.striker;
         let floor = way.passage.struck_mass(struck);
-        let reduced_mass = floor * mass / (floor + mass);
         let closing = way.striker_velocity - way.structure.velocity[struck];
-        way.strike(reduced_mass * (1.0 + self.coefficient) * closing);
-        way.loss += 0.5 * reduced_mass * (1.0 - self.coefficient * self.coefficient) * closing * closing;
+        let collision = Collision::new(self.coefficient, floor, mass, closing);
+        way.strike(collision.impulse());
+        way.loss += collision.loss();
 
         // The striker falls with g alone: the floor's deceleration, and its own fall, bring them together again.
-        let separation = self.coefficient * closing;
         let deceleration = gravity - way.structure.acceleration[struck];
-        let dies_out = 2.0 * separation <= deceleration * SHORTEST_FLIGHT * way.time_step();
-        if dies_out || !may_bounce {
-            way.strike(-reduced_mass * separation);
-            way.loss += 0.5 * reduced_mass * separation * separation;
+        if collision.dies_out(deceleration, way.time_step()) || !may_bounce {
+            let (impulse, loss) = collision.joining();
+            way.strike(impulse);
+            way.loss += loss;
             way.striker_velocity = way.structure.velocity[struck];
             // F = Ms(g − Ẍ) with Ẍ = Ẍ_free + F/m of the struck floor.
             let free = way.structure.acceleration[struck];
-            way.press(reduced_mass * (gravity - free));
+            way.press(collision.reduced_mass * (gravity - free));
             self.joined = true;
         }
     }

@@ -276,6 +276,7 @@ impl Schemes {
         &self.effective
     }
 
+    /// Whether C is other than zero.
     pub const fn is_damped(&self) -> bool {
         self.damped
     }

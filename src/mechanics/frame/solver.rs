@@ -299,6 +299,7 @@ impl FrameSolver {
         state.time = time;
     }
 
+    /// All floors at the end of the last step.
     #[must_use]
     pub const fn state(&self) -> &FrameState {
         &self.state

@@ -12,11 +12,13 @@ pub struct ImpulseContact {
 }
 
 impl ImpulseContact {
+    /// No limit: the force is whatever stops the closing within the step.
     #[must_use]
     pub const fn rigid() -> Self {
         Self { force_limit: f64::INFINITY }
     }
 
+    /// At most `force`, N.
     #[must_use]
     pub const fn limited(force: f64) -> Self {
         Self { force_limit: force }

@@ -8,7 +8,7 @@ pub(crate) use hertz::Closing;
 pub use hertz::HertzContact;
 pub use impulse::ImpulseContact;
 pub use restitution::RestitutionContact;
-pub(crate) use restitution::{MOST_BOUNCES, SHORTEST_FLIGHT, locate};
+pub(crate) use restitution::{Collision, MOST_BOUNCES, locate};
 
 use crate::mechanics::contact::{ContactLaw, StepState};
 use crate::mechanics::integrator::Motion;
@@ -44,10 +44,10 @@ pub struct Start {
     pub indentation: f64,
 }
 
-/// … and at its end.
+/// … and at its end; of the structure, what `S` tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Advance {
-    pub structure: Motion,
+pub struct Advance<S = Motion> {
+    pub structure: S,
     pub striker_displacement: f64,
     pub striker_velocity: f64,
     pub state: StepState,

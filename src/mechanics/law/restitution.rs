@@ -7,7 +7,7 @@ use crate::mechanics::integrator::Motion;
 
 /// Flights shorter than this part of Δt are not followed: the bodies stay together. Larger, and bouncing ends too
 /// early; smaller, and a step near e = 1 takes more bounces than it is worth. Its error shrinks with Δt.
-pub(crate) const SHORTEST_FLIGHT: f64 = 1e-3;
+const SHORTEST_FLIGHT: f64 = 1e-3;
 /// Halvings of an interval of time: past the resolution of a double.
 const HALVINGS: u32 = 60;
 /// Impacts of one step that bounce. `SHORTEST_FLIGHT` lets no more into a step whose structure slows down steadily; past
@@ -23,9 +23,52 @@ pub struct RestitutionContact {
 }
 
 impl RestitutionContact {
+    /// e, from 0 (they stick) to 1 (nothing is lost); the bodies begin apart.
     #[must_use]
     pub const fn new(coefficient: f64) -> Self {
         Self { coefficient, joined: false }
+    }
+}
+
+/// Two bodies meet: what passes between them, whatever else moves.
+pub(crate) struct Collision {
+    coefficient: f64,
+    /// M Ms/(M + Ms), kg.
+    pub reduced_mass: f64,
+    /// m/s
+    closing: f64,
+}
+
+impl Collision {
+    /// Of two masses, kg, that close at this speed, m/s.
+    pub const fn new(coefficient: f64, mass: f64, striker_mass: f64, closing: f64) -> Self {
+        Self { coefficient, reduced_mass: mass * striker_mass / (mass + striker_mass), closing }
+    }
+
+    /// N·s
+    pub const fn impulse(&self) -> f64 {
+        self.reduced_mass * (1.0 + self.coefficient) * self.closing
+    }
+
+    /// J
+    pub const fn loss(&self) -> f64 {
+        0.5 * self.reduced_mass * (1.0 - self.coefficient * self.coefficient) * self.closing * self.closing
+    }
+
+    /// Speed at which they part, m/s.
+    const fn separation(&self) -> f64 {
+        self.coefficient * self.closing
+    }
+
+    /// Whether they are together again, slowing towards each other at `deceleration` (m/s²), after a flight that is not followed.
+    pub const fn dies_out(&self, deceleration: f64, time_step: f64) -> bool {
+        2.0 * self.separation() <= deceleration * SHORTEST_FLIGHT * time_step
+    }
+
+    /// The impulse (N·s) that takes their separation back, and what it loses (J): from then on they move as one.
+    pub const fn joining(&self) -> (f64, f64) {
+        let separation = self.separation();
+        (-self.reduced_mass * separation, 0.5 * self.reduced_mass * separation * separation)
     }
 }
 
@@ -115,18 +158,17 @@ impl RestitutionContact {
     /// An impact: the bodies part with what restitution leaves them, or go on as one.
     fn collide(&mut self, bodies: &Bodies, course: &mut Course, may_bounce: bool) {
         let Bodies { mass, striker_mass, gravity, time_step, .. } = *bodies;
-        let reduced_mass = mass * striker_mass / (mass + striker_mass);
         let closing = course.striker_velocity - course.structure.velocity;
-        course.strike(bodies, reduced_mass * (1.0 + self.coefficient) * closing);
-        course.loss += 0.5 * reduced_mass * (1.0 - self.coefficient * self.coefficient) * closing * closing;
+        let collision = Collision::new(self.coefficient, mass, striker_mass, closing);
+        course.strike(bodies, collision.impulse());
+        course.loss += collision.loss();
 
         // The striker falls with g alone: the structure's deceleration, and its own fall, bring them together again.
-        let separation = self.coefficient * closing;
         let deceleration = gravity - course.structure.acceleration;
-        let dies_out = 2.0 * separation <= deceleration * SHORTEST_FLIGHT * time_step;
-        if dies_out || !may_bounce {
-            course.strike(bodies, -reduced_mass * separation);
-            course.loss += 0.5 * reduced_mass * separation * separation;
+        if collision.dies_out(deceleration, time_step) || !may_bounce {
+            let (impulse, loss) = collision.joining();
+            course.strike(bodies, impulse);
+            course.loss += loss;
             course.striker_velocity = course.structure.velocity;
             course.structure.acceleration *= mass / (mass + striker_mass);
             course.structure.acceleration += striker_mass / (mass + striker_mass) * gravity;

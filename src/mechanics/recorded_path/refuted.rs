@@ -62,8 +62,8 @@ pub(super) fn left(path: &RecordedPath, possible: Vec<Rule>) -> Vec<Rule> {
 /// How many pairs of curves there are, and how far off each supposition foretells one by the other, of how far apart they began.
 fn off(path: &RecordedPath, supposed: &[RecordedPath]) -> (f64, Vec<Off>) {
     let mut walks: Vec<Again<'_>> = supposed.iter().map(|path| path.again(Distortion::NONE)).collect();
-    let begin = |branch: usize| path.readings[path.pieces[path.branches[branch].first_piece].begin];
-    let height = |branch: usize| (path.readings[path.branches[branch].end].force - begin(branch).force).abs();
+    let begin = |branch: usize| path.pieces[path.branches[branch].first_piece].begin;
+    let height = |branch: usize| (path.branches[branch].turn.force - begin(branch).force).abs();
     let all = 1..path.branches.len();
     let highest = all.clone().map(height).fold(0.0, f64::max);
     let tells = |branch: &usize| !path.branches[*branch].retraces && height(*branch) > LEAST_BRANCH * highest;

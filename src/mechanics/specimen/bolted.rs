@@ -18,6 +18,7 @@ pub struct BoltedJoint {
 }
 
 impl BoltedJoint {
+    /// A joint in the middle of its clearance, without load.
     #[must_use]
     pub fn new(joint: Bolted) -> Self {
         let friction = (joint.slip_force > 0.0).then(|| Bilinear::new(joint.stiffness, joint.slip_force, 0.0));

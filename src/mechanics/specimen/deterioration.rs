@@ -4,12 +4,13 @@
 //! After Ibarra, Medina & Krawinkler (*Hysteretic models that incorporate strength and stiffness deterioration*, Earthquake Engng Struct.
 //! Dyn. 34 (2005) 1489–1511), in the order of `IMKPinching` of OpenSees: each mode has its own γ, and takes the share
 //! β = (`E_i`/(γ F_y x_y − ΣE_j))^c, `E_i` what the excursion took, ΣE_j all with it; all of it where less is left than was taken.
-//! - Where the force is gone and the way goes on to a side: that side's strength, yield force and hardening alike, times 1 − `β_s`, down to the
-//!   residual; its post-capping line, by the force where it meets no displacement, times 1 − `β_c`; its peak times 1 + `β_a`.
+//! - Where the force is gone and the way goes on to a side: that side's strength, yield force and hardening alike, times 1 − `β_s`, down to
+//!   the residual; its post-capping line, by the force where it meets no displacement, times 1 − `β_c`; its peak times 1 + `β_a`.
 //! - Where a loaded excursion turns: the unloading stiffness of both sides times 1 − `β_k`, `E_i` and ΣE_j without what it gives back.
 
 use crate::plan::Deterioration;
 
+/// How far a hysteresis has worn; nothing does where no capacity is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wear {
     rule: Option<Deterioration>,
@@ -32,6 +33,7 @@ pub struct Wear {
 const ROUNDING: f64 = 1e-12;
 
 impl Wear {
+    /// As built: of `F_y` (N) and K (N/m).
     #[must_use]
     pub const fn new(rule: Option<Deterioration>, yield_force: f64, stiffness: f64) -> Self {
         Self {
@@ -53,6 +55,7 @@ impl Wear {
             .is_some_and(|rule| [rule.strength, rule.capping, rule.unloading, rule.reloading].into_iter().any(f64::is_finite))
     }
 
+    /// Takes the work of a move, J.
     pub fn work(&mut self, done: f64) {
         self.energy[1] += done;
     }

@@ -14,6 +14,7 @@ pub struct Fracture {
 }
 
 impl Fracture {
+    /// Whole so far.
     #[must_use]
     pub const fn new(of: SpecimenModel, at: Breaks) -> Self {
         Self { of, at, broken: false }

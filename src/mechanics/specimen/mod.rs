@@ -15,6 +15,7 @@ mod series;
 mod table;
 #[cfg(test)]
 mod tests;
+mod wearing_bilinear;
 
 use crate::plan::Behaviour;
 
@@ -27,6 +28,7 @@ pub use multilinear::Multilinear;
 pub use pinching::PinchedHysteresis;
 pub use series::Series;
 pub use table::{AlongTheCurve, PlasticCurve};
+pub use wearing_bilinear::WearingBilinear;
 
 /// What a virtual rig bends.
 pub trait RestoringForce {
@@ -57,6 +59,7 @@ impl RestoringForce for Elastic {
 pub enum SpecimenModel {
     Elastic(Elastic),
     Bilinear(Bilinear),
+    WearingBilinear(Box<WearingBilinear>),
     Multilinear(Multilinear),
     BoucWen(Box<BoucWen>),
     Pinched(Box<PinchedHysteresis>),
@@ -78,6 +81,9 @@ impl SpecimenModel {
             Behaviour::Beam(beam) => Self::Elastic(Elastic { stiffness: beam.stiffness }),
             Behaviour::Bilinear { stiffness, yield_force, hardening } => {
                 Self::Bilinear(Bilinear::new(*stiffness, *yield_force, *hardening))
+            }
+            Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration } => {
+                Self::WearingBilinear(Box::new(WearingBilinear::new(*stiffness, *yield_force, *hardening, *deterioration)))
             }
             Behaviour::Portal(portal) => Self::Bilinear(Bilinear::new(portal.stiffness, portal.capacity(), 0.0)),
             Behaviour::Multilinear { corners } => Self::Multilinear(Multilinear::new(corners)),
@@ -103,6 +109,7 @@ impl RestoringForce for SpecimenModel {
         match self {
             Self::Elastic(model) => model.move_to(displacement),
             Self::Bilinear(model) => model.move_to(displacement),
+            Self::WearingBilinear(model) => model.move_to(displacement),
             Self::Multilinear(model) => model.move_to(displacement),
             Self::BoucWen(model) => model.move_to(displacement),
             Self::Pinched(model) => model.move_to(displacement),
@@ -120,6 +127,7 @@ impl RestoringForce for SpecimenModel {
         match self {
             Self::Elastic(model) => model.initial_stiffness(),
             Self::Bilinear(model) => model.initial_stiffness(),
+            Self::WearingBilinear(model) => model.initial_stiffness(),
             Self::Multilinear(model) => model.initial_stiffness(),
             Self::BoucWen(model) => model.initial_stiffness(),
             Self::Pinched(model) => model.initial_stiffness(),

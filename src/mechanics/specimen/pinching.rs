@@ -30,6 +30,7 @@ pub struct PinchedHysteresis {
 }
 
 impl PinchedHysteresis {
+    /// As built, without load.
     #[must_use]
     pub fn new(plan: Pinching) -> Self {
         let yielded = plan.yield_force / plan.stiffness;
@@ -190,12 +191,12 @@ impl RestoringForce for PinchedHysteresis {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::tests::energy_along;
     use super::*;
 
     /// 1000 N/mm to 1 kN, perfectly plastic; κ_F = 0.4, κ_D = 0.5.
-    const PLAN: Pinching = Pinching {
+    pub(in super::super) const PLAN: Pinching = Pinching {
         stiffness: 1e6,
         yield_force: 1000.0,
         hardening: 0.0,

@@ -1,22 +1,11 @@
-//! Pinched hysteresis that wears: each mode of deterioration by hand, nothing where no capacity is stated, and no more energy taken than there
-//! is capacity for.
+//! Pinched hysteresis that wears: each mode of deterioration by hand, nothing where no capacity is stated, and no more energy taken than
+//! there is capacity for.
 
 use super::RestoringForce;
 use super::pinching::PinchedHysteresis;
+use super::pinching::tests::PLAN;
 use super::tests::energy_along;
 use crate::plan::{Capping, Deterioration, Pinching};
-
-/// 1000 N/mm to 1 kN, perfectly plastic; κ_F = 0.4, κ_D = 0.5.
-const PLAN: Pinching = Pinching {
-    stiffness: 1e6,
-    yield_force: 1000.0,
-    hardening: 0.0,
-    force_factor: 0.4,
-    displacement_factor: 0.5,
-    unloading_exponent: 0.0,
-    capping: None,
-    deterioration: None,
-};
 
 /// Capacities without end.
 const NO_WEAR: Deterioration = Deterioration {
@@ -82,8 +71,8 @@ const fn worn(rule: Deterioration) -> Pinching {
     Pinching { deterioration: Some(rule), ..TIRES }
 }
 
-/// To 5 mm it has taken 4.5 J, of which 0.5 J come back: β = 4/(40 − 4), and it unloads with 8/9 of K, to 1.125 mm before. A return before the
-/// force is gone and another turn there cost nothing more; 1 mm farther costs its 1 J.
+/// To 5 mm it has taken 4.5 J, of which 0.5 J come back: β = 4/(40 − 4), and it unloads with 8/9 of K, to 1.125 mm before. A return before
+/// the force is gone and another turn there cost nothing more; 1 mm farther costs its 1 J.
 #[test]
 fn the_unloading_stiffness_falls_by_what_it_took_until_it_turned() {
     let mut model = PinchedHysteresis::new(worn(Deterioration { unloading: 40.0, ..NO_WEAR }));
@@ -169,8 +158,8 @@ fn without_a_capacity_nothing_wears() {
     }
 }
 
-/// With several modes at once: what is left falls and never grows, no cycle gives back more than it took, and once the whole capacity has been
-/// taken, and not later, the strength is down to its residual. Where it reloads ever farther out, it never takes that much.
+/// With several modes at once: what is left falls and never grows, no cycle gives back more than it took, and once the whole capacity has
+/// been taken, and not later, the strength is down to its residual. Where it reloads ever farther out, it never takes that much.
 #[test]
 fn modes_together_wear_it_out_within_its_capacity() {
     // 1 N · 1 m is the unit: 60 J in all.

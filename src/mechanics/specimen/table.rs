@@ -42,6 +42,7 @@ pub struct PlasticCurve {
 }
 
 impl PlasticCurve {
+    /// The curve from where it carries no load, which nobody has left yet.
     #[must_use]
     pub fn new(table: Table) -> Self {
         let stiffness = table.initial_stiffness();

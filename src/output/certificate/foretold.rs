@@ -2,7 +2,7 @@
 //! with a prediction. Out: blocks; nothing of any other run. It foretells, and says so.
 
 use super::super::document::{Block, Column, Table, Text};
-use super::super::prediction::{PredictedLimit, PredictedProcedure};
+use super::super::prediction::{PredictedLimit, PredictedProcedure, PredictedZeros};
 use super::super::{Run, number};
 use super::words;
 use crate::plan::Limits;
@@ -23,6 +23,9 @@ pub(super) fn all(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::Table(Table { columns, rows: prediction.limits.iter().map(limit).collect() }));
     let columns = ["Procedure", "Kind", "Displacement", "Force", "Fastest", "Steps", "Rig time"].map(Column::short).into();
     body.push(Block::Table(Table { columns, rows: prediction.procedures.iter().map(procedure).collect() }));
+    if let Some(told) = &prediction.zeros {
+        body.push(Block::paragraph(Text::from(zeros(told))));
+    }
     if !prediction.requirements.is_empty() {
         let rows = prediction.requirements.iter().map(|each| vec![each.name.as_str().into(), each.verdict.into()]);
         let columns = vec![Column::words("Requirement, as predicted", 3), Column::short("Verdict")];
@@ -61,6 +64,23 @@ fn procedure(procedure: &PredictedProcedure) -> Vec<Text> {
         procedure.steps.to_string().into(),
         number::text(procedure.rig_time_s, Dimension::TIME).into(),
     ]
+}
+
+/// When they would be read, and the drift that leaves room for.
+fn zeros(told: &PredictedZeros) -> String {
+    let seconds = |value| number::text(value, Dimension::TIME);
+    let force = |value| number::text(value, Dimension::FORCE);
+    let again = match told.between_s {
+        Some(between) => format!("and again {} later", seconds(between)),
+        None => "and not again".to_owned(),
+    };
+    format!(
+        "The zeros of the rig would be read over {} before the test {again}. A steady drift of up to {} a second keeps them within the \
+         {} that are allowed.",
+        seconds(told.over_s),
+        force(told.steady_force_n_per_s),
+        force(told.allowed_force_n),
+    )
 }
 
 fn capital(text: &str) -> String {

@@ -2,7 +2,7 @@
 //! before any of it is believed. In: a run. Out: blocks.
 
 use super::super::document::{Block, Column, Style, Table, Text, Verdict as Stated};
-use super::super::{Run, amendment, deviations, expansion, number, summary};
+use super::super::{Run, amendment, deviations, expansion, number};
 use crate::plan::DecisionRule;
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
@@ -166,7 +166,7 @@ pub(super) fn deviations(run: &Run<'_>, body: &mut Vec<Block>) {
     });
     let remarks = remarks.map(|event| {
         let place = deviations::place(event.procedure.as_deref(), event.step);
-        format!("{}{place}: {}", capital(summary::event_kind(event.kind)), event.text)
+        format!("{}{place}: {}", capital(event.kind.word()), event.text)
     });
     let items: Vec<Text> = found.into_iter().chain(remarks).map(Text::from).collect();
     if !items.is_empty() {

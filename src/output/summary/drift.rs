@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::of_run::finite;
-use crate::plan::ZeroAfter;
 use crate::record::{AxisDrift, Drift, Zero};
 
 /// What the zeros of the rig did in the run, and how far they may drift.
@@ -82,11 +81,7 @@ impl DriftSummary {
             force_allowed: finite(drift.check.force),
             displacement_allowed: drift.check.displacement.and_then(finite),
             over: finite(drift.check.over),
-            after: match drift.check.after {
-                ZeroAfter::Start => "start",
-                ZeroAfter::Free => "free",
-                ZeroAfter::Nowhere => "nowhere",
-            },
+            after: drift.check.after.name(),
             holds: drift.held.count,
             longest_hold: finite(drift.held.longest).filter(|_| drift.held.count > 0),
             grown: drift.held.grown.and_then(finite),

@@ -10,7 +10,7 @@ use super::{
 use crate::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::si_unit;
-use crate::record::{EventKind, NamedResult, Outcome, ProcedureRecord};
+use crate::record::{NamedResult, Outcome, ProcedureRecord};
 use crate::schema;
 use crate::uncertainty::{Known, known, known_entries};
 use crate::verdict::{Bound, ConditionOutcome, RequirementOutcome};
@@ -65,7 +65,7 @@ impl Summary {
                     wall_time_s: finite(event.time),
                     procedure: event.procedure.clone(),
                     step: event.step,
-                    kind: event_kind(event.kind),
+                    kind: event.kind.word(),
                     text: event.text.clone(),
                 })
                 .collect(),
@@ -92,21 +92,6 @@ fn amends(amends: &Amends) -> AmendsSummary {
         changes: amendment.changes.iter().map(change).collect(),
     });
     AmendsSummary { report_id: amends.report_id.clone(), amendments: amendments.collect() }
-}
-
-/// The word of an event kind in the summary and the certificate.
-pub(in crate::output) const fn event_kind(kind: EventKind) -> &'static str {
-    match kind {
-        EventKind::Note => "note",
-        EventKind::Inspection => "inspection",
-        EventKind::LimitBreach => "limit breach",
-        EventKind::Hold => "hold",
-        EventKind::Fault => "fault",
-        EventKind::Mended => "mended",
-        EventKind::Remark => "remark",
-        EventKind::Resume => "resume",
-        EventKind::Amendment => "amendment",
-    }
 }
 
 /// The condition that decides a requirement: the worst, and of equal ones the first.

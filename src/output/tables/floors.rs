@@ -5,72 +5,104 @@
 use polars::prelude::Column;
 
 use super::{integers, numbers, texts};
-use crate::record::{FloorStep, Floors, ImpactStep, ShakeStep, UnloadStep};
+use crate::record::{FloorStep, Floors, FloorsAt, ImpactStep, ShakeStep, UnloadStep};
 
-/// A storey at the end of a step, with what else there is of the step.
-struct Row<'a, F, S> {
-    step: S,
-    floors: &'a F,
+/// A storey at the end of a step.
+struct Row<'a, S> {
+    step: &'a S,
+    floors: FloorsAt<'a>,
     floor: usize,
     drift: f64,
     shear: f64,
 }
 
 /// The storeys of a step after each other, from the ground up.
-fn rows<'a, F: Floors + 'a, S: Copy>(steps: impl Iterator<Item = (&'a F, S)>) -> Vec<Row<'a, F, S>> {
-    let storeys = |(floors, step): (&'a F, S)| {
+fn rows<'a, F: Floors + 'a, S>(steps: impl Iterator<Item = (&'a F, &'a S)>) -> Vec<Row<'a, S>> {
+    let storeys = |(floors, step): (&'a F, &'a S)| {
         let storeys = floors.drift().into_iter().zip(floors.shear()).enumerate();
-        storeys.map(move |(floor, (drift, shear))| Row { step, floors, floor, drift, shear })
+        storeys.map(move |(floor, (drift, shear))| Row { step, floors: floors.at(), floor, drift, shear })
     };
     steps.flat_map(storeys).collect()
 }
 
-pub(super) fn shake(steps: &[ShakeStep]) -> Vec<Column> {
-    let rows = rows(steps.iter().map(|step| (step, ())));
-    let of = |name, read: fn(&Row<'_, ShakeStep, ()>) -> f64| numbers(name, &rows, read);
+/// The rows of steps that say all of their floors themselves.
+fn rows_of<S: Floors>(steps: &[S]) -> Vec<Row<'_, S>> {
+    rows(steps.iter().map(|step| (step, step)))
+}
+
+/// Which storey, from 1.
+fn storey<S>(rows: &[Row<'_, S>]) -> Column {
+    integers("storey", rows, |row| row.floor as u64 + 1)
+}
+
+/// Where the floors were sent, and are.
+fn sent<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     vec![
-        integers("step", &rows, |row| row.floors.step),
-        integers("storey", &rows, |row| row.floor as u64 + 1),
-        of("time_s", |row| row.floors.time),
-        of("wall_time_s", |row| row.floors.wall_time),
-        of("ground_acceleration_m_per_s2", |row| row.floors.ground_acceleration),
-        of("command_m", |row| row.floors.command[row.floor]),
-        of("displacement_m", |row| row.floors.displacement[row.floor]),
-        of("computed_m", |row| row.floors.computed[row.floor]),
-        of("velocity_m_per_s", |row| row.floors.velocity[row.floor]),
-        of("acceleration_m_per_s2", |row| row.floors.acceleration[row.floor]),
-        of("restoring_force_n", |row| row.floors.restoring_force[row.floor]),
-        of("drift_m", |row| row.drift),
-        of("storey_shear_n", |row| row.shear),
-        of("kinetic_energy_j", |row| row.floors.energies.kinetic),
-        of("restoring_energy_j", |row| row.floors.energies.restoring),
-        of("damping_energy_j", |row| row.floors.energies.damping),
-        of("input_energy_j", |row| row.floors.energies.input),
-        of("energy_error_j", |row| row.floors.energies.error),
-        of("tracking_energy_error_j", |row| row.floors.tracking[row.floor].energy_error),
-        of("tracking_indicator_m2", |row| row.floors.tracking[row.floor].indicator),
+        numbers("command_m", rows, |row| row.floors.command[row.floor]),
+        numbers("displacement_m", rows, |row| row.floors.measured[row.floor]),
     ]
+}
+
+/// What was computed of them.
+fn computed<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+    vec![
+        numbers("computed_m", rows, |row| row.floors.computed[row.floor]),
+        numbers("velocity_m_per_s", rows, |row| row.floors.velocity[row.floor]),
+        numbers("acceleration_m_per_s2", rows, |row| row.floors.acceleration[row.floor]),
+    ]
+}
+
+/// What they carry, and the storeys with them.
+fn carried<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+    vec![
+        numbers("restoring_force_n", rows, |row| row.floors.restoring_force[row.floor]),
+        numbers("drift_m", rows, |row| row.drift),
+        numbers("storey_shear_n", rows, |row| row.shear),
+    ]
+}
+
+/// What following them has come to.
+fn followed<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+    vec![
+        numbers("tracking_energy_error_j", rows, |row| row.floors.tracking[row.floor].energy_error),
+        numbers("tracking_indicator_m2", rows, |row| row.floors.tracking[row.floor].indicator),
+    ]
+}
+
+pub(super) fn shake(steps: &[ShakeStep]) -> Vec<Column> {
+    let rows = rows_of(steps);
+    let of = |name, read: fn(&Row<'_, ShakeStep>) -> f64| numbers(name, &rows, read);
+    let step = vec![
+        integers("step", &rows, |row| row.step.step),
+        storey(&rows),
+        of("time_s", |row| row.floors.time),
+        of("wall_time_s", |row| row.step.wall_time),
+        of("ground_acceleration_m_per_s2", |row| row.step.ground_acceleration),
+    ];
+    let energies = vec![
+        of("kinetic_energy_j", |row| row.step.energies.kinetic),
+        of("restoring_energy_j", |row| row.step.energies.restoring),
+        of("damping_energy_j", |row| row.step.energies.damping),
+        of("input_energy_j", |row| row.step.energies.input),
+        of("energy_error_j", |row| row.step.energies.error),
+    ];
+    [step, sent(&rows), computed(&rows), carried(&rows), energies, followed(&rows)].concat()
 }
 
 /// Of an impact on a storey: what the striker did, and the floors beside it.
 pub(super) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<Column> {
     let rows = rows(floors.iter().zip(steps));
-    let of = |name, read: fn(&Row<'_, FloorStep, &ImpactStep>) -> f64| numbers(name, &rows, read);
-    vec![
+    let of = |name, read: fn(&Row<'_, ImpactStep>) -> f64| numbers(name, &rows, read);
+    let step = vec![
         integers("step", &rows, |row| row.step.step),
-        integers("storey", &rows, |row| row.floor as u64 + 1),
+        storey(&rows),
         of("time_s", |row| row.step.time),
         of("wall_time_s", |row| row.step.wall_time),
         texts("state", &rows, |row| row.step.state.name()),
-        of("command_m", |row| row.floors.command[row.floor]),
-        of("displacement_m", |row| row.floors.displacement[row.floor]),
-        of("computed_m", |row| row.floors.computed[row.floor]),
-        of("velocity_m_per_s", |row| row.floors.velocity[row.floor]),
-        of("acceleration_m_per_s2", |row| row.floors.acceleration[row.floor]),
-        of("restoring_force_n", |row| row.floors.restoring_force[row.floor]),
-        of("drift_m", |row| row.drift),
-        of("storey_shear_n", |row| row.shear),
-        of("storey_energy_j", |row| row.floors.storey_energy[row.floor]),
+    ];
+    let storeys = floors.iter().zip(steps).flat_map(|(floors, _)| floors.storey_energy.iter().copied());
+    let striker = vec![
+        Column::new("storey_energy_j".into(), storeys.collect::<Vec<f64>>()),
         of("contact_force_n", |row| row.step.contact_force),
         of("striker_displacement_m", |row| row.step.striker_displacement),
         of("striker_velocity_m_per_s", |row| row.step.striker_velocity),
@@ -83,25 +115,19 @@ pub(super) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<C
         of("indentation_energy_j", |row| row.step.energies.indentation),
         of("weight_work_j", |row| row.step.energies.weight),
         of("energy_error_j", |row| row.step.energies.error),
-        of("tracking_energy_error_j", |row| row.floors.tracking[row.floor].energy_error),
-        of("tracking_indicator_m2", |row| row.floors.tracking[row.floor].indicator),
-    ]
+    ];
+    [step, sent(&rows), computed(&rows), carried(&rows), striker, followed(&rows)].concat()
 }
 
 /// Of an unloading; step 0 is where it began.
 pub(super) fn unloading(steps: &[UnloadStep]) -> Vec<Column> {
-    let rows = rows(steps.iter().map(|step| (step, ())));
-    let of = |name, read: fn(&Row<'_, UnloadStep, ()>) -> f64| numbers(name, &rows, read);
-    let tangents: Vec<Option<f64>> = rows.iter().map(|row| row.floors.tangent_stiffness[row.floor]).collect();
-    vec![
-        integers("step", &rows, |row| row.floors.step),
-        integers("storey", &rows, |row| row.floor as u64 + 1),
-        of("wall_time_s", |row| row.floors.wall_time),
-        of("command_m", |row| row.floors.command[row.floor]),
-        of("displacement_m", |row| row.floors.displacement[row.floor]),
-        of("restoring_force_n", |row| row.floors.restoring_force[row.floor]),
-        of("drift_m", |row| row.drift),
-        of("storey_shear_n", |row| row.shear),
-        Column::new("tangent_stiffness_n_per_m".into(), tangents),
-    ]
+    let rows = rows_of(steps);
+    let step = vec![
+        integers("step", &rows, |row| row.step.step),
+        storey(&rows),
+        numbers("wall_time_s", &rows, |row| row.step.wall_time),
+    ];
+    let tangents: Vec<Option<f64>> = rows.iter().map(|row| row.step.tangent_stiffness[row.floor]).collect();
+    let tangents = vec![Column::new("tangent_stiffness_n_per_m".into(), tangents)];
+    [step, sent(&rows), carried(&rows), tangents].concat()
 }

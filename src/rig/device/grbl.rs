@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use super::asking::Asking;
 use super::{Answer, Device, DeviceFault, DeviceIdentity, Move, Sample, Talk, one_axis};
-use crate::plan::Limits;
 use crate::rig::dialect::grbl::{self, State, Status, Word};
 use crate::rig::{JUST_STARTED, Tally};
 
@@ -24,6 +23,7 @@ const TOP_SPEED: u64 = 110;
 /// Steps per mm of X.
 const STEPS: u64 = 100;
 
+/// The frame at the other end of a line.
 pub struct GrblDevice {
     talk: Talk,
     asking: Asking,
@@ -212,6 +212,7 @@ fn fault(word: &Word, known: bool) -> Option<DeviceFault> {
     }
 }
 
+/// It is told no limits of a run: its travel is a setting of the machine, written to memory that wears.
 impl Device for GrblDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.known = false;
@@ -308,11 +309,6 @@ impl Device for GrblDevice {
 
     fn emergency(&self) -> Vec<u8> {
         grbl::HOLD.to_vec()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        // Its travel is a setting of the machine, written to memory that wears: a run does not touch it.
-        Ok(())
     }
 
     fn tally(&self) -> Tally {

@@ -1,6 +1,7 @@
 //! Transcripts of Grbl: what is sent, what comes back, what it means.
 
 use super::*;
+use crate::plan::Limits;
 use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
 
 const SETTINGS: &str = "$1=255\r\n$10=1\r\n$13=0\r\n$20=1\r\n$21=1\r\n$22=1\r\n$100=400.000\r\n$110=500.000\r\nok\r\n";

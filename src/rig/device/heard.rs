@@ -3,7 +3,7 @@
 //! the move. It asks nothing, and knows no rig and no record.
 
 use super::{DeviceFault, DeviceIdentity, Sample};
-use super::{grbl, hx711, indicator, instron, mark10, modbus, native, nees, scpi};
+use super::{grbl, hx711, indicator, instron, mark10, mark10_gauge, modbus, native, nees, scpi};
 use crate::plan::Dialect;
 use crate::rig::dialect::grbl::jog;
 use crate::rig::dialect::instron::{Movement, movement, number, status};
@@ -71,7 +71,7 @@ impl<'a> Teller<'a> {
             Dialect::Hx711 => Some(hx711::introduced()),
             Dialect::Indicator => Some(indicator::introduced()),
             Dialect::Mark10 => Some(mark10::stand_introduced()),
-            Dialect::Mark10Gauge => Some(mark10::gauge_introduced()),
+            Dialect::Mark10Gauge => Some(mark10_gauge::introduced()),
             Dialect::Modbus(map) => Some(modbus::introduced(map)),
         }
     }
@@ -97,7 +97,7 @@ impl<'a> Teller<'a> {
             Dialect::Hx711 => alone(hx711::decoded(first.clone())),
             Dialect::Indicator => alone(indicator::decoded(first.clone())),
             Dialect::Scpi { newtons_per_unit } => alone(scpi::decoded(first.clone(), newtons_per_unit)),
-            Dialect::Mark10Gauge => alone(mark10::weighed(first.clone())),
+            Dialect::Mark10Gauge => alone(mark10_gauge::weighed(first.clone())),
             Dialect::Mark10 => of_stand(replies),
             Dialect::Instron => self.full_scales.map_or_else(Vec::new, |full_scales| of_console(replies, full_scales)),
             Dialect::Modbus(map) => of_registers(replies, map),

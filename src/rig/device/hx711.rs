@@ -1,11 +1,11 @@
 //! A load cell that sends raw counts by itself, one a line. In: nothing. Out: a count that was begun after it was wanted.
 //! It moves nothing and does not know what a count weighs.
 
-use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, stream};
-use crate::plan::Limits;
+use super::{DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk, stream};
 use crate::rig::Tally;
 use crate::rig::dialect::hx711::{self, RAILS};
 
+/// The converter at the other end of a line.
 pub struct Hx711Device {
     talk: Talk,
 }
@@ -32,34 +32,14 @@ pub(super) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     Ok(Sample { force: Some(Force::Counts { count, low, high }), flags, raw: vec![line], ..Sample::default() })
 }
 
-impl Device for Hx711Device {
+impl Gauge for Hx711Device {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.sample()?;
         Ok(introduced())
     }
 
-    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
-        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
-    }
-
-    fn start(&mut self, _: &Move) -> Result<(), DeviceFault> {
-        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
-    }
-
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         decoded(stream::fresh_line(&mut self.talk)?)
-    }
-
-    fn hold(&mut self) -> Result<(), DeviceFault> {
-        Ok(())
-    }
-
-    fn emergency(&self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {
@@ -128,6 +108,5 @@ mod tests {
         }
         let (mut device, _, _) = device();
         assert_eq!(device.identify(), Err(DeviceFault::Silent { seconds: 0.5 }));
-        assert!(device.encode(&[0.0], 1.0).is_err());
     }
 }

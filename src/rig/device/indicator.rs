@@ -2,11 +2,11 @@
 //! begun after it was wanted, with what the indicator says of it. It moves nothing.
 
 use super::asking::Asking;
-use super::{Answer, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, stream};
-use crate::plan::Limits;
+use super::{Answer, DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk, stream};
 use crate::rig::Tally;
 use crate::rig::dialect::indicator::{self, Status};
 
+/// The indicator at the other end of a line.
 pub struct IndicatorDevice {
     talk: Talk,
     asking: Asking,
@@ -48,7 +48,7 @@ pub(super) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     Ok(Sample { force, flags, raw: vec![line], ..Sample::default() })
 }
 
-impl Device for IndicatorDevice {
+impl Gauge for IndicatorDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.sends_by_itself = match stream::fresh_line(&mut self.talk) {
             Ok(_) => true,
@@ -59,28 +59,8 @@ impl Device for IndicatorDevice {
         Ok(introduced())
     }
 
-    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
-        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
-    }
-
-    fn start(&mut self, _: &Move) -> Result<(), DeviceFault> {
-        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
-    }
-
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         decoded(self.line()?)
-    }
-
-    fn hold(&mut self) -> Result<(), DeviceFault> {
-        Ok(())
-    }
-
-    fn emergency(&self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {
@@ -165,6 +145,6 @@ mod tests {
             assert!(matches!(device.sample(), Err(DeviceFault::NoReading { .. })), "{line}");
         }
         let (mut device, _) = device();
-        assert!(matches!(device.identify(), Err(DeviceFault::Silent { .. })) && device.encode(&[0.0], 1.0).is_err());
+        assert!(matches!(device.identify(), Err(DeviceFault::Silent { .. })));
     }
 }

@@ -4,7 +4,6 @@
 
 use super::unnumbered::ask_line;
 use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
-use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::instron::{self, Channel, Movement, Question, Trouble};
 
@@ -16,6 +15,7 @@ const TRIES: u32 = 3;
 const SAME_TARGET: f64 = 1e-7;
 const SAME_TIME: f64 = 1e-3;
 
+/// The console at the other end of a line.
 pub struct Instron {
     talk: Talk,
     position: Reader,
@@ -231,10 +231,6 @@ impl Device for Instron {
 
     fn emergency(&self) -> Vec<u8> {
         instron::hold().concat()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {

@@ -1,10 +1,9 @@
-//! A Mark-10 stand with its gauge, and the gauge alone. In: metres and metres a second. Out: travel limits that are
+//! A Mark-10 stand with its gauge. In: metres and metres a second. Out: travel limits that are
 //! targets, read back before the stand sets off; readings in newtons. The travel is in hundredths of a millimetre, and
 //! so are the targets. Lines have no check: what came unasked is thrown away, and after a silence all is asked twice.
 
 use super::unnumbered::ask_line;
 use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
-use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::mark10::{self, Side, Status};
 
@@ -17,6 +16,7 @@ const OVERRUN: f64 = 5e-5;
 /// Twice, since one may be taken for a digit of a setting that was cut short.
 const EMERGENCY: &[u8] = b"ss";
 
+/// The stand at the other end of a line.
 pub struct Mark10 {
     talk: Talk,
     /// Travel as last read, m.
@@ -159,75 +159,14 @@ impl Device for Mark10 {
         EMERGENCY.to_vec()
     }
 
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
-    }
-
     fn tally(&self) -> Tally {
         self.talk.tally()
     }
 }
 
-/// The gauge alone on its port: it weighs and does not move.
-pub struct Mark10Gauge {
-    talk: Talk,
-}
-
-impl Mark10Gauge {
-    #[must_use]
-    pub const fn new(talk: Talk) -> Self {
-        Self { talk }
-    }
-}
-
-impl Device for Mark10Gauge {
-    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
-        self.sample()?;
-        Ok(gauge_introduced())
-    }
-
-    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
-        Err(DeviceFault::Unfit("a gauge does not move".to_owned()))
-    }
-
-    fn start(&mut self, _: &Move) -> Result<(), DeviceFault> {
-        Err(DeviceFault::Unfit("a gauge does not move".to_owned()))
-    }
-
-    fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        weighed(ask_line(&mut self.talk, mark10::ASK_FORCE, mark10::ENDING)?)
-    }
-
-    fn hold(&mut self) -> Result<(), DeviceFault> {
-        Ok(())
-    }
-
-    fn emergency(&self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
-    }
-
-    fn tally(&self) -> Tally {
-        self.talk.tally()
-    }
-}
-
-/// Who answers as a stand, and as a gauge alone.
+/// Who answers as a stand.
 pub(super) fn stand_introduced() -> DeviceIdentity {
     DeviceIdentity { model: "Mark-10 stand".to_owned(), ..DeviceIdentity::default() }
-}
-
-pub(super) fn gauge_introduced() -> DeviceIdentity {
-    DeviceIdentity { model: "Mark-10 gauge".to_owned(), ..DeviceIdentity::default() }
-}
-
-/// The force of a gauge's answer.
-pub(super) fn weighed(said: Vec<u8>) -> Result<Sample, DeviceFault> {
-    let force = newtons(&said)?;
-    Ok(Sample { force: Some(force), raw: vec![said], ..Sample::default() })
 }
 
 /// Speed and travel limit of a move to `target` (m) at no more than `speed` (m/s), which goes to this side.

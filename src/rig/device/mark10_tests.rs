@@ -1,6 +1,7 @@
 //! Transcripts of a stand with its gauge: limits read back, lost letters, silences, overruns.
 
 use super::*;
+use crate::rig::device::Mark10Gauge;
 use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
 
 const T: f64 = 0.2;

@@ -2,6 +2,7 @@
 //! does nothing else: settling, limits, medians and the record are not its business.
 
 mod asking;
+mod gauge;
 mod grbl;
 mod heard;
 mod hx711;
@@ -9,6 +10,7 @@ mod indicator;
 mod instron;
 mod line;
 mod mark10;
+mod mark10_gauge;
 mod modbus;
 mod native;
 mod nees;
@@ -23,13 +25,15 @@ use crate::plan::Limits;
 
 use super::{LastMove, Tally};
 
+pub use gauge::Gauge;
 pub use grbl::GrblDevice;
 pub use heard::{Heard, Teller};
 pub use hx711::Hx711Device;
 pub use indicator::IndicatorDevice;
 pub use instron::Instron;
 pub use line::{Answer, LONGEST_LINE, Missed, SLICE, Talk};
-pub use mark10::{Mark10, Mark10Gauge};
+pub use mark10::Mark10;
+pub use mark10_gauge::Mark10Gauge;
 pub use modbus::Modbus;
 pub use native::{NativeDevice, SIMULATED, native_identity};
 pub use nees::Nees;
@@ -166,7 +170,7 @@ pub enum DeviceFault {
     Interrupted,
 }
 
-/// One device on one port. All calls end within a bounded time.
+/// One device on one port. All calls end within a bounded time. One that only weighs is a [`Gauge`].
 pub trait Device: Send {
     /// Opens the conversation: asks who it is, checks that it is set up as it must be. Moves nothing.
     ///
@@ -261,11 +265,14 @@ pub trait Device: Send {
     /// Bytes that stop the device whatever it is doing, sent without waiting for an answer. Empty: there are none.
     fn emergency(&self) -> Vec<u8>;
 
-    /// Tells the device the limits of this run, one entry an axis, where it can hold them too. It may only narrow its own.
+    /// Tells the device the limits of this run, one entry an axis, where it can hold them too: most keep none but their own. It may
+    /// only narrow those.
     ///
     /// # Errors
     /// It refuses them.
-    fn narrow_limits(&mut self, limits: &[Limits]) -> Result<(), DeviceFault>;
+    fn narrow_limits(&mut self, _limits: &[Limits]) -> Result<(), DeviceFault> {
+        Ok(())
+    }
 
     /// The last move it remembers, from `identify`.
     fn last_move(&self) -> Option<LastMove> {

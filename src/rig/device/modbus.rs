@@ -5,7 +5,7 @@
 
 use super::unnumbered::{clear, fault, fresh, order};
 use super::{Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis};
-use crate::plan::{Limits, ModbusMap, ModbusNumber};
+use crate::plan::{ModbusMap, ModbusNumber};
 use crate::rig::Tally;
 use crate::rig::dialect::modbus::{self, Fault, Table};
 
@@ -19,6 +19,7 @@ const IMPLAUSIBLE_FORCE: f64 = 1e12;
 /// Smaller than any reading but zero: what a float becomes when its words are swapped.
 const IMPLAUSIBLY_SMALL: f64 = 1e-30;
 
+/// The drive, or the transmitter, at the other end of a line.
 pub struct Modbus {
     talk: Talk,
     map: ModbusMap,
@@ -154,10 +155,6 @@ impl Device for Modbus {
 
     fn emergency(&self) -> Vec<u8> {
         self.stop_frame().unwrap_or_default()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {

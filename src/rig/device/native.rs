@@ -15,6 +15,7 @@ mod way;
 /// How the model of a simulator begins.
 pub const SIMULATED: &str = "PSD-SIM";
 
+/// The firmware at the other end of a line.
 pub struct NativeDevice {
     talk: Talk,
     /// Of the last request.

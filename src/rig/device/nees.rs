@@ -6,7 +6,6 @@
 //! asked for one after the other.
 
 use super::{Answer, Channel, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
-use crate::plan::Limits;
 use crate::rig::Tally;
 use crate::rig::dialect::nees::{self, Reply};
 
@@ -15,6 +14,7 @@ const SESSION: &str = "psd";
 /// Steps announced when a session opens: a coordinator must say a number, and rigs only show it.
 const ANNOUNCED_STEPS: u32 = 1_000_000;
 
+/// The site at the other end of a line.
 pub struct Nees {
     talk: Talk,
     /// One an axis.
@@ -200,10 +200,6 @@ impl Device for Nees {
 
     fn emergency(&self) -> Vec<u8> {
         self.executing.as_deref().map(nees::cancel).unwrap_or_default()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {

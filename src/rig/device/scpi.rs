@@ -1,14 +1,14 @@
 //! A transducer that is asked `READ?`. In: nothing. Out: a force, by the plan's N per reading unit. After a silence it is
 //! asked who it is until it says so: whatever was late has then come before. It moves nothing.
 
-use super::{Answer, Channel, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk};
-use crate::plan::Limits;
+use super::{Answer, Channel, DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk};
 use crate::rig::Tally;
 use crate::rig::dialect::scpi;
 
 /// How often a question is put before it is given up.
 const ATTEMPTS: u32 = 3;
 
+/// The meter at the other end of a line.
 pub struct ScpiDevice {
     talk: Talk,
     /// One a channel.
@@ -117,7 +117,7 @@ pub(super) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample,
     Ok(Sample { force, flags, others, raw: vec![line], ..Sample::default() })
 }
 
-impl Device for ScpiDevice {
+impl Gauge for ScpiDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.name = Vec::new();
         self.catch_up()?;
@@ -128,28 +128,8 @@ impl Device for ScpiDevice {
         self.newtons_per_unit.len()
     }
 
-    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
-        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
-    }
-
-    fn start(&mut self, _: &Move) -> Result<(), DeviceFault> {
-        Err(DeviceFault::Unfit("a load cell cannot move".to_owned()))
-    }
-
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         decoded(self.read()?, &self.newtons_per_unit)
-    }
-
-    fn hold(&mut self) -> Result<(), DeviceFault> {
-        Ok(())
-    }
-
-    fn emergency(&self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
     }
 
     fn tally(&self) -> Tally {
@@ -249,6 +229,5 @@ mod tests {
         let began = device.talk.now();
         assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
         assert!(device.talk.now() - began < 10.0 * 0.5);
-        assert!(device.encode(&[0.0], 1.0).is_err());
     }
 }

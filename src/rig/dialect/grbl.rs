@@ -52,6 +52,7 @@ pub struct Status {
     pub position: f64,
 }
 
+/// What a status report says that it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,

@@ -9,6 +9,7 @@ pub const READ: &[u8] = b"READ\r\n";
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
 
+/// One line of an indicator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weight {
     pub status: Status,

@@ -115,6 +115,7 @@ impl Bounds {
     }
 }
 
+/// The first word of a reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Ack,
@@ -175,6 +176,7 @@ pub struct Hello {
     pub last: Option<LastMove>,
 }
 
+/// What a rig says that it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,

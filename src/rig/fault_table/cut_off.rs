@@ -4,7 +4,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::axes::played;
-use super::stage::{header, open};
+use super::stage::{header, open, stand};
 use crate::plan::Plan;
 use crate::record::journal::testing::{Killed, PowerLoss};
 use crate::record::journal::{Durability, EntryKind, Journal};
@@ -12,7 +12,7 @@ use crate::record::{Outcome, Record};
 use crate::rig::Rig as _;
 use crate::run::Unwatched;
 use crate::run::tape::{self, Bands, RigBody};
-use crate::simulator::InProcess;
+use crate::simulator::{InProcess, Log};
 
 /// Runs the plan until this write or sync of its record, at which psd dies, before it or `after` it; whether it did.
 pub(super) fn killed(plan: &Plan, stand: &InProcess, disk: &PowerLoss, (call, after): (usize, bool)) -> bool {
@@ -54,4 +54,22 @@ pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
     let resumed = tape::resume(plan, played(disk).1, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     assert_eq!((resumed.mismatch, resumed.record.outcome.clone()), (None, Outcome::Completed), "call {call}");
     GoneOn::ToItsEnd(Box::new(resumed.record))
+}
+
+/// The run is cut off at every third write or sync of its record from `first` on, left to `meanwhile`, and gone on with: each record, and
+/// its disk, is held to `whole`.
+pub(super) fn cut_off_anywhere(plan: &Plan, first: usize, meanwhile: impl Fn(&InProcess), whole: impl Fn(&Record, &PowerLoss)) {
+    for (kills, call) in (first..).step_by(3).enumerate() {
+        let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
+        if !killed(plan, &stand, &disk, (call, call % 2 == 0)) {
+            assert!(kills > 10, "{kills}");
+            return;
+        }
+        meanwhile(&stand);
+        match gone_on(plan, &stand, &disk, call) {
+            GoneOn::ToItsEnd(record) => whole(&record, &disk),
+            GoneOn::Ended => {}
+            GoneOn::NeverBegun => panic!("call {call}: the rig was opened before it"),
+        }
+    }
 }

@@ -24,10 +24,11 @@
 //! | 18–22 | the same of one axis of two | `axes::*` |
 //! | 10, 14, 18, 25, 26 | the same of axes that do not stop | `gliding::*` |
 //! | 10, 12, 16, 20–22 | the same of devices of one axis each, of a meter of several channels, of several sites | `several::*` |
-//! | 29 | panic, abort | `tests/system/ended.rs`, for this table is of one process |
+//! | 28 | signals, a terminal that dies | `tests/system/signals.rs`, for this table is of one process |
+//! | 29 | panic, abort | `tests/system/ended.rs`, for the same reason |
 //! | 30 | a record that says two things, in every dialect | `forged::*`, `forged_dialects::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
-//! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample` |
+//! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing` |
 
 mod axes;
 mod control_points;

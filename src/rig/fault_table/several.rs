@@ -2,15 +2,13 @@
 //! own, and sites that speak NEES, each behind its own. A run is the virtual one; what one device does holds every axis and is
 //! said of that device; and what one site refuses no other begins.
 
-use super::cut_off::{GoneOn, gone_on, killed};
-use super::stage::{Ended, run, run_without, stand};
-use super::two_axes::{LINK, checked, ideal, results, upper, with_devices};
+use super::cut_off::cut_off_anywhere;
+use super::stage::{Ended, run, run_without};
+use super::two_axes::{LINK, checked, ideal, results, same, upper, with_devices};
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
-use crate::record::journal::testing::PowerLoss;
 use crate::rig::Tally;
 use crate::rig::failpoint::Guarding;
-use crate::simulator::Log;
 
 const LOWER: &str = "    axis(gate:";
 const UPPER: &str = "    axis(sign: negative,";
@@ -53,12 +51,8 @@ pub(super) fn plan(text: &str) -> Plan {
     checked(text, "frame_rig")
 }
 
-fn same(real: &[(&str, f64)], ideal: &[(&str, f64)], near: f64) {
-    assert!(real.len() == ideal.len() && real.len() > 8);
-    for ((name, real), (_, ideal)) in real.iter().zip(ideal) {
-        let near = if name.contains("energy_error") { 100.0 * near } else { near + near * ideal.abs() };
-        assert!((real - ideal).abs() <= near, "{name}: {real} is not {ideal}");
-    }
+fn as_near_as(near: f64) -> impl Fn(&str, f64) -> f64 {
+    move |name, size| if name.contains("energy_error") { 100.0 * near } else { near + near * size }
 }
 
 #[test]
@@ -69,7 +63,7 @@ fn each_layout_gives_what_the_virtual_rig_gives() {
         let ended = run(&plan(&text), "");
         assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
         assert_eq!(ended.tally, Tally::default());
-        same(&results(&ended.record), &ideal(&text), near);
+        same(&results(&ended.record), &ideal(&text), as_near_as(near));
     }
 }
 
@@ -139,17 +133,12 @@ fn sites_that_were_cut_off_anywhere_are_brought_to_the_same_end() {
     let plan = plan(&sites("40 ms"));
     let whole = run(&plan, "");
     assert!(whole.completed());
-    for (kills, call) in (20..).step_by(3).enumerate() {
-        let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
-        if !killed(&plan, &stand, &disk, (call, call % 2 == 0)) {
-            assert!(kills > 10, "{kills}");
-            return;
-        }
-        let resumed = match gone_on(&plan, &stand, &disk, call) {
-            GoneOn::ToItsEnd(record) => record,
-            GoneOn::Ended => continue,
-            GoneOn::NeverBegun => panic!("call {call}: the rig was opened before it"),
-        };
-        same(&results(&resumed), &results(&whole.record), 1e-9);
-    }
+    cut_off_anywhere(
+        &plan,
+        20,
+        |_| {},
+        |resumed, _| {
+            same(&results(resumed), &results(&whole.record), as_near_as(1e-9));
+        },
+    );
 }

@@ -115,3 +115,11 @@ pub(super) fn ideal(text: &str) -> Vec<(&'static str, f64)> {
     let plan = checked(text, "ideal");
     results(&run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched))
 }
+
+/// All results are those of another run, but for `far` of each, of its name and its size there.
+pub(super) fn same(real: &[(&str, f64)], ideal: &[(&str, f64)], far: impl Fn(&str, f64) -> f64) {
+    assert!(real.len() == ideal.len() && real.len() > 8);
+    for ((name, real), (_, ideal)) in real.iter().zip(ideal) {
+        assert!((real - ideal).abs() <= far(name, ideal.abs()), "{name}: {real} is not {ideal}");
+    }
+}

@@ -61,10 +61,6 @@ impl Device for Coupled {
         Vec::new()
     }
 
-    fn narrow_limits(&mut self, _: &[Limits]) -> Result<(), DeviceFault> {
-        Ok(())
-    }
-
     fn tally(&self) -> Tally {
         Tally::default()
     }

@@ -1,5 +1,5 @@
-//! A rig that moves a real specimen. In: targets, one an axis, and one or two devices. Out: settled readings in the plan's
-//! sign, each axis judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
+//! A rig that moves a real specimen. In: targets, one an axis, and one or two devices. Out: settled readings in the plan's sign, each axis
+//! judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
 mod heard;
@@ -43,6 +43,8 @@ pub struct RealRig {
     proposed: Option<Proposed>,
     /// Where it has settled, m; None while it is on its way, and where nobody waited for it to settle.
     settled: Option<Vec<f64>>,
+    /// Mean speed of the last move as it was seen, m/s.
+    seen_speed: Option<f64>,
     reread: u64,
     /// Why its position is not to be trusted.
     untrusted: Option<String>,
@@ -245,6 +247,10 @@ impl Rig for RealRig {
         Some(self.link.own_speed)
     }
 
+    fn seen_speed(&self) -> Option<f64> {
+        self.seen_speed
+    }
+
     fn declared_noise(&self) -> DeclaredNoise {
         let largest = |of: fn(&ReadingRules) -> f64| self.axes.iter().map(|axis| of(&axis.rules)).fold(0.0, f64::max);
         DeclaredNoise { force: largest(|rules| rules.noise), resolution: largest(|rules| rules.resolution) }
@@ -268,5 +274,7 @@ impl Rig for RealRig {
 
 #[cfg(test)]
 mod disturbed_tests;
+#[cfg(test)]
+mod speed_tests;
 #[cfg(test)]
 mod tests;

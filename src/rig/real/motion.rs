@@ -11,15 +11,18 @@ use crate::rig::{LimitedQuantity, RigFault, named_axis};
 impl RealRig {
     /// Sends the offered move and waits until settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
+        let (began, told) = (self.clock.now(), self.proposed.as_ref().map(|proposed| proposed.going.speed));
         let (targets, seconds) = self.set_off()?;
-        self.settle_at(&targets, self.clock.now() + seconds)?;
+        let there = self.settle_at(&targets, self.clock.now() + seconds)?;
         self.settled = Some(targets);
+        // The time on the line counts as time under way: it was no slower than this.
+        self.seen_speed = told.map(|told| told * seconds / (there - began)).filter(|speed| speed.is_finite());
         Ok(())
     }
 
     /// Waits until every axis has settled, all in one sampling: an axis that another disturbs begins its dwell anew. `arrival` (s, by
-    /// the clock) is when the farthest of them is there.
-    pub(super) fn settle_at(&mut self, targets: &[f64], arrival: f64) -> Result<(), RigFault> {
+    /// the clock) is when the farthest of them should be there; given is when they were seen to be, s.
+    pub(super) fn settle_at(&mut self, targets: &[f64], arrival: f64) -> Result<f64, RigFault> {
         let mut settling = Settling::of(self.settle, targets);
         let mut rested = None;
         loop {
@@ -35,15 +38,15 @@ impl RealRig {
             }
             let steady = rests && !point.unsettled;
             if !on(Guarding::Settling) && rests {
-                return Ok(());
+                return Ok(now);
             }
             let readings = settling.iter_mut().zip(point.displacement.iter().zip(&point.force));
             let met: Vec<bool> = readings.map(|(axis, (x, force))| axis.met(now, *x, *force, steady)).collect();
-            let Some(unmet) = met.iter().position(|met| !met) else { return Ok(()) };
+            let Some(unmet) = met.iter().position(|met| !met) else { return Ok(rested.unwrap_or(now)) };
             if now - rested.unwrap_or(arrival) > self.settle.timeout {
                 return match (rested, astray) {
                     (Some(_), Some(axis)) if on(Guarding::Following) => Err(self.following(axis, &point, targets)),
-                    (Some(_), Some(_)) => Ok(()),
+                    (Some(rested), Some(_)) => Ok(rested),
                     (Some(_), None) => Err(self.unsettled(Some(unmet))),
                     (None, axis) => Err(self.unsettled(axis)),
                 };

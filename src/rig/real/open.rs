@@ -36,6 +36,7 @@ impl RealRig {
             heard: began,
             proposed: None,
             settled: None,
+            seen_speed: None,
             reread: 0,
             untrusted: None,
             deaf: false,

@@ -7,7 +7,7 @@ use crate::rig::device::{Force, Sample};
 use crate::rig::failpoint::without;
 use crate::rig::testing::{FakeDevice, VirtualClock};
 
-const LIMITS: Limits =
+pub(super) const LIMITS: Limits =
     Limits { displacement: Interval { low: -0.001, high: 0.02 }, force: Interval { low: -100.0, high: 5000.0 }, ..Limits::NONE };
 
 fn device_link(dialect: Dialect) -> DeviceLink {
@@ -33,9 +33,9 @@ fn plan() -> RigPlan {
     RigPlan { name, link: Link::Real(link), settle, sign: 1.0, calibration, drift: None }
 }
 
-struct Stand {
-    rig: RealRig,
-    device: FakeDevice,
+pub(super) struct Stand {
+    pub(super) rig: RealRig,
+    pub(super) device: FakeDevice,
     clock: VirtualClock,
     wish: Wish,
 }
@@ -48,7 +48,7 @@ fn opened(plan: &RigPlan, prepare: impl FnOnce(&FakeDevice)) -> Result<Stand, Ri
     Ok(Stand { rig, device, clock, wish })
 }
 
-fn stand() -> Stand {
+pub(super) fn stand() -> Stand {
     opened(&plan(), |_| {}).unwrap()
 }
 

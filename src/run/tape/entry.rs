@@ -333,8 +333,8 @@ pub enum Doubt {
     /// A way that is read as it is gone was cut off, and is gone on with from where the rig stands: no part of it twice. Where
     /// it began, m.
     RestOfTheWay { from: Vec<f64> },
-    /// A stroke was cut off, went on to its end and was mostly not read: the rig goes back to where it began (m; the axes after the first in `others`), and the stroke
-    /// begins anew.
+    /// A stroke was cut off, went on to its end and was mostly not read: the rig goes back to where it began (m; the axes after the first
+    /// in `others`), and the stroke begins anew.
     Stroke {
         back_to: f64,
         #[serde(default, skip_serializing_if = "Vec::is_empty")]

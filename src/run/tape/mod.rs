@@ -15,6 +15,7 @@ mod entry;
 #[cfg(test)]
 mod measured;
 mod observer;
+mod older;
 mod played;
 #[cfg(test)]
 mod resume_tests;
@@ -83,9 +84,11 @@ pub fn record_driven(
 #[must_use]
 pub fn replay(plan: &Plan, played: Played) -> Replayed {
     let driver = played.header.served.as_deref().map(|by| if by == BY_HAND { Driver::ByHand } else { Driver::Client });
+    let as_run = older::as_it_was_run(plan, &played);
     let state = State::replaying(played);
     let mut steps = None;
     let Recorded { record, mismatch, .. } = if let Some(driver) = driver {
+        let plan = as_run.as_ref();
         perform(None, &mut Unwatched, state, |rig, observer, state| {
             let driven = driven::drive(plan, rig, observer, driver, &mut |specimen| state::ask_again(state, specimen));
             steps = Some(driven.steps);

@@ -279,6 +279,11 @@ impl Rig for TapedRig<'_> {
         self.about.own_speed
     }
 
+    /// No part of the record: who watches is told, and nothing comes of it.
+    fn seen_speed(&self) -> Option<f64> {
+        self.live.as_deref().and_then(Rig::seen_speed)
+    }
+
     fn last_move(&self) -> Option<LastMove> {
         self.live.as_deref().and_then(Rig::last_move)
     }

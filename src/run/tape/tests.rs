@@ -14,8 +14,8 @@ use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, virtual_rig};
-use crate::run::testing::{elastic_plan, impact, ramp, result_of, struck_frame};
-use crate::run::{Inspection, StepReport};
+use crate::run::Inspection;
+use crate::run::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
 
 /// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
 #[derive(Clone)]
@@ -107,12 +107,6 @@ impl Rig for Standing {
 pub(super) struct Witness;
 
 impl Observer for Witness {
-    fn procedure_started(&mut self, _: &str, _: &str, _: Option<u64>) {}
-    fn step_done(&mut self, _: &StepReport) {}
-    fn procedure_finished(&mut self, _: &str) {}
-    fn stop_requested(&self) -> bool {
-        false
-    }
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::GoOn { note: Some("no crack".to_owned()), by: Some("A. Witness".to_owned()) }
     }
@@ -141,25 +135,6 @@ fn plan() -> Plan {
             ProcedureKind::Move(home),
         ],
     )
-}
-
-pub(crate) fn header() -> Header {
-    Header {
-        run_id: "0123456789abcdef".to_owned(),
-        psd: "0".to_owned(),
-        build: "0".to_owned(),
-        toolchain: String::new(),
-        files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
-        settings: Vec::new(),
-        rig: None,
-        equipment: None,
-        rehearsal: false,
-        served: None,
-        date: None,
-        operator: None,
-        host: None,
-        began: None,
-    }
 }
 
 fn no_wall() -> Wall {

@@ -30,8 +30,12 @@ fn simple() -> impl Strategy<Value = Behaviour> {
         residual,
     });
     let capped = capped.boxed();
-    let falls = (prop::option::of(tires), prop::option::of(capped));
+    let falls = (prop::option::of(tires.clone()), prop::option::of(capped));
     let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
+    let wearing =
+        (stiffness(), force(), hardening(), tires.clone()).prop_map(|(stiffness, yield_force, hardening, deterioration)| {
+            Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration }
+        });
     let pinching = (stiffness(), force(), hardening(), shape, falls).prop_map(
         |(stiffness, yield_force, hardening, (force_factor, displacement_factor, unloading_exponent), (tires, capping))| {
             // One strength is never lost, whatever takes the rest.
@@ -72,6 +76,7 @@ fn simple() -> impl Strategy<Value = Behaviour> {
             }
         ),
         pinching,
+        wearing,
         (stiffness(), force(), hardening()).prop_map(|(stiffness, half_displacement, residual)| Behaviour::Degrading {
             stiffness,
             half_displacement,

@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{View, fitted, shown};
-use crate::cli::screen::model::Model;
 use crate::record::Event;
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
@@ -29,11 +28,5 @@ fn words(event: &Event) -> String {
         (None, _) => String::new(),
     };
     let decimals = if event.time < 100.0 { 3 } else { 1 };
-    format!(
-        " {:>9.decimals$} s  {:<10} {:<12} {}",
-        event.time,
-        fitted(&shown(&place), 18),
-        Model::kind(event),
-        shown(&event.text)
-    )
+    format!(" {:>9.decimals$} s  {:<10} {:<12} {}", event.time, fitted(&shown(&place), 18), event.kind.word(), shown(&event.text))
 }

@@ -15,8 +15,20 @@ const NAME: usize = 15;
 const END: usize = 9;
 const MARGIN: usize = 18;
 
-pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, rows: &[LimitRow], area: Rect) {
-    let block = view.part(" Limits ");
+/// At most so many rows, in their order: those with the least left, and what psd itself keeps to only where it is past its bound.
+pub fn nearest(rows: &[LimitRow], most: usize) -> Vec<LimitRow> {
+    let left = |row: &LimitRow| Bar::of(row).closeness(row).filter(|share| !row.kept || *share < 0.0).unwrap_or(f64::INFINITY);
+    let mut places: Vec<usize> = (0..rows.len()).collect();
+    places.sort_by(|one, other| left(&rows[*one]).total_cmp(&left(&rows[*other])));
+    places.truncate(most);
+    places.sort_unstable();
+    places.into_iter().map(|place| rows[place]).collect()
+}
+
+/// `all`: how many there are, of which these are shown.
+pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, rows: &[LimitRow], all: usize, area: Rect) {
+    let heading = if rows.len() < all { format!(" Limits, the {} nearest of {all} ", rows.len()) } else { " Limits ".to_owned() };
+    let block = view.part(&heading);
     let inside = block.inner(area);
     frame.render_widget(block, area);
     let width = usize::from(inside.width).saturating_sub(1 + NAME + END + 1 + 1 + END + 1 + MARGIN);
@@ -31,11 +43,12 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, rows: &[LimitRow], area: Rec
 fn line<'a>(view: &View<'_>, row: &LimitRow, width: usize) -> Line<'a> {
     let bar = Bar::of(row);
     let color = match bar.closeness(row) {
-        Some(share) if share < 0.05 => Color::Red,
-        Some(share) if share < 0.2 => Color::Yellow,
+        Some(share) if share < if row.kept { 0.0 } else { 0.05 } => Color::Red,
+        Some(share) if share < 0.2 && !row.kept => Color::Yellow,
         _ => Color::Green,
     };
     let margin = match row.margin() {
+        Some(0.0) if row.kept => "as fast as allowed".to_owned(),
         Some(margin) if margin < 0.0 => format!("past by {}", number(-margin, row.dimension)),
         Some(margin) => format!("margin {}", number(margin, row.dimension)),
         None => String::new(),

@@ -42,7 +42,10 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
         popup::draw(frame, view, area, area);
         return;
     }
-    let rows = view.model.limit_rows();
+    // Head, curves, the heading of the limits and the keys are always there.
+    let most = usize::from(area.height.saturating_sub(3 + 5 + 1 + 1));
+    let all = view.model.limit_rows();
+    let rows = limits::nearest(&all, most);
     let limit_lines = u16::try_from(rows.len().max(1)).unwrap_or(1) + 1;
     // What is left over goes to the curves first, then to the events.
     let spare = area.height.saturating_sub(3 + limit_lines + 1 + 5);
@@ -57,7 +60,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
     .areas(area);
     head::draw(frame, view, head);
     charts::draw(frame, view, charts);
-    limits::draw(frame, view, &rows, limits);
+    limits::draw(frame, view, &rows, all.len(), limits);
     events::draw(frame, view, events);
     frame.render_widget(head::keys(view), keys);
     popup::draw(frame, view, charts, charts.union(limits));

@@ -19,6 +19,7 @@ fn model() -> Model {
     plan.title = "Pendulum against a GFRP beam\u{1b}[2J".to_owned();
     plan.limits.displacement = Interval { low: -2e-3, high: 25e-3 };
     plan.limits.force = Interval { low: -2e3, high: 7e3 };
+    plan.limits.speed = Interval { low: 0.0, high: 2e-3 };
     plan.limits.increment = Interval { low: 0.0, high: 2e-3 };
     plan.limits.tracking_error = Interval { low: 0.0, high: 0.05e-3 };
     plan.limits.energy_error = Interval { low: 0.0, high: 0.05 };
@@ -36,6 +37,7 @@ fn model() -> Model {
             velocity: None,
             acceleration: None,
             force: 3e5 * displacement,
+            speed: Some(2e-3),
             energy_error: Some(0.012),
             others: Vec::new(),
             tracking: None,

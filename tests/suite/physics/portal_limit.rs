@@ -1,0 +1,94 @@
+//! How high a load a portal's mechanism follows: in closed form where it is one, and by the moments along its members, which are summed
+//! here from the inertia point by point. The sums share nothing with the product.
+
+use psd::mechanics::portal_limit::mechanism_limit;
+use psd::plan::{FrameMasses, Loads, Portal, Sections};
+
+const SPAN: f64 = 4.0;
+const HEIGHT: f64 = 3.0;
+
+fn portal(strong: Sections, masses: FrameMasses, loads: Loads) -> Portal {
+    Portal::of_sections(SPAN, HEIGHT, strong, Sections::same(1.6e6), loads).weighing(Some(masses))
+}
+
+fn limit(portal: &Portal) -> f64 {
+    mechanism_limit(portal).expect("it is under one load and says what it weighs")
+}
+
+const BARE: FrameMasses = FrameMasses { per_length: Sections::same(12.0), midspan: 0.0, corner: 0.0 };
+
+/// One section and nothing carried: three times the collapse load at midspan; sideways three times and 12 Mp L/h² of the beam's inertia.
+#[test]
+fn a_bare_frame_follows_three_times_its_collapse_load() {
+    let strong = Sections::same(20e3);
+    let struck = portal(strong, BARE, Loads::Beam);
+    assert!((limit(&struck) / (3.0 * struck.capacity()) - 1.0).abs() < 1e-12);
+    let swayed = portal(strong, BARE, Loads::Sway);
+    let by_hand = 3.0 * swayed.capacity() + 12.0 * 20e3 * SPAN / (HEIGHT * HEIGHT);
+    assert!((limit(&swayed) / by_hand - 1.0).abs() < 1e-12);
+}
+
+/// Without mass between the hinges, as in the paper's lumped frame, no load is too fast; of two loads, and of a frame without masses, nothing is told.
+#[test]
+fn lumped_frames_follow_any_load() {
+    let strong = Sections::same(20e3);
+    let lumped = FrameMasses { per_length: Sections::same(0.0), midspan: 20.0, corner: 10.0 };
+    for loads in [Loads::Sway, Loads::Beam] {
+        assert!(limit(&portal(strong, lumped, loads)).is_infinite());
+    }
+    let both = Loads::Combined { beam_load: 1.0, sway_load: 1.0 };
+    assert_eq!(mechanism_limit(&portal(strong, BARE, both)), None);
+    assert_eq!(mechanism_limit(&portal(strong, BARE, Loads::Beam).weighing(None)), None);
+}
+
+/// Largest moment over what the section carries, between the hinges of the member that turns under `load` (N), by sums over points: the acceleration
+/// from the energies, then the moments of the inertia beyond each point about it.
+fn worst(frame: &Portal, load: f64) -> f64 {
+    const POINTS: usize = 4000;
+    let masses = frame.masses.expect("it says what it weighs");
+    let corner = frame.plastic_moment.beam.min(frame.plastic_moment.column);
+    let sways = frame.loads == Loads::Sway;
+    // The member that turns: its length, mass a metre, moments at its pivot and at its end, and what else goes with that end.
+    let (length, per_length, pivot, end, strong, carried) = if sways {
+        let level = masses.per_length.beam * SPAN + masses.midspan + 2.0 * masses.corner;
+        (HEIGHT, masses.per_length.column, frame.plastic_moment.column, corner, frame.plastic_moment.column, level / 2.0)
+    } else {
+        let beam = frame.plastic_moment.beam;
+        (SPAN / 2.0, masses.per_length.beam, corner, beam, beam, masses.midspan / 2.0)
+    };
+    #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
+    let step = length / POINTS as f64;
+    #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
+    let at = |point: usize| (point as f64 + 0.5) * step;
+    let inertia = (0..POINTS).map(|point| per_length * step * at(point) * at(point)).sum::<f64>() + carried * length * length;
+    // Two such members share the load and turn alike.
+    let acceleration = (load / 2.0 * length - pivot - end) / inertia;
+    // Force across the end of the member, what is carried there taken off.
+    let across = load / 2.0 - carried * length * acceleration;
+    let mut worst: f64 = 0.0;
+    for place in 0..POINTS {
+        let here = at(place);
+        let beyond =
+            (place + 1..POINTS).map(|point| per_length * step * at(point) * acceleration * (at(point) - here)).sum::<f64>();
+        let moment = end - across * (length - here) + beyond;
+        worst = worst.max(moment.abs() / strong);
+    }
+    worst
+}
+
+/// Just below the limit no section is overdone, just above it one is: of stout columns and of weak ones, with lumps and without.
+#[test]
+fn the_moments_along_the_members_say_the_same() {
+    let lumps = FrameMasses { per_length: Sections { beam: 9.0, column: 31.0 }, midspan: 7.0, corner: 4.0 };
+    for (beam, column) in [(20e3, 20e3), (20e3, 34e3), (20e3, 12e3)] {
+        for masses in [BARE, lumps] {
+            for loads in [Loads::Sway, Loads::Beam] {
+                let frame = portal(Sections { beam, column }, masses, loads);
+                let limit = limit(&frame);
+                assert!(limit > frame.capacity());
+                let (below, above) = (worst(&frame, 0.97 * limit), worst(&frame, 1.03 * limit));
+                assert!(below <= 1.0 + 1e-6 && above > 1.0 + 1e-6, "{loads:?}, {beam} and {column}: {below}, {above}");
+            }
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! A person's end of a run in every phase: INT, TERM and HUP, and a terminal that dies. In: a moment of a run, of a jog, of a
+//! serving. Out: the rig held, exit code 4, a record that is sound and can be gone on with.
+
+use std::process::Command;
+use std::time::Duration;
+
+use rustix::process::Signal;
+
+use crate::needs;
+use crate::served::Served;
+use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until};
+use crate::terminal::Terminal;
+
+const SIGNALS: [Signal; 3] = [Signal::INT, Signal::TERM, Signal::HUP];
+
+/// Each signal at the same moment of a run of its own; of the first the run is gone on with, where that is `quick`.
+fn each(plan: impl Fn(&str) -> String + Sync, quick: bool, moment: impl Fn(&Stage) + Sync, then: impl Fn(&Stage) + Sync) {
+    let one = |sent| {
+        let stage = Stage::of(&plan, "");
+        let run = start(&mut stage.run_with(&["--yes"]));
+        moment(&stage);
+        signal(&run, sent);
+        stage.held_and_sound(&finish(run));
+        then(&stage);
+        if quick && sent == SIGNALS[0] {
+            stage.goes_on(&[]);
+        }
+    };
+    std::thread::scope(|scope| {
+        for sent in SIGNALS {
+            scope.spawn(move || one(sent));
+        }
+    });
+}
+
+fn as_it_is(plan: &str) -> String {
+    plan.to_owned()
+}
+
+/// So slow that a signal comes while it moves: the probe takes 0.4 s, a step of the ramp 2 s.
+fn slow(plan: &str) -> String {
+    plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um").replace("probe(0.1 mm", "probe(0.02 mm")
+}
+
+/// How often the rig was asked for a reading.
+fn readings(stage: &Stage) -> usize {
+    stage.requests().iter().filter(|request| request.contains(">MEAS")).count()
+}
+
+/// Waits until nothing has gone over the line for a while.
+fn quiet(stage: &Stage) {
+    let mut asked = usize::MAX;
+    until("nothing is asked", || {
+        std::thread::sleep(Duration::from_millis(200));
+        std::mem::replace(&mut asked, stage.requests().len()) == asked
+    });
+}
+
+#[test]
+fn at_rest_before_the_probe_of_the_gate() {
+    // A second at rest, between the first reading and the one that is held against the zero.
+    each(as_it_is, true, |stage| until("the first reading", || readings(stage) > 0), |stage| assert!(stage.moves().is_empty()));
+}
+
+#[test]
+fn in_the_probe_of_the_gate() {
+    let out_and_back = |stage: &Stage| assert_eq!(stage.moves().len(), 2, "and nothing after it");
+    each(slow, false, |stage| stage.after_moves(1), out_and_back);
+}
+
+#[test]
+fn in_a_ramp() {
+    each(as_it_is, true, |stage| stage.after_moves(10), |_| {});
+}
+
+#[test]
+fn while_a_step_settles() {
+    let settling = |stage: &Stage| {
+        stage.after_moves(3);
+        let before = readings(stage);
+        until("it settles", || readings(stage) > before + 5);
+    };
+    each(|plan| plan.replace("for: 0.01 s", "for: 1 s"), false, settling, |stage| assert_eq!(stage.moves().len(), 3));
+}
+
+#[test]
+fn between_two_moves() {
+    let pausing = |stage: &Stage| {
+        stage.after_moves(3);
+        quiet(stage);
+    };
+    each(|plan| plan.replace("pause         = 0 s", "pause         = 2 s"), false, pausing, |_| {});
+}
+
+#[test]
+fn in_a_stroke_of_a_sweep() {
+    const SWEEP: &str = "damping sweep c {\n  velocities = [0.5, 1] mm/s\n  stroke     = 0.8 mm\n  stiffness  = k0.stiffness\n  \
+                         rate       = 20 Hz\n}\n\ninspect look {";
+    each(|plan| plan.replace("inspect look {", SWEEP), false, |stage| stage.after_moves(20), |_| {});
+}
+
+#[test]
+fn in_a_blow() {
+    each(as_it_is, true, |stage| stage.after_moves(30), |_| {});
+}
+
+#[test]
+fn while_it_does_not_stop() {
+    // A fifth of a step, in which targets and answers must be there, is 120 ms.
+    let moving = |plan: &str| {
+        plan.replace("  duration  = 24 ms\n  pause     = 0 s", "  duration  = 6 ms\n  mode      = continuous(time_scale: 600)")
+    };
+    each(moving, true, |stage| stage.after_moves(22), |_| {});
+}
+
+/// A run that somebody sits before: what is shown and asked, and the keys.
+#[test]
+fn while_somebody_is_asked() {
+    std::thread::scope(|scope| {
+        for (sent, question) in SIGNALS.into_iter().flat_map(|sent| [(sent, "go on?"), (sent, "look at the specimen")]) {
+            scope.spawn(move || {
+                let stage = Stage::new();
+                let mut terminal = Terminal::start(&mut stage.run_with(&[]));
+                if question != "go on?" {
+                    terminal.answer("go on?", "y\n");
+                }
+                terminal.answer(question, "");
+                signal(&terminal.child, sent);
+                let code = code(&mut terminal.child);
+                stage.held_and_sound(&Ended { code, told: terminal.shown() });
+                assert_eq!(stage.moves().is_empty(), question == "go on?");
+            });
+        }
+    });
+}
+
+#[test]
+fn while_it_is_paused_by_a_key() {
+    std::thread::scope(|scope| {
+        for sent in SIGNALS {
+            scope.spawn(move || {
+                let stage = Stage::new();
+                let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
+                stage.after_moves(3);
+                terminal.press("p");
+                until("it pauses", || terminal.shown().contains("PAUSED"));
+                signal(&terminal.child, sent);
+                let code = code(&mut terminal.child);
+                stage.held_and_sound(&Ended { code, told: terminal.shown() });
+            });
+        }
+    });
+}
+
+/// A window that is closed: its programs get HUP, and neither read nor write anything any more.
+#[test]
+fn of_a_terminal_that_dies() {
+    if !needs::setsid() {
+        return;
+    }
+    let one = |screen: bool, yes: &[&str], moment: &(dyn Fn(&Stage, &mut Terminal) + Sync)| {
+        let stage = Stage::new();
+        // The terminal is the program's own, as a shell gives it one.
+        let mut command = Command::new("setsid");
+        command.args(["--ctty", PSD]);
+        stage.run_arguments(&mut command, yes);
+        let mut terminal = if screen { Terminal::with_screen(&mut command) } else { Terminal::start(&mut command) };
+        moment(&stage, &mut terminal);
+        let (mut child, shown) = terminal.dies();
+        let code = code(&mut child);
+        stage.held_and_sound(&Ended { code, told: shown });
+        stage.goes_on(&[]);
+    };
+    let in_the_ramp = |stage: &Stage, _: &mut Terminal| stage.after_moves(10);
+    let at_a_question = |_: &Stage, terminal: &mut Terminal| {
+        terminal.answer("go on?", "y\n");
+        terminal.answer("look at the specimen", "");
+    };
+    let at_the_release = |_: &Stage, terminal: &mut Terminal| terminal.answer("Inspection", "");
+    std::thread::scope(|scope| {
+        scope.spawn(|| one(false, &["--yes"], &in_the_ramp));
+        scope.spawn(|| one(true, &["--yes"], &in_the_ramp));
+        scope.spawn(|| one(false, &[], &at_a_question));
+        scope.spawn(|| one(true, &[], &at_the_release));
+    });
+}
+
+#[test]
+fn of_a_jog_on_its_way_and_while_it_asks() {
+    std::thread::scope(|scope| {
+        for sent in SIGNALS {
+            scope.spawn(move || {
+                let stage = Stage::of(|plan| plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um"), "");
+                let jog = start(&mut stage.recorded_tool("jog", &["--to", "1 mm", "--speed", "0.05 mm/s", "--yes"]));
+                stage.after_moves(1);
+                signal(&jog, sent);
+                let ended = finish(jog);
+                assert!(ended.code == Some(4) && ended.told.contains("on request"), "{}", ended.told);
+                assert!(stage.is_held());
+                stage.proven();
+            });
+            scope.spawn(move || {
+                for (arguments, question) in [(&[][..], "where to?"), (&["--to", "1 mm"][..], "[y or n]")] {
+                    let stage = Stage::new();
+                    let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", arguments));
+                    terminal.answer(question, "");
+                    signal(&terminal.child, sent);
+                    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+                    assert!(stage.moves().is_empty() && stage.is_held());
+                    stage.proven();
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn of_a_serving_in_its_gate_and_while_a_client_is_waited_for() {
+    std::thread::scope(|scope| {
+        for sent in SIGNALS {
+            scope.spawn(move || {
+                let stage = Stage::new();
+                let arguments = ["--protocol", "nees", "--listen", "127.0.0.1:0", "--yes"];
+                let serving = start(&mut stage.recorded_tool("serve", &arguments));
+                until("the first reading", || readings(&stage) > 0);
+                signal(&serving, sent);
+                let ended = finish(serving);
+                assert!(ended.code == Some(4) && !ended.told.contains("ready: nees"), "{}", ended.told);
+                assert!(stage.moves().is_empty() && stage.is_held());
+                stage.proven();
+            });
+            scope.spawn(move || {
+                let mut served = Served::start_on(Stage::new(), "nees", &[]);
+                // Nobody came, and nothing was asked for that was not done.
+                assert_eq!(served.stop(sent), (Some(0), String::new()));
+                assert_eq!(served.stage.moves().len(), 2);
+                assert!(served.stage.is_held());
+            });
+        }
+    });
+}
