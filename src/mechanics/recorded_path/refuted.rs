@@ -25,7 +25,9 @@ const END: usize = 4;
 /// A rule that is this much farther off than the best is refuted by very many curves; the fewer they are, the farther it must
 /// be, by so much over their number.
 const WORSE: f64 = 1.5;
-const WORSE_OF_FEW: f64 = 6.0;
+const WORSE_OF_FEW: f64 = 20.0;
+/// Curves without which nothing says that a specimen is of one element that flows.
+const FLOWING_OF: f64 = 8.0;
 /// What knees between two readings leave, in how far apart two curves began: of the mean square, and of the mean root.
 const EXACT: Off = Off { square: 0.01, root: 0.002 };
 
@@ -43,18 +45,21 @@ pub(super) fn left(path: &RecordedPath, possible: Vec<Rule>) -> Vec<Rule> {
     }
     let supposed: Vec<RecordedPath> = possible.iter().map(|rule| path.clone().keeping_to(*rule)).collect();
     let (count, off) = off(path, &supposed);
+    if std::env::var("DBG").is_ok() {
+        eprintln!("OFF {count} {:?}", possible.iter().zip(&off).collect::<Vec<_>>());
     if count == 0.0 {
-        return possible;
+        return possible.into_iter().filter(|rule| *rule != Rule::Flowing).collect();
     }
+    // Where each curve keeps its shape, that is so of many elements side by side, and not of one alone.
+    let keeps = off[0].square <= EXACT.square && off[0].root <= EXACT.root;
+    let held = possible.into_iter().zip(off).filter(|(rule, _)| *rule != Rule::Flowing || !keeps && count >= FLOWING_OF);
+    let held: Vec<(Rule, Off)> = held.collect();
     let most = |read: fn(&Off) -> f64| {
-        let best = off.iter().map(read).fold(f64::INFINITY, f64::min);
+        let best = held.iter().map(|(_, off)| read(off)).fold(f64::INFINITY, f64::min);
         (best * (WORSE + WORSE_OF_FEW / count)).max(read(&EXACT))
     };
     let (square, root) = (most(|off| off.square), most(|off| off.root));
-    // Where every loop closes and each curve keeps its shape, that is so of specimens of many elements, and not of one alone.
-    let keeps = off[0].square <= EXACT.square && off[0].root <= EXACT.root;
-    let held = possible.iter().zip(&off).filter(|(rule, _)| **rule != Rule::Flowing || !keeps);
-    let by_squares: Vec<(Rule, Off)> = held.filter(|(_, off)| off.square <= square).map(|(rule, off)| (*rule, *off)).collect();
+    let by_squares: Vec<(Rule, Off)> = held.into_iter().filter(|(_, off)| off.square <= square).collect();
     let by_both: Vec<Rule> = by_squares.iter().filter(|(_, off)| off.root <= root).map(|(rule, _)| *rule).collect();
     if by_both.is_empty() { by_squares.into_iter().map(|(rule, _)| rule).collect() } else { by_both }
 }
