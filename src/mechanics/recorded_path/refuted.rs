@@ -45,8 +45,6 @@ pub(super) fn left(path: &RecordedPath, possible: Vec<Rule>) -> Vec<Rule> {
     }
     let supposed: Vec<RecordedPath> = possible.iter().map(|rule| path.clone().keeping_to(*rule)).collect();
     let (count, off) = off(path, &supposed);
-    if std::env::var("DBG").is_ok() {
-        eprintln!("OFF {count} {:?}", possible.iter().zip(&off).collect::<Vec<_>>());
     if count == 0.0 {
         return possible.into_iter().filter(|rule| *rule != Rule::Flowing).collect();
     }
