@@ -214,7 +214,7 @@ fn note(run: &Run<'_>, history: &History, budgets: &[Budget<'_>]) -> String {
     let mut text = format!("Linearised, {factor}: {}.", how(history));
     let undeclared = run.plan.rig.undeclared(run.plan.degrees_of_freedom());
     if !undeclared.is_empty() {
-        text += " Nor is what the plan does not declare: ";
+        text += " Not counted, for the plan does not declare it: ";
         text += &undeclared.join(", ");
         text += ".";
     }
