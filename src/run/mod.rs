@@ -110,8 +110,6 @@ mod tests;
 mod triggers;
 mod unload;
 mod watch;
-#[cfg(test)]
-mod yielding_doubts_tests;
 mod zero;
 
 pub use damping_sweep::MOST_SAMPLES;
