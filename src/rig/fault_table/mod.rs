@@ -31,6 +31,7 @@
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing` |
 
 mod axes;
+mod beam;
 mod control_points;
 mod cut_off;
 mod device;
