@@ -20,7 +20,8 @@ fn python() -> Option<PathBuf> {
     let of_ci = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/opensees/bin/python3");
     let can = |python: &PathBuf| {
         let mut import = Command::new(python);
-        let import = import.args(["-c", "import openseespy.opensees"]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        let import =
+            import.args(["-c", "import openseespy.opensees"]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         import.status().is_ok_and(|status| status.success())
     };
     let found = [of_ci, PathBuf::from("python3")].into_iter().find(can);
