@@ -12,6 +12,7 @@ mod guard;
 mod guard_glide;
 mod guard_speed;
 mod guard_way;
+mod halted;
 mod holds;
 mod load_cell;
 mod one_or_several;
@@ -33,6 +34,7 @@ use crate::quantity::{Dimension, display};
 
 pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
+pub use halted::{Halted, place_and_force};
 pub use holds::Held;
 pub use virtual_frame::VirtualFrame;
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
@@ -317,6 +319,13 @@ pub trait Rig {
 
     /// Stops all motion and keeps the load.
     fn hold(&mut self);
+
+    /// The last hold of a run that ends early, and what became of it: whether the rig was seen at rest, and where. None of a rig of
+    /// which nothing moves.
+    fn halt(&mut self) -> Option<Halted> {
+        self.hold();
+        None
+    }
 
     /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent
     /// stiffness.

@@ -6,7 +6,7 @@ use super::shake;
 use super::stop::Stop;
 use super::storey_impact;
 use super::study::Unknown;
-use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
+use super::{AxisReport, Inspection, Next, Observer, StepReport};
 use crate::formula::{Formula, NoResults};
 use crate::plan::{BlowOn, Impact, Plan, Procedure, ProcedureKind, Striker, step_count};
 use crate::record::{Event, EventKind};
@@ -18,13 +18,15 @@ const BREATH: f64 = 0.01;
 
 pub(super) struct Session<'run> {
     pub(super) guard: Guard<'run>,
-    observer: &'run mut dyn Observer,
+    pub(super) observer: &'run mut dyn Observer,
     events: Vec<Event>,
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
     step: Option<u64>,
     /// Where the rig was found, m.
-    home: Vec<f64>,
+    pub(super) home: Vec<f64>,
+    /// A person was asked to look, or has paused the run: somebody may stand at the specimen.
+    pub(super) attended: bool,
     /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
     /// rig, and has a watchdog as any.
     reckoned: bool,
@@ -52,7 +54,7 @@ impl<'run> Session<'run> {
         match guard {
             Ok(guard) => {
                 let home = guard.commanded().to_vec();
-                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home, reckoned })
+                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home, attended: false, reckoned })
             }
             Err(fault) => {
                 let stop = Stop::Rig(fault);
@@ -93,23 +95,6 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Records why the run ends here, with the rig held.
-    pub(super) fn end(&mut self, stop: &Stop) {
-        self.guard.hold();
-        self.event(stop.event_kind(), stop.to_string());
-        self.leave();
-    }
-
-    /// Takes the load off after a stop, inside the same limits; what stands in the way is one more event.
-    pub(super) fn unload(&mut self) {
-        self.event(EventKind::Hold, UNLOADING.to_owned());
-        let home = self.home.clone();
-        let unloaded = self.go_to_all(&home, None).and_then(|()| Ok(self.guard.read()?));
-        if let Err(stop) = unloaded {
-            self.event(stop.event_kind(), format!("not unloaded: {stop}"));
-        }
-    }
-
     pub(super) fn event(&mut self, kind: EventKind, text: String) {
         let event = Event { time: self.guard.time(), procedure: self.procedure.clone(), step: self.step, kind, text };
         self.observer.event(&event);
@@ -123,8 +108,14 @@ impl<'run> Session<'run> {
         loop {
             self.stop_if_requested()?;
             match self.observer.next() {
-                Next::GoOn => return Ok(()),
-                Next::Wait => self.breathe()?,
+                Next::GoOn => {
+                    self.attended = false;
+                    return Ok(());
+                }
+                Next::Wait => {
+                    self.attended = true;
+                    self.breathe()?;
+                }
                 Next::Record(text) => self.event(EventKind::Note, text),
             }
         }
@@ -132,13 +123,16 @@ impl<'run> Session<'run> {
 
     /// Lets a person look at the specimen; what was said, and by whom, is an event.
     pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+        self.attended = true;
         self.look_at_a_hold()?;
         loop {
             match self.observer.inspect(note) {
                 Inspection::GoOn { note: said, by } => {
                     let said = said.map_or_else(String::new, |said| format!(": {said}"));
                     self.event(EventKind::Inspection, format!("{note}{said}{}", signed(by.as_deref())));
-                    return self.look_at_a_hold();
+                    self.look_at_a_hold()?;
+                    self.attended = false;
+                    return Ok(());
                 }
                 Inspection::Stop { reason, by } => {
                     self.guard.hold();
@@ -194,7 +188,7 @@ impl<'run> Session<'run> {
     }
 
     /// A moment of a person's time. A real rig spends it where it is, and is heard from.
-    fn breathe(&mut self) -> Result<(), Stop> {
+    pub(super) fn breathe(&mut self) -> Result<(), Stop> {
         if !self.reckoned {
             self.guard.pause(BREATH)?;
         }
@@ -262,7 +256,7 @@ impl<'run> Session<'run> {
     }
 }
 
-fn signed(by: Option<&str>) -> String {
+pub(super) fn signed(by: Option<&str>) -> String {
     by.map_or_else(String::new, |name| format!(" ({name})"))
 }
 

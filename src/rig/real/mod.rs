@@ -2,6 +2,7 @@
 //! judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
+mod halt;
 mod heard;
 mod motion;
 mod open;
@@ -17,7 +18,7 @@ use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
-use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish};
 pub use heard::ReadBack;
 use validity::Judge;
 
@@ -50,6 +51,8 @@ pub struct RealRig {
     untrusted: Option<String>,
     /// The words that hold it found no ear: only those that need no answer are left.
     deaf: bool,
+    /// Why they found none.
+    unheard: String,
 }
 
 /// One actuator with its load cell.
@@ -235,12 +238,12 @@ impl Rig for RealRig {
 
     /// Says so, and where that finds no ear sends what needs no answer.
     fn hold(&mut self) {
-        self.wish.heed();
-        (self.proposed, self.settled) = (None, None);
-        if self.deaf || self.actuator.hold().is_err() {
-            self.deaf = true;
-            safety::hold_everything();
-        }
+        // Whether it was heard is told at the end of the run.
+        let _ = self.tell_to_hold();
+    }
+
+    fn halt(&mut self) -> Option<Halted> {
+        Some(self.held_for_good())
     }
 
     fn own_speed(&self) -> Option<f64> {

@@ -40,6 +40,7 @@ impl RealRig {
             reread: 0,
             untrusted: None,
             deaf: false,
+            unheard: String::new(),
             link,
         };
         rig.meet()?;

@@ -124,7 +124,8 @@ impl Played {
             | EntryKind::Step
             | EntryKind::Operator
             | EntryKind::Event
-            | EntryKind::Fault => {
+            | EntryKind::Fault
+            | EntryKind::Held => {
                 self.doubt = None;
                 self.lines.push_back(line.clone());
             }
