@@ -28,8 +28,7 @@ impl Halted {
 /// Places (m) and forces (N) of all axes: `4.000 mm, 1.200 kN`.
 #[must_use]
 pub fn place_and_force(displacement: &[f64], force: &[f64]) -> String {
-    let pair =
-        |(x, r): (&f64, &f64)| format!("{}, {}", readable(*x, Dimension::LENGTH), readable(*r, Dimension::FORCE));
+    let pair = |(x, r): (&f64, &f64)| format!("{}, {}", readable(*x, Dimension::LENGTH), readable(*r, Dimension::FORCE));
     displacement.iter().zip(force).map(pair).collect::<Vec<_>>().join("; ")
 }
 
@@ -56,10 +55,7 @@ mod tests {
         assert_eq!(Halted { found: None, ..held.clone() }.to_string(), "held; where it stands could not be read");
         let lost = Halted { doubt: Some("the line is gone".to_owned()), ..held };
         assert!(!lost.is_held());
-        assert_eq!(
-            lost.to_string(),
-            "NOT CONFIRMED HELD (the line is gone): it may still be moving; use the emergency stop"
-        );
+        assert_eq!(lost.to_string(), "NOT CONFIRMED HELD (the line is gone): it may still be moving; use the emergency stop");
         assert_eq!(place_and_force(&[0.001, -0.002], &[10.0, 20.0]), "1.000 mm, 10.00 N; −2.000 mm, 20.00 N");
     }
 }

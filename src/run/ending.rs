@@ -44,7 +44,8 @@ impl Session<'_> {
         if !self.attended && !stop.is_a_persons() {
             return true;
         }
-        let place = |places: &[f64]| places.iter().map(|place| readable(*place, Dimension::LENGTH)).collect::<Vec<_>>().join(", ");
+        let place =
+            |places: &[f64]| places.iter().map(|place| readable(*place, Dimension::LENGTH)).collect::<Vec<_>>().join(", ");
         let found = halted.and_then(|halted| halted.found.as_ref());
         let at = place(found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice()));
         let home = place(&self.home);

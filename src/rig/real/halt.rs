@@ -3,8 +3,8 @@
 
 use super::{Part, RealRig};
 use crate::rig::device::{DeviceFault, SLICE};
-use crate::rig::{Halted, RigFault};
 use crate::rig::safety;
+use crate::rig::{Halted, RigFault};
 
 /// A rig that was told to hold and still moves is waited for so long, s.
 const COMES_TO_REST: f64 = 5.0;

@@ -18,8 +18,9 @@ use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
-use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish};
+use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig, RigFault, Tally, Wish};
 pub use heard::ReadBack;
+pub use open::commands_only;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -53,6 +54,8 @@ pub struct RealRig {
     deaf: bool,
     /// Why they found none.
     unheard: String,
+    /// Where readings are shown as they come.
+    live: Live,
 }
 
 /// One actuator with its load cell.
@@ -86,6 +89,12 @@ impl RealRig {
     #[must_use]
     pub const fn trusted(&self) -> bool {
         self.untrusted.is_none()
+    }
+
+    /// Where its readings are to be seen as they come, on the way too.
+    #[must_use]
+    pub fn live(&self) -> Live {
+        self.live.clone()
     }
 
     /// Whether its displacement is what was commanded and nothing measures it.

@@ -8,8 +8,8 @@ use serde::de::DeserializeOwned;
 
 use super::bytes::Bytes;
 use super::entry::{
-    AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody, RecoverBody, ResumeBody, RigBody, SampleBody,
-    StepBody, StrokeBody,
+    AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody, RecoverBody, ResumeBody, RigBody,
+    SampleBody, StepBody, StrokeBody,
 };
 use super::played::{Played, body};
 use crate::plan::Plan;
