@@ -25,3 +25,4 @@ mod signed;
 mod stage;
 mod terminal;
 mod twice;
+mod unasked;

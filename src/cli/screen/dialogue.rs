@@ -331,6 +331,52 @@ mod tests {
     }
 
     #[test]
+    fn the_help_lets_the_keys_through_that_it_names_for_stopping() {
+        for (key, held) in [('h', true), ('H', true), ('q', false), ('p', false)] {
+            let wish = Wish::default();
+            let mut dialogue = Dialogue::new(None);
+            dialogue.press(Key::Character('?'), &wish);
+            dialogue.press(Key::Character(key), &wish);
+            assert_eq!((wish.wants_hold(), wish.wants_end()), (held, key != 'p'), "{key}");
+            assert!(!dialogue.help && !dialogue.paused, "any other key only closes it");
+        }
+    }
+
+    #[test]
+    fn a_pause_is_one_when_the_step_has_ended() {
+        let mut dialogue = Dialogue::new(Some("A".to_owned()));
+        type_in(&mut dialogue, "p");
+        assert!(dialogue.paused && !dialogue.waiting, "the rig still moves");
+        assert!(matches!(dialogue.next(), Next::Record(_)));
+        assert_eq!((dialogue.next(), dialogue.waiting), (Next::Wait, true));
+        type_in(&mut dialogue, "s");
+        assert_eq!((dialogue.next(), dialogue.waiting), (Next::GoOn, false), "one step moves");
+    }
+
+    #[test]
+    fn only_a_yes_with_a_name_unloads() {
+        let answered = |typed: &str| {
+            let mut dialogue = Dialogue::new(Some("A".to_owned()));
+            assert_eq!(dialogue.ask("look"), Inspection::Wait);
+            type_in(&mut dialogue, "n\n");
+            assert!(matches!(dialogue.ask("look"), Inspection::Stop { .. }));
+            assert_eq!(dialogue.ask_to_unload("unload?"), Some(Inspection::Wait));
+            type_in(&mut dialogue, typed);
+            dialogue.ask_to_unload("unload?")
+        };
+        assert!(matches!(answered("y\n"), Some(Inspection::GoOn { by: Some(_), .. })));
+        let no = Inspection::Stop { reason: "no: cracked".to_owned(), by: Some("A".to_owned()) };
+        assert_eq!(answered("ncracked\n"), Some(no));
+        for undecided in ["", "\n", "y", "x"] {
+            assert_eq!(answered(undecided), Some(Inspection::Wait), "{undecided:?}");
+        }
+        assert_eq!((answered("q"), answered("\u{4}"), answered("y\u{4}")), (None, None, None));
+        let mut dialogue = Dialogue::new(None);
+        dialogue.lose(&Wish::default());
+        assert_eq!(dialogue.ask_to_unload("unload?"), None, "nobody there");
+    }
+
+    #[test]
     fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_stop() {
         let wish = Wish::default();
         let mut dialogue = Dialogue::default();
