@@ -56,10 +56,8 @@ impl<'a> Checker<'a> {
     /// What the field could be: of a rig that says what only a real one says, a real link.
     fn example_of(&self, block: usize, field: &Field) -> &'static str {
         const REAL: &str = "link = serial(port: \"/dev/ttyUSB0\", dialect: native)";
-        let declared = &self.scope.blocks[block];
-        let says = |name: &str| declared.block.fields.iter().any(|entry| entry.key.node == name);
-        let real =
-            declared.kind.kind == Kind::Rig && field.name == "link" && ["safe_state", "gate", "watchdog"].into_iter().any(says);
+        let is_link = self.scope.blocks[block].kind.kind == Kind::Rig && field.name == "link";
+        let real = is_link && super::rig::says_of_real_rigs(self, block);
         if real { REAL } else { field.example }
     }
 

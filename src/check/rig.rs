@@ -27,7 +27,17 @@ pub struct CheckedRig {
 pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> {
     let named = |name: Option<&crate::syntax::ast::Ident>| name.is_some_and(|name| Some(name.node.as_str()) == asked);
     let block = checker.scope.of_kind(Kind::Rig).find(|(_, block)| named(block.name)).map(|(index, _)| index);
-    block.filter(|block| kind(checker, *block) == Some(RigKind::Real))
+    // Where its link is missing or cannot be read, what else it says tells what it is.
+    let real =
+        |block: usize| kind(checker, block).map_or_else(|| says_of_real_rigs(checker, block), |kind| kind == RigKind::Real);
+    block.filter(|block| real(*block))
+}
+
+/// Whether a rig's block has a field that only real rigs read.
+pub fn says_of_real_rigs(checker: &Checker, block: usize) -> bool {
+    let declared = &checker.scope.blocks[block];
+    let real_only = |key: &str| declared.kind.field(key).is_some_and(|field| field.real_rig_only);
+    declared.block.fields.iter().any(|entry| real_only(&entry.key.node))
 }
 
 /// The fields that say how the rig of the run is reached, where it is one that moves a specimen.

@@ -287,6 +287,8 @@ impl Rig for RealRig {
 #[cfg(test)]
 mod disturbed_tests;
 #[cfg(test)]
+mod halt_tests;
+#[cfg(test)]
 mod speed_tests;
 #[cfg(test)]
 mod tests;
