@@ -65,7 +65,7 @@ impl BilinearFit {
 /// Points on either side of the knee, at least: fewer bear no line.
 const FEWEST: usize = 2;
 
-/// Least squares over both lines and the knee together (Hudson 1966): between two neighbouring points the best knee is
+/// Least squares over both lines and the knee together: between two neighbouring points the best knee is
 /// where the lines through either side meet, if they meet there, else one of the two points; the best of all is taken.
 /// Standard errors are those of the linearised model at the optimum. None of fewer than six points, or where the force
 /// shows no knee that softens. A ramp that pulls is fitted as the one it mirrors.

@@ -12,7 +12,7 @@ pub const MOST_BREAKS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BreakCount {
     Exactly(usize),
-    /// As many as leave the least N ln(SSE/N) + p ln N (Schwarz 1978, Yao 1988), p = 2n + 2 numbers for n breaks.
+    /// As many as leave the least N ln(SSE/N) + p ln N (Schwarz's criterion, BIC), p = 2n + 2 numbers for n breaks.
     ByCriterion {
         most: usize,
     },

@@ -119,7 +119,7 @@ const MOST_STEPS: usize = 60;
 /// Scatter below this share of the largest force is rounding and no relaxation.
 const ROUNDING: f64 = 1e-10;
 
-/// Least squares over τ, and for each τ over all that is linear (variable projection, Golub & Pereyra 1973). Standard errors are
+/// Least squares over τ, and for each τ over all that is linear (variable projection). Standard errors are
 /// those of the linearised model at the optimum. `start` is where the first move began, m.
 ///
 /// # Errors

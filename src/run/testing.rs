@@ -162,7 +162,7 @@ pub(crate) fn header() -> Header {
     }
 }
 
-/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator (Park and Miller 1988).
+/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator.
 pub(crate) struct Uniform(pub(crate) u64);
 
 impl Uniform {

@@ -35,7 +35,7 @@ pub struct Reading {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Its curve begins at the turn and keeps its shape: exact of elastic specimens and of elastic–plastic elements side by
-    /// side (Iwan 1967), however many. One that passed an earlier turn of the record elsewhere than through it, so that no
+    /// side (Iwan's model), however many. One that passed an earlier turn of the record elsewhere than through it, so that no
     /// loop was closed, keeps the line that it settled on.
     Shifted,
     /// Its curve is stretched about where the one before it began, if it came back softer than it first was: exact of those
@@ -248,7 +248,7 @@ impl RecordedPath {
     }
 }
 
-/// Bits of a step in a draw, the same in every run: the finaliser of `SplitMix64` (Steele, Lea and Flood 2014).
+/// Bits of a step in a draw, the same in every run: the finaliser of `SplitMix64`.
 fn drawn(draw: u16, step: u64) -> u64 {
     let mut bits = (u64::from(draw) << 48 ^ step).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

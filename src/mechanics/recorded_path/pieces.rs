@@ -2,7 +2,7 @@
 //! goes along. In: the readings. Out: branches and pieces with their tangents. It knows no way but the recorded one.
 //!
 //! A curve begins where the specimen turns. It is left where the specimen turns again, and gone on with once the place of
-//! that turn is passed on the way back: the loop is closed and forgotten (Masing 1926; the return-point memory of Iwan's
+//! that turn is passed on the way back: the loop is closed and forgotten (Masing's rule; the return-point memory of Iwan's
 //! and Preisach's models). So one branch may have pieces of several curves, and one curve pieces on several branches.
 
 use super::Reading;
