@@ -4,7 +4,7 @@
 
 use super::failpoint::{Guarding, on};
 use super::holds::Holds;
-use super::{DeclaredNoise, Halted, LimitedQuantity, Reading, Rig, RigFault, Tally, named_axis};
+use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally, named_axis};
 use crate::plan::{Interval, Limits};
 
 /// A rig and what nothing may drive it past.
@@ -20,7 +20,7 @@ pub struct Guard<'rig> {
     /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
     pub(super) settled: bool,
     /// Checked, and not yet carried out: targets, m, and the speed that the bytes say, m/s.
-    proposed: Option<(Vec<f64>, f64)>,
+    pub(super) proposed: Option<(Vec<f64>, f64)>,
     /// Of the last way, m/s.
     pub(super) speed: Option<f64>,
     /// Rig time when the rig last answered, s.
@@ -74,12 +74,6 @@ impl<'rig> Guard<'rig> {
     #[must_use]
     pub fn declared_noise(&self) -> DeclaredNoise {
         self.rig.declared_noise()
-    }
-
-    /// Speed of a move for which none is asked, m/s; None: as fast as the limits allow.
-    #[must_use]
-    pub fn own_speed(&self) -> Option<f64> {
-        self.rig.own_speed()
     }
 
     /// What was mended on the lines of the rig so far.
@@ -248,17 +242,6 @@ impl<'rig> Guard<'rig> {
         self.proposed = None;
         self.going.clear();
         self.rig.hold();
-    }
-
-    /// The same for good: what became of it, where anything real moves.
-    pub fn halt(&mut self) -> Option<Halted> {
-        self.proposed = None;
-        self.going.clear();
-        let halted = self.rig.halt();
-        if let Some(halted) = &halted {
-            self.heard = halted.time;
-        }
-        halted
     }
 
     pub(super) fn check_targets(&mut self, targets: &[f64]) -> Result<(), RigFault> {

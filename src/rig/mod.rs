@@ -10,6 +10,7 @@ pub mod failpoint;
 mod fault_table;
 mod guard;
 mod guard_glide;
+mod guard_halt;
 mod guard_speed;
 mod guard_way;
 mod halted;
