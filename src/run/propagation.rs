@@ -84,7 +84,7 @@ impl<'run> Doubts<'run> {
             study.draws.push((source, Job { setting: *setting, distortion }));
         }
         let runs = Bounded::new(again.farthest, again.values.len() + 1);
-        let contributions = over_rules(&rules, tick, &mut |rule, tick| {
+        let contributions = over_rules(rules, tick, &mut |rule, tick| {
             let path = path.clone().supposing(rule);
             let take = |Job { setting, distortion }: &Job| {
                 let found = rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion);

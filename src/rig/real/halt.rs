@@ -9,6 +9,9 @@ use crate::rig::{Halted, RigFault};
 /// A rig that was told to hold and still moves is waited for so long, s.
 const COMES_TO_REST: f64 = 5.0;
 
+/// Displacement (m) and force (N) of every axis, where they could be read, with their bytes.
+type Found = (Option<(Vec<f64>, Vec<f64>)>, Vec<Vec<u8>>);
+
 impl RealRig {
     /// Tells it to hold, and gives whether it heard; where that finds no ear, sends what needs no answer.
     pub(super) fn tell_to_hold(&mut self) -> Result<(), String> {
@@ -66,7 +69,7 @@ impl RealRig {
     }
 
     /// Displacement (m) and force (N) of every axis where it stands, with their bytes.
-    fn reading_at_rest(&mut self) -> (Option<(Vec<f64>, Vec<f64>)>, Vec<Vec<u8>>) {
+    fn reading_at_rest(&mut self) -> Found {
         // However long it was silent before: what counts is that it answers now.
         self.heard = self.clock.now();
         let mut read = self.poll();
