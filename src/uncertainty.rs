@@ -84,6 +84,11 @@ pub enum Source {
         result: &'static str,
         entry: usize,
     },
+    /// Noise and resolution of the two readings that a stiffness is told by.
+    Secant {
+        procedure: ProcedureId,
+        result: &'static str,
+    },
     /// Times are told to a whole step.
     TimeStep {
         procedure: ProcedureId,

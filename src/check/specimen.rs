@@ -36,6 +36,8 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"]) || faulty_portal(checker, block) {
         // What is misspelt or wrong is said already.
+    } else if mass.is_none() && names_portal(checker, block) && checker.given(block, "length").is_none() {
+        checker.faults.push(specimens::portal_without_mass(name, head));
     } else if mass.is_none() && !any_given(checker, block) {
         checker.faults.push(fault::missing_field(declared.kind, name, head, "mass", "mass = 0.73 kg"));
     } else if mass.is_none()

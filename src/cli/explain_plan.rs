@@ -72,7 +72,7 @@ pub struct DryRun<'a> {
 impl<'a> DryRun<'a> {
     pub fn of(plan: &'a Plan) -> Self {
         let mut ideal = plan.clone();
-        ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig.link));
+        ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
         let model =
             format!("dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift", plan.rig.name);
         Self::on(plan, &ideal, model)

@@ -2,32 +2,24 @@
 //! foretold by closed forms, and the energy, foretold step by step. In: what the rig declares, the steps of a dry run. Out:
 //! rows of text.
 //!
-//! A place that is late by D of virtual time is felt as the damper −K·D, and an amplitude grows by exp(πωD) a cycle. An
-//! actuator that falls short of its increments by the share t, which it takes from where it stands, is late by D =
-//! Δt·t/(1 − t); one with the lag τ that moves for T and rests for P before it is read, by Δt·(τ/T)(1 − e^(−T/τ))e^(−P/τ); in
-//! continuous mode by τ over the time scale. What lies inside the settling band or a quantum may be against the motion at
-//! every step: δ in all, and an amplitude A grows by 4δ a cycle, at worst. (The published numbers are those of ten cycles at 50
-//! steps: 10 % short ×1.55, δ = 2 % of A ×1.79.)
+//! A place that is late by D of virtual time is felt as the damper −K·D, and an amplitude grows by exp(πωD) a cycle to the first
+//! order of ωΔt; what is told is the growth to every order, of the integrator that runs (`mechanics::growth`). The time that a move
+//! takes, and so what an actuator with a pause lags behind by, goes with its increment: the mean of all steps counts, as the energy of
+//! a vibration weighs them, by their increments squared. What lies inside the settling band or a quantum may be against the motion at
+//! every step: δ in all, and an amplitude A grows by 4δ a cycle, at worst, and what it grew by grows on.
 
 use crate::check::tracking;
-use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, StoreyImpact};
+use crate::mechanics::growth::{Following, Lag, Mode as Vibration};
+use crate::plan::{Impact, Integrator, Link, Mode, Plan, Shake, Stepping, StoreyImpact, VIRTUAL_SPEED};
 use crate::quantity::Dimension;
 use crate::quantity::display::{minus, readable, significant};
 use crate::record::{Floors, ImpactHistory, Modes, ProcedureRecord, ShakeHistory, StoreyImpactHistory};
 
 /// What is foretold of one impact; nothing where the rig declares nothing that it misses.
 pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, history: &ImpactHistory) -> Vec<Vec<String>> {
-    let pause = impact.stepping.pause.constant().unwrap_or(0.0);
-    let ends = history.steps.first().zip(history.steps.last());
-    let wall = ends.map_or(0.0, |(first, last)| last.wall_time - first.wall_time);
-    let run = Ran {
-        mode: impact.stepping.mode,
-        pause,
-        time_step: history.time_step,
-        wall,
-        steps: ends.map_or(0, |(_, last)| last.step),
-    };
-    let (late, unsettled) = (delay(plan, &run), uncertain(plan, impact.stepping.mode));
+    let commands: Vec<[f64; 1]> = history.steps.iter().map(|step| [step.command]).collect();
+    let following = following(plan, &impact.stepping, history.time_step, commands.iter().map(<[f64; 1]>::as_slice));
+    let (late, unsettled) = (late(following, history.time_step), uncertain(plan, impact.stepping.mode));
     let input = |name: &str| procedure.inputs.iter().find(|(field, ..)| *field == name).map(|(_, estimate, _)| estimate.value);
     let (Some(mass), Some(stiffness)) = (input("mass"), input("stiffness")) else { return Vec::new() };
     let amplitude = history.steps.iter().map(|step| step.computed.abs()).fold(0.0, f64::max);
@@ -38,8 +30,11 @@ pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, hi
     if impact.stepping.i_modification {
         return vec![vec!["growth by tracking".to_owned(), CORRECTED.to_owned()]];
     }
-    let growth = Growth { omega: (stiffness / mass).sqrt(), late, relative: unsettled / amplitude };
-    let cycles = last * growth.omega / std::f64::consts::TAU;
+    let omega = (stiffness / mass).sqrt();
+    let damping_ratio = input("damping").unwrap_or(0.0) / (2.0 * (stiffness * mass).sqrt());
+    let growth =
+        Growth::of(following, impact.stepping.integrator, (omega, history.time_step), damping_ratio, unsettled / amplitude);
+    let cycles = last * omega / std::f64::consts::TAU;
     vec![
         late_by(late, unsettled),
         vec![
@@ -57,56 +52,60 @@ pub(super) fn rows(plan: &Plan, impact: &Impact, procedure: &ProcedureRecord, hi
 /// How an amplitude grows.
 #[derive(Clone, Copy)]
 struct Growth {
-    /// rad/s
-    omega: f64,
-    /// s
-    late: f64,
+    /// ln of it, a cycle.
+    a_cycle: f64,
     /// δ over the amplitude.
     relative: f64,
 }
 
 impl Growth {
-    /// Factor over so many cycles.
+    /// Of a mode of ω (rad/s), in steps of Δt (s).
+    fn of(
+        following: Following,
+        integrator: Integrator,
+        (omega, time_step): (f64, f64),
+        damping_ratio: f64,
+        relative: f64,
+    ) -> Self {
+        let vibration = Vibration { angle: omega * time_step, damping_ratio, operator: 1.0, i_modification: false };
+        // A mode that the steps do not resolve grows as slow ones do.
+        let slowly = || std::f64::consts::PI * vibration.angle * following.delay();
+        Self { a_cycle: following.growth(integrator, &vibration).unwrap_or_else(slowly), relative }
+    }
+
+    /// Factor over so many cycles n: A' = ln g·A + 4δ a cycle, gⁿ + 4δ(gⁿ − 1)/ln g.
     fn over(self, cycles: f64) -> f64 {
-        (std::f64::consts::PI * self.omega * self.late * cycles).exp() + 4.0 * self.relative * cycles
+        let exponent = self.a_cycle * cycles;
+        let each = if exponent.abs() < 1e-12 { cycles } else { exponent.exp_m1() / self.a_cycle };
+        exponent.exp() + 4.0 * self.relative * each
     }
 }
 
 /// The same of a frame on moving ground.
 pub(super) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> Vec<Vec<String>> {
-    let ends = history.steps.first().zip(history.steps.last());
-    let ends = ends.map(|(first, last)| (last.wall_time - first.wall_time, last.step));
-    let moved = Moved { ends, time_step: history.time_step, modes: history.modes.as_ref(), ratios: &history.damping_ratios };
-    frame_rows(plan, &shake.stepping, &moved, &history.steps)
+    let modes = (history.modes.as_ref(), history.damping_ratios.as_slice());
+    frame_rows(plan, &shake.stepping, history.time_step, modes, &history.steps)
 }
 
 /// The same of a frame that is struck.
 pub(super) fn storey_rows(plan: &Plan, impact: &StoreyImpact, history: &StoreyImpactHistory) -> Vec<Vec<String>> {
-    let ends = history.blow.steps.first().zip(history.blow.steps.last());
-    let ends = ends.map(|(first, last)| (last.wall_time - first.wall_time, last.step));
-    let moved = Moved { ends, time_step: history.blow.time_step, modes: history.modes.as_ref(), ratios: &history.damping_ratios };
-    frame_rows(plan, &impact.stepping, &moved, &history.floors)
-}
-
-/// What a dry run of a frame tells.
-struct Moved<'a> {
-    /// Rig time of all steps, s, and their number.
-    ends: Option<(f64, u64)>,
-    /// s
-    time_step: f64,
-    modes: Option<&'a Modes>,
-    ratios: &'a [f64],
+    let modes = (history.modes.as_ref(), history.damping_ratios.as_slice());
+    frame_rows(plan, &impact.stepping, history.blow.time_step, modes, &history.floors)
 }
 
 /// What a delay is to each mode, and how the largest displacement may grow in it. Beside it stands the damping of the mode, which
 /// works the other way.
-fn frame_rows<S: Floors>(plan: &Plan, stepping: &Stepping, moved: &Moved<'_>, steps: &[S]) -> Vec<Vec<String>> {
-    let pause = stepping.pause.constant().unwrap_or(0.0);
-    let (wall, count) = moved.ends.unwrap_or_default();
-    let run = Ran { mode: stepping.mode, pause, time_step: moved.time_step, wall, steps: count };
-    let (late, unsettled) = (delay(plan, &run), uncertain(plan, stepping.mode));
+fn frame_rows<S: Floors>(
+    plan: &Plan,
+    stepping: &Stepping,
+    time_step: f64,
+    (modes, ratios): (Option<&Modes>, &[f64]),
+    steps: &[S],
+) -> Vec<Vec<String>> {
+    let following = following(plan, stepping, time_step, steps.iter().map(S::command));
+    let (late, unsettled) = (late(following, time_step), uncertain(plan, stepping.mode));
     let amplitude = steps.iter().flat_map(S::computed).map(|place| place.abs()).fold(0.0, f64::max);
-    let Some(modes) = moved.modes.filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
+    let Some(modes) = modes.filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
         return Vec::new();
     };
     if stepping.i_modification {
@@ -115,8 +114,8 @@ fn frame_rows<S: Floors>(plan: &Plan, stepping: &Stepping, moved: &Moved<'_>, st
     let mut rows = vec![late_by(late, unsettled)];
     for (mode, period) in modes.periods.iter().enumerate() {
         let omega = modes.angular_frequency(mode);
-        let damping = moved.ratios.get(mode).copied().unwrap_or(0.0);
-        let growth = Growth { omega, late, relative: unsettled / amplitude };
+        let damping = ratios.get(mode).copied().unwrap_or(0.0);
+        let growth = Growth::of(following, stepping.integrator, (omega, time_step), damping, unsettled / amplitude);
         let percent = |ratio: f64| format!("{} %", minus(&significant(100.0 * ratio, 3)));
         rows.push(vec![
             if mode == 0 { "growth by tracking".to_owned() } else { String::new() },
@@ -149,34 +148,48 @@ fn late_by(late: f64, unsettled: f64) -> Vec<String> {
     vec!["late by".to_owned(), text]
 }
 
-/// How a procedure went from target to target in the dry run.
-struct Ran {
-    mode: Mode,
-    /// s
-    pause: f64,
-    /// s
-    time_step: f64,
-    /// Rig time of all steps, s.
-    wall: f64,
-    steps: u64,
+/// How the actuators of the rig follow targets (m) that go so.
+fn following<'a>(plan: &Plan, stepping: &Stepping, time_step: f64, targets: impl Iterator<Item = &'a [f64]>) -> Following {
+    let none = Lag::Paused { behind: 0.0, carried: 0.0 };
+    let Link::Virtual(link) = &plan.rig.link else { return Following { short: 0.0, lag: none } };
+    let lag = match stepping.mode {
+        Mode::Continuous { time_scale } => Lag::Gliding { steps: link.lag / (time_scale * time_step) },
+        Mode::StepAndPause if link.lag > 0.0 && plan.rig.settle.band == 0.0 => {
+            let pause = stepping.pause.constant().unwrap_or(0.0);
+            let speed = Some(plan.limits.speed.high).filter(|speed| speed.is_finite()).unwrap_or(VIRTUAL_SPEED);
+            paused(link.lag, pause, speed, targets)
+        }
+        Mode::StepAndPause => none,
+    };
+    Following { short: link.tracking, lag }
+}
+
+/// Behind and carried, by the squares of the increments. All axes arrive at once, the one with the longest way at `speed` (m/s).
+fn paused<'a>(lag: f64, pause: f64, speed: f64, targets: impl Iterator<Item = &'a [f64]>) -> Lag {
+    let (mut before, mut sums): (Option<&[f64]>, [f64; 3]) = (None, [0.0; 3]);
+    for targets in targets {
+        let ways = before.into_iter().flatten().zip(targets).map(|(from, to)| (to - from).abs());
+        let (weight, longest) = ways.fold((0.0, 0.0_f64), |(sum, most), way| (sum + way * way, most.max(way)));
+        let (moving, rest) = (longest / (speed * lag), (-pause / lag).exp());
+        if moving > 0.0 {
+            let behind = -(-moving).exp_m1() / moving;
+            for (sum, part) in sums.iter_mut().zip([1.0, behind * rest, (-moving).exp() * rest]) {
+                *sum += weight * part;
+            }
+        }
+        before = Some(targets);
+    }
+    let [all, behind, carried] = sums;
+    if all > 0.0 {
+        Lag::Paused { behind: behind / all, carried: carried / all }
+    } else {
+        Lag::Paused { behind: 0.0, carried: 0.0 }
+    }
 }
 
 /// D, s of virtual time.
-fn delay(plan: &Plan, run: &Ran) -> f64 {
-    let Link::Virtual(link) = &plan.rig.link else { return 0.0 };
-    let short = if link.tracking < 1.0 { run.time_step * link.tracking / (1.0 - link.tracking) } else { f64::INFINITY };
-    let lagging = match run.mode {
-        Mode::Continuous { time_scale } => link.lag / time_scale,
-        Mode::StepAndPause if link.lag > 0.0 && plan.rig.settle.band == 0.0 => {
-            #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-            let moving = (run.wall / run.steps.max(1) as f64 - run.pause).max(0.0);
-            let ratio = link.lag / moving;
-            let behind = if moving > 0.0 { ratio * (1.0 - (-1.0 / ratio).exp()) } else { 1.0 };
-            run.time_step * behind * (-run.pause / link.lag).exp()
-        }
-        Mode::StepAndPause => 0.0,
-    };
-    short + lagging
+fn late(following: Following, time_step: f64) -> f64 {
+    if following.short < 1.0 { time_step * following.delay() } else { f64::INFINITY }
 }
 
 /// δ, m: what settling lets pass, and half a quantum.
@@ -194,15 +207,39 @@ fn uncertain(plan: &Plan, mode: Mode) -> f64 {
 mod tests {
     use super::*;
 
-    /// ω of a period of half a second, Δt 10 ms: the published factors of ten cycles.
+    const OMEGA: f64 = 4.0 * std::f64::consts::PI;
+
+    /// Published, of ten cycles of fifty steps: behind by δ = 2 % of A an amplitude is ×1.7856 in the last of them. 4δ a cycle is the most
+    /// that it can be, and what is missing of it falls with the step.
     #[test]
-    fn the_published_growth_is_foretold() {
-        let omega = std::f64::consts::TAU / 0.5;
-        let short = Growth { omega, late: 0.01 * 0.1 / 0.9, relative: 0.0 };
-        assert!((short.over(10.0) - 1.549).abs() < 0.003, "{}", short.over(10.0));
-        let beyond = Growth { omega, late: -0.01 * 0.1 / 1.1, relative: 0.0 };
-        assert!((beyond.over(10.0) - 0.723).abs() < 0.03, "{}", beyond.over(10.0));
-        let behind = Growth { omega, late: 0.0, relative: 0.02 };
-        assert!((behind.over(10.0) - 1.7856).abs() < 0.02);
+    fn a_band_against_the_motion_is_the_most_it_can_be() {
+        let told = Growth { a_cycle: 0.0, relative: 0.02 }.over(10.0);
+        assert!(told > 1.7856 && told < 1.01 * 1.7856, "{told}");
+        let growing = Growth { a_cycle: 0.05, relative: 0.02 };
+        // One cycle after the other.
+        let mut amplitude = 1.0;
+        for _ in 0..10_000 {
+            amplitude += (growing.a_cycle * amplitude + 4.0 * growing.relative) * 1e-3;
+        }
+        assert!((growing.over(10.0) / amplitude - 1.0).abs() < 1e-3, "{amplitude}, told {}", growing.over(10.0));
+    }
+
+    /// The mean of steps by their increments squared: one long one of T = τ/2 and a hundred that are so short that they lag wholly.
+    #[test]
+    fn long_steps_weigh_most() {
+        let mut targets = vec![[0.0], [1e-3]];
+        targets.extend((0..100).map(|step| [1e-3 + 1e-9 * f64::from(step)]));
+        let Lag::Paused { behind, carried } = paused(2.0, 1.0, 1e-3, targets.iter().map(<[f64; 1]>::as_slice)) else { panic!() };
+        let (half, rest): (f64, f64) = ((-0.5_f64).exp(), (-0.5_f64).exp());
+        assert!((behind - 2.0 * (1.0 - half) * rest).abs() < 1e-6 && (carried - half * rest).abs() < 1e-6);
+        let gone = Growth::of(
+            Following { short: 0.0, lag: Lag::Paused { behind, carried } },
+            Integrator::Explicit,
+            (OMEGA, 1e-5),
+            0.0,
+            0.0,
+        );
+        let first = std::f64::consts::PI * OMEGA * 1e-5 * behind / (1.0 - carried);
+        assert!((gone.a_cycle / first - 1.0).abs() < 1e-3);
     }
 }

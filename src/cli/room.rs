@@ -116,7 +116,7 @@ mod tests {
         fits(Path::new("runs/beam-1"), need::of(&plan).bytes, room)?;
         let disk = Small(usize::try_from(room).unwrap());
         let mut journal = Journal::create(Box::new(disk), Durability::EveryPromise);
-        tape::begin(&mut journal, &tape::tests::header(), &["text".to_owned()]).unwrap();
+        tape::begin(&mut journal, &crate::run::testing::header(), &["text".to_owned()]).unwrap();
         let recorded = tape::record(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched, journal, Box::new(|| None));
         Ok(recorded.fault.is_none() && recorded.record.outcome == crate::record::Outcome::Completed)
     }

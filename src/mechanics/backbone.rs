@@ -65,12 +65,18 @@ impl BilinearFit {
 /// Points on either side of the knee, at least: fewer bear no line.
 const FEWEST: usize = 2;
 
-/// Least squares over both lines and the knee together (Hudson 1966): between two neighbouring points the best knee is
+/// Least squares over both lines and the knee together: between two neighbouring points the best knee is
 /// where the lines through either side meet, if they meet there, else one of the two points; the best of all is taken.
 /// Standard errors are those of the linearised model at the optimum. None of fewer than six points, or where the force
 /// shows no knee that softens. A ramp that pulls is fitted as the one it mirrors.
 #[must_use]
 pub fn fit_bilinear(x: &[f64], y: &[f64]) -> Option<BilinearFit> {
+    fit_bilinear_of(x, y, 0.0)
+}
+
+/// The same, with standard errors as of forces that scatter by `hidden` (N²) more than these do.
+#[must_use]
+pub fn fit_bilinear_of(x: &[f64], y: &[f64], hidden: f64) -> Option<BilinearFit> {
     if x.len() != y.len() || x.len() < 6 {
         return None;
     }
@@ -98,7 +104,8 @@ pub fn fit_bilinear(x: &[f64], y: &[f64]) -> Option<BilinearFit> {
     }
     let (knee, squares) = best?;
     let (found, _) = at_knee(&points, knee)?;
-    let fit = fitted(&points, knee, found, squares).filter(|fit| fit.stiffness > 0.0 && fit.hardened < fit.stiffness)?;
+    let fit =
+        fitted(&points, knee, found, (squares, hidden)).filter(|fit| fit.stiffness > 0.0 && fit.hardened < fit.stiffness)?;
     Some(if way < 0.0 { fit.mirrored() } else { fit })
 }
 
@@ -129,7 +136,12 @@ fn at_knee(points: &[(f64, f64)], knee: f64) -> Option<([f64; 3], f64)> {
     Some(([solved[0], solved[1] / scale, solved[2] / scale], squares))
 }
 
-fn fitted(points: &[(f64, f64)], knee: f64, [intercept, stiffness, hardened]: [f64; 3], squares: f64) -> Option<BilinearFit> {
+fn fitted(
+    points: &[(f64, f64)],
+    knee: f64,
+    [intercept, stiffness, hardened]: [f64; 3],
+    (squares, hidden): (f64, f64),
+) -> Option<BilinearFit> {
     #[expect(clippy::cast_precision_loss, reason = "far fewer points than 2^53")]
     let count = points.len() as f64;
     let scale = points.iter().fold(0.0, |most: f64, point| most.max(point.0.abs()));
@@ -143,7 +155,7 @@ fn fitted(points: &[(f64, f64)], knee: f64, [intercept, stiffness, hardened]: [f
     let size = normal[(3, 3)].sqrt().max(f64::MIN_POSITIVE);
     let unit = Vector4::new(1.0, 1.0, 1.0, 1.0 / size);
     let normal = Matrix4::from_diagonal(&unit) * normal * Matrix4::from_diagonal(&unit);
-    let covariance = normal.try_inverse()? * (squares / (count - 4.0));
+    let covariance = normal.try_inverse()? * (squares / (count - 4.0) + hidden);
     let to_si = Vector4::new(1.0, 1.0 / scale, 1.0 / scale, scale / size);
     let covariance = Matrix4::from_diagonal(&to_si) * covariance * Matrix4::from_diagonal(&to_si);
     // Of stiffness, intercept, K_p, knee, in this order; of points without scatter there is no error to share.

@@ -26,7 +26,7 @@ pub fn stiffness(length: f64, youngs_modulus: f64, second_moment: f64, ends: End
     shear.map_or(by_bending, |shear| 1.0 / (1.0 / by_bending + length / (part * shear)))
 }
 
-/// Ends of fixity factor `p = 1/(1 + 3EI/(k_θ L))` (Monforton & Wu 1963), 0 pinned, 1 built in: `k_θ = 3EI/L · p/(1 − p)`.
+/// Ends of fixity factor `p = 1/(1 + 3EI/(k_θ L))`, 0 pinned, 1 built in: `k_θ = 3EI/L · p/(1 − p)`.
 #[must_use]
 pub fn ends_of_fixity(factor: f64, length: f64, bending_stiffness: f64) -> Ends {
     if factor >= 1.0 {

@@ -1,7 +1,7 @@
 //! Where a line of straight stretches breaks: the places that leave the least squares. In: points in order of x, and a number
 //! of breaks. Out: the places. It knows no forces, no errors and no criterion.
 //!
-//! The start is the best division into separate lines, found exactly by dynamic programming (Bellman 1961); from there, and
+//! The start is the best division into separate lines, found exactly by dynamic programming; from there, and
 //! from the best breaks of one fewer with one more added, Gauss and Newton go to where the stretches meet, every step halved
 //! until it leaves less (Muggeo, Statistics in Medicine 22 (2003) 3055–3071). The better end is taken.
 

@@ -30,8 +30,8 @@ pub struct Loop {
     pub ends: [(f64, f64); 2],
     /// From the left end to the right, `K_sec`, N/m; None without motion.
     pub stiffness: Option<f64>,
-    /// Equivalent viscous damping, `E_D / (4π E_S0)` with `E_S0 = ½ K_sec a²` (Jacobsen 1930; Chopra, Dynamics of
-    /// Structures, sec. 3.9). About the middle of the loop, so that it means the same of one-sided cycles. None where
+    /// Equivalent viscous damping, `E_D / (4π E_S0)` with `E_S0 = ½ K_sec a²`: a damper C = 2ζ√(KM) that moves at
+    /// ω = √(K/M) takes π C ω a² = 4πζ·½Ka² a cycle. About the middle of the loop, so that it means the same of one-sided cycles. None where
     /// the loop has no positive stiffness.
     pub damping_ratio: Option<f64>,
 }
@@ -104,7 +104,8 @@ mod tests {
     }
 
     /// A closed loop of the bilinear model is a parallelogram of area `4 F_y (1 − α)(u_m − u_y)`, and its ζ is
-    /// `2(µ − 1)(1 − α) / (π µ (1 + αµ − α))` with µ = `u_m/u_y` (Chopra, sec. 7.12, of the same definition).
+    /// `2(µ − 1)(1 − α) / (π µ (1 + αµ − α))` with µ = `u_m/u_y`: that area over 2π `K_sec` `u_m²`,
+    /// `K_sec` = K(1 + αµ − α)/µ.
     #[test]
     fn a_bilinear_loop_has_the_area_of_its_parallelogram_and_the_error_falls_with_the_points() {
         let (stiffness, yield_force, hardening, amplitude) = (1000.0, 10.0, 0.1, 0.033);

@@ -16,7 +16,7 @@ pub struct CellDamping {
     pub rate: Option<StrengthRate>,
 }
 
-/// R (1 + (|v|/v₀)^n) while moving (Cowper & Symonds 1957, n = 1/q). At rest nothing is left of it: a step-and-pause test does
+/// R (1 + (|v|/v₀)^n) while moving (the law of Cowper and Symonds, n = 1/q, here of force and velocity). At rest nothing is left of it: a step-and-pause test does
 /// not see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrengthRate {

@@ -65,6 +65,12 @@ impl Peak {
     }
 }
 
+/// The farther of the farthest place so far and another, m; once one was none, that.
+#[must_use]
+pub fn farther(most: f64, place: f64) -> f64 {
+    if most.is_nan() || place.abs() <= most { most } else { place.abs() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

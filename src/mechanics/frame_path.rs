@@ -8,7 +8,7 @@
 //! the recorded readings come back as they were, to the bit.
 
 use super::frame::{SymmetricBand, drifts, shears, storeys_of};
-use super::recorded_path::{Again, Distortion, Noise, Reading, RecordedPath, Rule, UNSEEN};
+use super::recorded_path::{Again, Distortion, Noise, Reading, RecordedPath, Rule, UNSEEN, lag};
 
 /// One step of the record, an entry a floor.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +46,8 @@ impl FrameDistortion {
 #[derive(Clone, Debug)]
 pub struct FramePath {
     readings: Vec<FrameReading>,
+    /// With which each target was passed, m/s, an entry a floor; of readings made at rest, none.
+    velocities: Vec<Vec<f64>>,
     bends: Bends,
 }
 
@@ -53,31 +55,41 @@ pub struct FramePath {
 enum Bends {
     /// From the ground up: shear over drift.
     Storeys(Vec<RecordedPath>),
-    /// K at no displacement, N/m.
-    Together(SymmetricBand),
+    /// K at no displacement, N/m; how long each floor is behind its target, s.
+    Together(SymmetricBand, Vec<f64>),
 }
 
 impl FramePath {
-    /// `stiffness` is K at no displacement; `force_noise` (N) and `resolution` (m) are those of one floor's readings. None of
-    /// no reading.
+    /// `velocities` are those foretold for the targets (m/s), of readings made under way each `time_step` (s); `stiffness` is K at no displacement;
+    /// `force_noise` (N) and `resolution` (m) are those of one floor's readings. None of no reading.
     #[must_use]
-    pub fn new(readings: Vec<FrameReading>, stiffness: &SymmetricBand, force_noise: f64, resolution: f64) -> Option<Self> {
+    pub fn new(
+        readings: Vec<FrameReading>,
+        (velocities, time_step): (Vec<Vec<f64>>, f64),
+        stiffness: &SymmetricBand,
+        force_noise: f64,
+        resolution: f64,
+    ) -> Option<Self> {
         readings.first()?;
         let floors = stiffness.order();
         let of_floors = |read: fn(&FrameReading) -> &Vec<f64>, to_storeys: fn(&[f64], &mut [f64])| {
-            let of_step = |reading: &FrameReading| {
-                let mut storeys = vec![0.0; floors];
-                to_storeys(read(reading), &mut storeys);
-                storeys
-            };
-            readings.iter().map(of_step).collect::<Vec<Vec<f64>>>()
+            readings.iter().map(|reading| to(to_storeys, read(reading))).collect::<Vec<Vec<f64>>>()
         };
         let bends = match storeys_of(stiffness) {
-            None => Bends::Together(stiffness.clone()),
+            None => {
+                let of_axis = |axis: usize| {
+                    let passed = readings.iter().zip(&velocities);
+                    let behind =
+                        passed.map(|(reading, velocity)| (reading.target[axis] - reading.displacement[axis], velocity[axis]));
+                    if velocities.is_empty() { 0.0 } else { lag(behind, resolution) }
+                };
+                Bends::Together(stiffness.clone(), (0..floors).map(of_axis).collect())
+            }
             Some(stiffnesses) => {
                 let targets = of_floors(|reading| &reading.target, drifts);
                 let displacements = of_floors(|reading| &reading.displacement, drifts);
                 let forces = of_floors(|reading| &reading.force, shears);
+                let passed: Vec<Vec<f64>> = velocities.iter().map(|floors| to(drifts, floors)).collect();
                 let path = |(storey, stiffness): (usize, f64)| {
                     let at = |step: usize| Reading {
                         target: targets[step][storey],
@@ -88,12 +100,17 @@ impl FramePath {
                     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
                     let cells = (floors - storey) as f64;
                     let quantum = if storey == 0 { resolution } else { resolution * 2.0_f64.sqrt() };
-                    RecordedPath::new((0..readings.len()).map(at).collect(), stiffness, force_noise * cells.sqrt(), quantum)
+                    let (readings, noise) = ((0..readings.len()).map(at).collect(), force_noise * cells.sqrt());
+                    if passed.is_empty() {
+                        return RecordedPath::new(readings, stiffness, noise, quantum);
+                    }
+                    let passed: Vec<f64> = passed.iter().map(|storeys| storeys[storey]).collect();
+                    RecordedPath::under_way(readings, (&passed, time_step), stiffness, noise, quantum)
                 };
                 Bends::Storeys(stiffnesses.into_iter().enumerate().map(path).collect::<Option<_>>()?)
             }
         };
-        Some(Self { readings, bends })
+        Some(Self { readings, velocities, bends })
     }
 
     /// What its storeys may be supposed to do for all the record tells, the likeliest first.
@@ -116,14 +133,26 @@ impl FramePath {
         matches!(&self.bends, Bends::Storeys(paths) if paths.iter().any(RecordedPath::swung_back))
     }
 
+    /// Whether it was told how fast its targets were passed.
+    #[must_use]
+    pub const fn knows_velocities(&self) -> bool {
+        !self.velocities.is_empty()
+    }
+
+    /// What it was told, without what it made of it.
+    #[must_use]
+    pub fn into_readings(self) -> Vec<FrameReading> {
+        self.readings
+    }
+
     /// The same record, if every storey of which it is possible is supposed to keep to a rule.
     #[must_use]
     pub fn supposing(&self, rule: Rule) -> Self {
         let bends = match &self.bends {
             Bends::Storeys(paths) => Bends::Storeys(paths.iter().map(|path| path.clone().supposing(rule)).collect()),
-            together @ Bends::Together(_) => together.clone(),
+            together @ Bends::Together(..) => together.clone(),
         };
-        Self { readings: self.readings.clone(), bends }
+        Self { readings: self.readings.clone(), velocities: self.velocities.clone(), bends }
     }
 
     /// Takes the way again from its beginning.
@@ -131,7 +160,7 @@ impl FramePath {
     pub fn again<'a>(&'a self, distortion: &'a FrameDistortion) -> FrameAgain<'a> {
         let walks = match &self.bends {
             Bends::Storeys(paths) => paths.iter().map(|path| (path, path.again(Distortion::NONE))).collect(),
-            Bends::Together(_) => Vec::new(),
+            Bends::Together(..) => Vec::new(),
         };
         let first = &self.readings[0];
         let target = first.target.iter().zip(&distortion.displacement_scale).map(|(place, scale)| place * scale);
@@ -142,12 +171,20 @@ impl FramePath {
             step: 0,
             target: target.collect(),
             place: first.target.clone(),
+            velocity: vec![0.0; first.target.len()],
             displacement: first.displacement.clone(),
             force: first.force.clone(),
         };
         again.distort();
         again
     }
+}
+
+/// Storeys of floors, by `to_storeys`.
+fn to(to_storeys: fn(&[f64], &mut [f64]), floors: &[f64]) -> Vec<f64> {
+    let mut storeys = vec![0.0; floors.len()];
+    to_storeys(floors, &mut storeys);
+    storeys
 }
 
 /// The way as it is taken again.
@@ -161,6 +198,8 @@ pub struct FrameAgain<'a> {
     target: Vec<f64>,
     /// The last targets, in metres of the record.
     place: Vec<f64>,
+    /// With which they were passed, m/s, in metres of the record.
+    velocity: Vec<f64>,
     displacement: Vec<f64>,
     force: Vec<f64>,
 }
@@ -190,20 +229,30 @@ impl FrameAgain<'_> {
         self.storeys.iter().zip(max_drift).all(|((_, again), drift)| again.unseen() <= UNSEEN * drift)
     }
 
-    /// Goes to the targets of the next step, m, and reads.
-    pub fn move_to(&mut self, targets: &[f64]) {
+    /// Goes to the targets of the next step, m, passing them with these velocities (m/s) if it does not stop there, and reads.
+    pub fn move_to(&mut self, targets: &[f64], velocities: &[f64]) {
         self.step += 1;
-        let scaled = targets.iter().zip(&self.distortion.displacement_scale);
-        for (place, (target, scale)) in self.place.iter_mut().zip(scaled) {
-            *place = target / scale;
-        }
+        let scales = &self.distortion.displacement_scale;
+        let of_record = |to: &mut [f64], from: &[f64]| {
+            for (to, (from, scale)) in to.iter_mut().zip(from.iter().zip(scales)) {
+                *to = from / scale;
+            }
+        };
+        of_record(&mut self.place, targets);
+        of_record(&mut self.velocity, velocities);
         let recorded = &self.path.readings[self.step.min(self.path.readings.len() - 1)];
         self.displacement.copy_from_slice(&recorded.displacement);
         self.force.copy_from_slice(&recorded.force);
         match &self.path.bends {
             Bends::Storeys(_) => self.bend_storeys(),
-            Bends::Together(stiffness) => {
-                let off: Vec<f64> = self.place.iter().zip(&recorded.target).map(|(place, target)| place - target).collect();
+            Bends::Together(stiffness, lags) => {
+                let mut off: Vec<f64> = self.place.iter().zip(&recorded.target).map(|(place, target)| place - target).collect();
+                if let Some(passed_with) = self.path.velocities.get(self.step) {
+                    let faster = self.velocity.iter().zip(passed_with).map(|(now, then)| now - then);
+                    for (off, (faster, lag)) in off.iter_mut().zip(faster.zip(lags)) {
+                        *off -= lag * faster;
+                    }
+                }
                 for (displacement, off) in self.displacement.iter_mut().zip(&off) {
                     *displacement += off;
                 }
@@ -215,12 +264,13 @@ impl FrameAgain<'_> {
 
     /// What every storey does off its recorded drift, added to the recorded readings.
     fn bend_storeys(&mut self) {
-        let (mut below, mut off) = (0.0, 0.0);
+        let (mut below, mut slower, mut off) = (0.0, 0.0, 0.0);
         for storey in 0..self.storeys.len() {
             let drift = self.place[storey] - below;
-            below = self.place[storey];
+            let velocity = self.velocity[storey] - slower;
+            (below, slower) = (self.place[storey], self.velocity[storey]);
             let (path, again) = &mut self.storeys[storey];
-            let (displacement, shear) = again.move_to(drift);
+            let (displacement, shear) = again.pass(drift, velocity);
             let recorded = *path.recorded(self.step);
             off += displacement - recorded.displacement;
             self.displacement[storey] += off;
@@ -268,7 +318,7 @@ mod tests {
     }
 
     fn path(stiffness: &SymmetricBand) -> FramePath {
-        FramePath::new(targets().iter().map(|target| elastic(target)).collect(), stiffness, 0.0, 0.0).unwrap()
+        FramePath::new(targets().iter().map(|target| elastic(target)).collect(), (Vec::new(), 0.0), stiffness, 0.0, 0.0).unwrap()
     }
 
     #[test]
@@ -281,7 +331,7 @@ mod tests {
             let mut again = path.again(&none);
             assert_eq!(again.start(), targets()[0]);
             for reading in path.readings.iter().skip(1) {
-                again.move_to(&reading.target);
+                again.move_to(&reading.target, &[0.0; 3]);
                 assert_eq!((again.displacement(), again.force()), (reading.displacement.as_slice(), reading.force.as_slice()));
             }
         }
@@ -307,7 +357,7 @@ mod tests {
             let mut again = path.again(&distortion);
             for (step, target) in targets().iter().chain(&[[0.03, 0.01, -0.04]; 3]).enumerate().skip(1) {
                 let off: Vec<f64> = target.iter().map(|place| place + 1e-3).collect();
-                again.move_to(&off);
+                again.move_to(&off, &[0.0; 3]);
                 let places: Vec<f64> = off.iter().zip(&distortion.displacement_scale).map(|(off, scale)| off / scale).collect();
                 let by_hand = elastic(&places).force;
                 for (axis, by_hand) in by_hand.iter().enumerate() {

@@ -25,6 +25,8 @@ pub struct FrameRun {
     /// N and m, as the run took them.
     pub force_noise: f64,
     pub resolution: f64,
+    /// Whether the floors passed their targets without a stop.
+    pub gliding: bool,
 }
 
 /// A striker on one floor.
@@ -55,6 +57,9 @@ pub struct FloorsOutcome {
     pub between: Floors,
     /// Whether the record tells the way to it.
     pub seen: bool,
+    /// With which velocities the floors of a run without stops were foretold to pass their targets, m/s: told where the way that it
+    /// was taken along does not know them.
+    pub velocities: Vec<Vec<f64>>,
 }
 
 /// What a blow on one floor comes to.
@@ -125,12 +130,15 @@ impl FrameRun {
         let mut solver = FrameSolver::new(&self.input(&again, &load))?;
         let mut told = Peaks::new(self.matrices.order(), self.time_step);
         told.take(solver.state(), 1.0);
+        let mut passing = Passing::new(self, path);
         for step in (1..).take(usize::try_from(self.steps).unwrap_or(usize::MAX)) {
             self.matrices.ground_load(at(step), &mut load);
-            again.move_to(solver.predict(&load));
+            solver.predict(&load);
+            let velocities = passing.foretold(&mut |to| solver.predicted_velocity(to));
+            again.move_to(solver.predict(&load), velocities);
             told.take(solver.complete(again.displacement(), again.force()), 1.0);
         }
-        Ok(told.finish(&again))
+        Ok(told.finish(&again, passing))
     }
 
     /// Takes a blow on one floor again.
@@ -157,10 +165,15 @@ impl FrameRun {
         let mut told = Telling::new(&body, until, &before);
         let mut peaks = Peaks::new(order, self.time_step);
         peaks.take(solver.frame(), 1.0);
+        let mut passing = Passing::new(self, path);
         let mut energy = StoreyWork::new(solver.frame());
         let (mut first_blow, mut first_is_over) = (0, false);
         for _ in 0..self.steps {
-            again.move_to(solver.predict(&unloaded));
+            solver.predict(&unloaded);
+            let velocities = passing.foretold(&mut |to| {
+                solver.predicted_velocity(to);
+            });
+            again.move_to(solver.predict(&unloaded), velocities);
             solver.complete(again.displacement(), again.force());
             let (now, over) = (floor(&solver), solver.over(until));
             told.take(&before, &now, over);
@@ -178,11 +191,38 @@ impl FrameRun {
         }
         Ok(BlowOutcome {
             blow: told.finish(),
-            floors: peaks.finish(&again),
+            floors: peaks.finish(&again, passing),
             storey_energy: energy.storeys,
             first_blow,
             striker_velocity: before.striker_velocity,
         })
+    }
+}
+
+/// How fast the floors of a run without stops pass their targets, m/s.
+struct Passing {
+    /// At the end of the step under way; of a run that stops, nothing.
+    now: Vec<f64>,
+    gathers: bool,
+    gathered: Vec<Vec<f64>>,
+}
+
+impl Passing {
+    /// From rest.
+    fn new(run: &FrameRun, path: &FramePath) -> Self {
+        let now = vec![0.0; if run.gliding { run.matrices.order() } else { 0 }];
+        let gathers = run.gliding && !path.knows_velocities();
+        Self { gathered: if gathers { vec![now.clone()] } else { Vec::new() }, gathers, now }
+    }
+
+    fn foretold(&mut self, tell: &mut dyn FnMut(&mut [f64])) -> &[f64] {
+        if !self.now.is_empty() {
+            tell(&mut self.now);
+        }
+        if self.gathers {
+            self.gathered.push(self.now.clone());
+        }
+        &self.now
     }
 }
 
@@ -241,7 +281,7 @@ impl Peaks {
         self.base_shear.take(shear);
     }
 
-    fn finish(self, again: &FrameAgain) -> FloorsOutcome {
+    fn finish(self, again: &FrameAgain, passing: Passing) -> FloorsOutcome {
         let between = Floors {
             max_displacement: self.displacement.largest().to_vec(),
             max_drift: self.drift.largest().to_vec(),
@@ -249,7 +289,7 @@ impl Peaks {
             max_base_shear: self.base_shear.largest(),
         };
         let seen = again.is_seen(&between.max_drift);
-        FloorsOutcome { ends: self.ends, between, seen }
+        FloorsOutcome { ends: self.ends, between, seen, velocities: passing.gathered }
     }
 }
 

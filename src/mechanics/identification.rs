@@ -16,6 +16,25 @@ pub struct LineFit {
     pub degrees: f64,
 }
 
+impl LineFit {
+    /// The same line, with standard errors as of points through these x whose y scatter by `variance` more than they did.
+    #[must_use]
+    pub fn scattering(self, x: &[f64], variance: f64) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "no test has 2^53 readings")]
+        let count = x.len() as f64;
+        let mean = x.iter().sum::<f64>() / count;
+        let squares: f64 = x.iter().map(|x| (x - mean).powi(2)).sum();
+        if variance <= 0.0 || squares <= 0.0 {
+            return self;
+        }
+        Self {
+            slope_error: self.slope_error.hypot((variance / squares).sqrt()),
+            intercept_error: self.intercept_error.hypot((variance * (1.0 / count + mean * mean / squares)).sqrt()),
+            ..self
+        }
+    }
+}
+
 /// Least squares with an intercept, about the means so that no digits are lost. None with fewer than three points, with
 /// lists of different length, or where x does not vary.
 #[must_use]

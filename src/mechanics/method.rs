@@ -8,8 +8,8 @@
 //! d₁ = d̃₁ + βΔt²a₁                   v₁ = ṽ₁ + γΔt·a₁
 //! ```
 //!
-//! (Hilber, Hughes and Taylor 1977). They differ in what stands for r₁: explicit Newmark has β = 0, so that it is read
-//! where the step ends; α-OS (Nakashima; Combescure and Pegon 1997) reads r̃₁ at d̃₁ and takes r₁ = r̃₁ + K_I(d₁ − d̃₁);
+//! (that of HHT-α, by Hilber, Hughes and Taylor). They differ in what stands for r₁: explicit Newmark has β = 0, so that it is read
+//! where the step ends; α-OS reads r̃₁ at d̃₁ and takes r₁ = r̃₁ + K_I(d₁ − d̃₁);
 //! the tangent form foretells it before the step, r₁ = r₀ + `K_t`(d₁ − d₀), and imposes d₁.
 //!
 //! **Sign of α.** It is 0 or negative, as in HHT-α: −⅓ ≤ α ≤ 0, the more negative the more numerical damping of what the

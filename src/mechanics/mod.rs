@@ -16,6 +16,7 @@ pub mod frame_path;
 pub mod frame_properties;
 pub mod frame_rerun;
 pub mod ground;
+pub mod growth;
 pub mod identification;
 pub mod impact;
 pub mod integrator;
@@ -36,6 +37,7 @@ pub mod relaxation;
 pub mod relaxation_law;
 #[cfg(test)]
 mod relaxation_tests;
+pub mod relaxation_weights;
 pub mod relaxing;
 pub mod rerun;
 pub mod rounding;

@@ -22,12 +22,12 @@
 //! spring K = K_I nothing is left at any step, however large the lag (without the last term it would swing by sin φ of ½KA²
 //! twice a cycle of A sin ωt, and end as it began). What is left is what the specimen did not do as K_I says.
 //!
-//! **Energy error** (Thewalt and Roman 1994; Mosqueda, Stojadinović and Mahin 2007): the recursion believes that the
+//! **Energy error**: the recursion believes that the
 //! specimen took ∫ r_m dd_c, it took ∫ r_m dd_m. Negative: tracking puts energy into the test, and its amplitudes grow;
 //! positive: it takes energy out, as damping would. A share of the input, it is the one number to stop a test by.
-//! **Tracking indicator** (Mercan and Ricles 2007): the area that command against measurement encloses. It falls as long as
+//! **Tracking indicator**: the area that command against measurement encloses. It falls as long as
 //! the actuator lags, and rises while it leads; an error in proportion leaves it where it is.
-//! **NRMS and peak error** (as in the benchmark of Silva et al. 2020) tell of the size, and of no direction.
+//! **NRMS and peak error** tell of the size, and of no direction.
 
 use serde::{Deserialize, Serialize};
 

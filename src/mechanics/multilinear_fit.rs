@@ -12,7 +12,7 @@ pub const MOST_BREAKS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BreakCount {
     Exactly(usize),
-    /// As many as leave the least N ln(SSE/N) + p ln N (Schwarz 1978, Yao 1988), p = 2n + 2 numbers for n breaks.
+    /// As many as leave the least N ln(SSE/N) + p ln N (Schwarz's criterion, BIC), p = 2n + 2 numbers for n breaks.
     ByCriterion {
         most: usize,
     },
@@ -106,6 +106,12 @@ impl MultilinearFit {
 /// optimum, with the breaks counted; that their number was chosen is not in them. None where the points bear no such curve.
 #[must_use]
 pub fn fit_multilinear(x: &[f64], y: &[f64], count: BreakCount) -> Option<MultilinearFit> {
+    fit_multilinear_of(x, y, count, 0.0)
+}
+
+/// The same, with standard errors as of forces that scatter by `hidden` (N²) more than these do.
+#[must_use]
+pub fn fit_multilinear_of(x: &[f64], y: &[f64], count: BreakCount, hidden: f64) -> Option<MultilinearFit> {
     if x.len() != y.len() || x.len() < FEWEST || !x.iter().chain(y).all(|value| value.is_finite()) {
         return None;
     }
@@ -130,7 +136,7 @@ pub fn fit_multilinear(x: &[f64], y: &[f64], count: BreakCount) -> Option<Multil
         BreakCount::Exactly(breaks) => (lines.into_iter().nth(breaks)?, Vec::new()),
         BreakCount::ByCriterion { .. } => chosen(lines, points.len())?,
     };
-    stated(&points, &line, criterion, way, far, strong)
+    stated(&points, &line, criterion, way, (far, strong), hidden)
 }
 
 /// Scatter below this share of the largest force is rounding and no reason for another break.
@@ -153,8 +159,8 @@ fn stated(
     line: &Polyline,
     criterion: Vec<f64>,
     way: f64,
-    far: f64,
-    strong: f64,
+    (far, strong): (f64, f64),
+    hidden: f64,
 ) -> Option<MultilinearFit> {
     let count = line.breaks.len();
     let slopes = &line.coefficients[1..];
@@ -171,7 +177,7 @@ fn stated(
     }
     #[expect(clippy::cast_precision_loss, reason = "far fewer points than 2^53")]
     let freedom = (points.len() - size) as f64;
-    let covariance = scaled_inverse(&normal)? * (line.squares / freedom);
+    let covariance = scaled_inverse(&normal)? * (line.squares / freedom + hidden / (strong * strong));
     let whole = |effect: &[(usize, f64)]| {
         let mut all = DVector::<f64>::zeros(size);
         for (index, by) in effect {

@@ -43,6 +43,8 @@ pub struct LawFit {
     pub criterion: f64,
     /// Whether the readings tell the time at all: it is neither shorter than they are nor longer than the holds.
     pub told: bool,
+    /// What every reading does to share, time, rate, what remains and the pause, in this order.
+    pub weights: [Vec<f64>; 5],
     moves: Vec<Move>,
     before: f64,
 }
@@ -108,9 +110,22 @@ pub fn corrected_bic(squares: f64, count: f64, numbers: f64) -> f64 {
 /// # Errors
 /// There are too few readings, nothing relaxes, or the better law's time is out of reach.
 pub fn fit_reached(holds: &[Hold], before: f64, asked: Option<RelaxationLaw>, rate: f64) -> Result<ReachedFit, Unrelaxed> {
+    fit_reached_of(holds, before, asked, (rate, 0.0))
+}
+
+/// The same, with standard errors as of readings that scatter by `hidden` (N²) more than these do.
+///
+/// # Errors
+/// There are too few readings, nothing relaxes, or the better law's time is out of reach.
+pub fn fit_reached_of(
+    holds: &[Hold],
+    before: f64,
+    asked: Option<RelaxationLaw>,
+    (rate, hidden): (f64, f64),
+) -> Result<ReachedFit, Unrelaxed> {
     let most = holds.iter().map(|hold| hold.readings.len()).max().unwrap_or(0).max(1);
     let used = (1..=holds.len()).rev().find(|count| count * count * most <= MOST_WORK).unwrap_or(1).min(holds.len());
-    let problem = Problem::new(&holds[..used], before, rate);
+    let problem = Problem::new(&holds[..used], before, (rate, hidden));
     #[expect(clippy::cast_precision_loss, reason = "far fewer holds than 2^53")]
     let numbers = used as f64;
     if used == 0 || problem.count <= numbers + 5.0 || problem.longest <= 0.0 {
@@ -162,6 +177,8 @@ struct Problem<'a> {
     before: f64,
     /// N/s
     rate: f64,
+    /// N²
+    hidden: f64,
     count: f64,
     /// First time after nothing, and last, of the readings, s.
     shortest: f64,
@@ -170,7 +187,7 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(holds: &'a [Hold], before: f64, rate: f64) -> Self {
+    fn new(holds: &'a [Hold], before: f64, (rate, hidden): (f64, f64)) -> Self {
         let mut now = 0.0;
         let moves = holds.iter().map(|hold| {
             let took = hold.moved_for.max(0.0);
@@ -187,6 +204,7 @@ impl<'a> Problem<'a> {
             holds,
             before,
             rate,
+            hidden,
             count,
             shortest: readings().map(|(time, _)| *time).filter(|time| *time > 0.0).fold(f64::INFINITY, f64::min),
             longest: readings().fold(0.0, |most: f64, (time, _)| most.max(*time)),
@@ -309,15 +327,23 @@ impl<'a> Problem<'a> {
         let numbers = self.holds.len() as f64 + 2.0;
         let (left, by) = self.slopes(law, share, time);
         let squares: f64 = left.iter().map(|left| left * left).sum();
-        let variance = squares / (self.count - numbers);
-        let covariance = inverse(&by)? * variance;
-        let error = |of: &dyn Fn(f64, f64) -> f64| {
+        let variance = squares / (self.count - numbers) + self.hidden;
+        let normal = inverse(&by)?;
+        let effect = |of: &dyn Fn(f64, f64) -> f64| {
             let (by_share, by_time) = (1e-5_f64, 1e-4_f64);
-            let effect = Vector2::new(
+            Vector2::new(
                 (of(share + by_share, time) - of(share - by_share, time)) / (2.0 * by_share),
                 (of(share, time * by_time.exp()) - of(share, time * (-by_time).exp())) / (2.0 * by_time),
-            );
-            (effect.transpose() * covariance * effect)[(0, 0)].max(0.0).sqrt()
+            )
+        };
+        let error = |of: &dyn Fn(f64, f64) -> f64| {
+            let effect = effect(of);
+            (effect.transpose() * normal * effect)[(0, 0)].max(0.0).sqrt() * variance.sqrt()
+        };
+        // What is left changes with both by `by`: a reading that is off by e moves them by −(BᵀB)⁻¹Bᵀe.
+        let weights = |of: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+            let each = -(normal * effect(of));
+            by[0].iter().zip(&by[1]).map(|(by_share, by_time)| each[0] * by_share + each[1] * by_time).collect()
         };
         let (reached, _) = self.solve(law, share, time);
         let last = |hold: usize| self.holds[hold].readings.last().map_or(0.0, |(time, _)| *time);
@@ -350,6 +376,13 @@ impl<'a> Problem<'a> {
             degrees: self.count - numbers,
             criterion: corrected_bic(self.floored(squares), self.count, numbers),
             told,
+            weights: [
+                weights(&|share, _| share),
+                weights(&|_, time| time),
+                weights(&rate),
+                weights(&remaining),
+                weights(&needed),
+            ],
             moves: self.moves.clone(),
             before: self.before,
             reached,

@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 
 use super::identification::fit_line;
 use super::maxwell::{MaxwellBranch, Travel};
+use super::relaxation_weights::RelaxationWeights;
 
 /// A specimen held at one place.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,10 @@ pub struct RelaxationFit {
     pub scatter: f64,
     /// Degrees of freedom of that scatter: the readings less all that was found.
     pub degrees: f64,
+    /// Where the first move began, m.
+    pub start: f64,
+    /// The hold that loses most, from 0.
+    pub worst_hold: usize,
 }
 
 /// What the hold that loses most has to lose.
@@ -82,6 +87,12 @@ impl RelaxationFit {
         if self.model == RelaxationModel::Exponential { (holds - 2.0).max(1.0) } else { self.degrees }
     }
 
+    /// What every reading of its holds does to its numbers; None where they cannot be told apart.
+    #[must_use]
+    pub fn weights(&self, holds: &[Hold]) -> Option<RelaxationWeights> {
+        RelaxationWeights::of(self, holds, self.worst_hold)
+    }
+
     /// Force of a hold `seconds` after its first reading, N.
     #[must_use]
     pub fn force(&self, hold: usize, seconds: f64) -> Option<f64> {
@@ -108,12 +119,20 @@ const MOST_STEPS: usize = 60;
 /// Scatter below this share of the largest force is rounding and no relaxation.
 const ROUNDING: f64 = 1e-10;
 
-/// Least squares over τ, and for each τ over all that is linear (variable projection, Golub & Pereyra 1973). Standard errors are
+/// Least squares over τ, and for each τ over all that is linear (variable projection). Standard errors are
 /// those of the linearised model at the optimum. `start` is where the first move began, m.
 ///
 /// # Errors
 /// The readings do not tell a time constant.
 pub fn fit_relaxation(holds: &[Hold], start: f64, model: RelaxationModel) -> Result<RelaxationFit, Unrelaxed> {
+    fit_relaxation_of(holds, start, model, 0.0)
+}
+
+/// The same, with standard errors as of readings that scatter by `hidden` (N²) more than these do.
+///
+/// # Errors
+/// The readings do not tell a time constant.
+pub fn fit_relaxation_of(holds: &[Hold], start: f64, model: RelaxationModel, hidden: f64) -> Result<RelaxationFit, Unrelaxed> {
     let problem = Problem { holds, start, model };
     let count: usize = holds.iter().map(|hold| hold.readings.len()).sum();
     let numbers = if model == RelaxationModel::Exponential { 2 * holds.len() + 1 } else { 4 };
@@ -143,7 +162,7 @@ pub fn fit_relaxation(holds: &[Hold], start: f64, model: RelaxationModel) -> Res
     if !(tau > 1.01 * low && tau < 0.99 * high) {
         return Err(Unrelaxed::OutOfReach);
     }
-    problem.stated(tau, count - numbers).ok_or(Unrelaxed::OutOfReach)
+    problem.stated(tau, count - numbers, hidden).ok_or(Unrelaxed::OutOfReach)
 }
 
 struct Problem<'a> {
@@ -165,19 +184,8 @@ struct Steady {
 }
 
 impl Problem<'_> {
-    /// What is left to relax at the first reading of each hold, by K₁ = 1 N/m.
     fn kernel(&self, tau: f64) -> Vec<f64> {
-        let (mut branch, mut at) = (MaxwellBranch::new(1.0, tau), self.start);
-        let each = self.holds.iter().map(|hold| {
-            let moved = hold.displacement - at;
-            at = hold.displacement;
-            let seconds = hold.moved_for.max(1e-9);
-            branch.follow(&Travel::even(moved / seconds, seconds));
-            let force = branch.force();
-            branch.follow(&Travel::rest(hold.readings.last().map_or(0.0, |(time, _)| *time)));
-            force
-        });
-        each.collect()
+        kernel(self.holds, self.start, tau)
     }
 
     fn solve(&self, tau: f64) -> Option<Solved> {
@@ -313,10 +321,10 @@ impl Problem<'_> {
         Some(problem.residuals(&solved.holds, tau).collect())
     }
 
-    fn stated(&self, tau: f64, freedom: f64) -> Option<RelaxationFit> {
+    fn stated(&self, tau: f64, freedom: f64, hidden: f64) -> Option<RelaxationFit> {
         let (solved, change) = self.slope(tau)?;
         let own: f64 = self.own(&change, tau)?.iter().map(|part| part * part).sum();
-        let variance = solved.squares / freedom;
+        let variance = solved.squares / freedom + hidden;
         let tau_error = (variance / own).sqrt();
         let mut fit = RelaxationFit {
             model: self.model,
@@ -327,12 +335,15 @@ impl Problem<'_> {
             worst: Amplitude { force: 0.0, error: 0.0, covariance: 0.0 },
             scatter: variance.sqrt(),
             degrees: freedom,
+            start: self.start,
+            worst_hold: 0,
             holds: solved.holds.clone(),
         };
         let last = |hold: &Hold| hold.readings.last().map_or(0.0, |(time, _)| *time);
         let left = |index: usize| (solved.holds[index][1] * (-last(&self.holds[index]) / tau).exp()).abs();
         let worst = (0..self.holds.len()).max_by(|a, b| left(*a).total_cmp(&left(*b)))?;
         let amplitude = solved.holds[worst][1];
+        fit.worst_hold = worst;
         match self.model {
             RelaxationModel::Exponential => {
                 let offset: usize = self.holds[..worst].iter().map(|hold| hold.readings.len()).sum();
@@ -349,7 +360,12 @@ impl Problem<'_> {
                 fit.worst = Amplitude { force: amplitude, error, covariance: by_tau * tau_error * tau_error };
                 let (x, r): (Vec<f64>, Vec<f64>) =
                     self.holds.iter().zip(&solved.holds).map(|(hold, [relaxed, _])| (hold.displacement, *relaxed)).unzip();
-                fit.relaxed_stiffness = fit_line(&x, &r).map(|line| (line.slope, line.slope_error));
+                // What is hidden of the readings is in the relaxed force of each hold by itself.
+                let each = self.holds.iter().filter_map(|hold| Some(self::normal(&hold.readings, tau).try_inverse()?[(0, 0)]));
+                #[expect(clippy::cast_precision_loss, reason = "far fewer holds than 2^53")]
+                let hidden = hidden * each.sum::<f64>() / x.len() as f64;
+                let line = fit_line(&x, &r).map(|line| line.scattering(&x, hidden));
+                fit.relaxed_stiffness = line.map(|line| (line.slope, line.slope_error));
             }
             RelaxationModel::StandardLinearSolid => {
                 let kernel = self.kernel(tau);
@@ -381,6 +397,21 @@ impl Problem<'_> {
         fit.remaining = ((amplitude * fall).abs(), spread.max(0.0).sqrt());
         Some(fit)
     }
+}
+
+/// What is left to relax at the first reading of each hold, by K₁ = 1 N/m.
+pub(super) fn kernel(holds: &[Hold], start: f64, tau: f64) -> Vec<f64> {
+    let (mut branch, mut at) = (MaxwellBranch::new(1.0, tau), start);
+    let each = holds.iter().map(|hold| {
+        let moved = hold.displacement - at;
+        at = hold.displacement;
+        let seconds = hold.moved_for.max(1e-9);
+        branch.follow(&Travel::even(moved / seconds, seconds));
+        let force = branch.force();
+        branch.follow(&Travel::rest(hold.readings.last().map_or(0.0, |(time, _)| *time)));
+        force
+    });
+    each.collect()
 }
 
 /// Σ of the squares and products of 1 and e^(−t/τ).

@@ -3,12 +3,12 @@
 //!
 //! A force that came at once and is then held loses, of each newton, `share` times
 //! - 1 − e^(−t/τ): exponential; a Maxwell branch has that of what it relaxes;
-//! - ln(1 + t/t₀): with the logarithm of time, as creep goes by Lomnitz's law of 1956 (Garra, Mainardi & Spada, *A generalization of the
+//! - ln(1 + t/t₀): with the logarithm of time, as creep goes by Lomnitz's law (Garra, Mainardi & Spada, *A generalization of the
 //!   Lomnitz logarithmic creep law via Hadamard fractional calculus*, 2017, arXiv:1701.03068). Each factor of time takes as much as the one
 //!   before, and there is no last one: what can be stated is not the force still to be lost but how fast it goes.
 //!
 //! What is reached in many moves is the sum of them, each forgotten from its own instant on (Boltzmann's superposition of the increments of
-//! force, the quasi-linear viscoelasticity of Fung, *Biomechanics*, 1981): a step does not wipe out what the steps before it still lose.
+//! force, Fung's quasi-linear viscoelasticity): a step does not wipe out what the steps before it still lose.
 
 /// What a force has lost a time t (s) after it was reached, over its share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

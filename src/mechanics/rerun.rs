@@ -2,8 +2,9 @@
 //! is distorted. Out: what the impact comes to, told between the ends of steps, so that it follows the inputs smoothly.
 //! It moves no rig and knows no uncertainty.
 
+use super::extremes::farther;
 use super::impact::{ImpactInput, ImpactSolver, ImpactState};
-use super::recorded_path::{Distortion, RecordedPath};
+use super::recorded_path::{Distortion, Reading, RecordedPath};
 use super::summary::{ImpactSummary, SummaryBuilder};
 use crate::plan::Until;
 
@@ -16,6 +17,8 @@ pub struct Outcome {
     pub values: [f64; OUTCOMES.len()],
     /// The farthest it went where the record tells nothing, m.
     pub unseen: f64,
+    /// The farthest from its zero that it was at the end of a step, m.
+    pub farthest: f64,
 }
 
 /// Names of the values, as the results are called.
@@ -41,24 +44,40 @@ pub const OUTCOMES: [&str; 14] = [
 pub fn rerun(input: &ImpactInput, until: Until, steps: u64, path: &RecordedPath, distortion: Distortion) -> Outcome {
     let mut again = path.again(distortion);
     let start = again.start();
-    let found = integrate(input, until, steps, start, |target| again.move_to(target));
+    let found = integrate(input, until, steps, start, |target, velocity| again.pass(target, velocity));
     Outcome { unseen: again.unseen(), ..found }
 }
 
-/// The impact from a place (m) and the displacement (m) and force (N) read there, on whatever is `read` at its targets.
+/// The velocities foretold for the targets of a run that did not stop at them, m/s: `readings` are all of its own.
+#[must_use]
+pub fn foretold(input: &ImpactInput, until: Until, steps: u64, readings: &[Reading]) -> Vec<f64> {
+    let mut velocities = vec![0.0];
+    let Some(first) = readings.first() else { return velocities };
+    let start = (first.target, first.displacement, first.force);
+    integrate(input, until, steps, start, |_, velocity| {
+        let reading = readings[velocities.len().min(readings.len() - 1)];
+        velocities.push(velocity);
+        (reading.displacement, reading.force)
+    });
+    velocities
+}
+
+/// The impact from a place (m) and the displacement (m) and force (N) read there, on whatever is `read` at its
+/// targets, for each of which a velocity (m/s) is foretold.
 pub(crate) fn integrate(
     input: &ImpactInput,
     until: Until,
     steps: u64,
     (place, displacement, force): (f64, f64, f64),
-    mut read: impl FnMut(f64) -> (f64, f64),
+    mut read: impl FnMut(f64, f64) -> (f64, f64),
 ) -> Outcome {
     let mut solver = ImpactSolver::new(input, place, force);
     let mut before = ImpactState { measured_displacement: displacement, ..*solver.state() };
     let mut told = Telling::new(input, until, &before);
     for _ in 0..steps {
         let target = solver.predict();
-        let (displacement, force) = read(target);
+        let (velocity, _) = solver.predicted_velocity();
+        let (displacement, force) = read(target, velocity);
         let now = *solver.complete(displacement, force);
         let over = solver.over(until);
         told.take(&before, &now, over);
@@ -75,6 +94,7 @@ pub struct Telling {
     summary: SummaryBuilder,
     between: Between,
     end: Ending,
+    farthest: f64,
     until: Until,
     time_step: f64,
 }
@@ -86,12 +106,14 @@ impl Telling {
         let mut summary = SummaryBuilder::new(input);
         summary.push(start);
         let end = Ending { share: 1.0, displacement: start.displacement, restoring: 0.0, damping: 0.0 };
-        Self { summary, between: Between::new(start), end, until, time_step: input.time_step }
+        let farthest = farther(0.0, start.displacement);
+        Self { summary, between: Between::new(start), end, farthest, until, time_step: input.time_step }
     }
 
     /// Takes the ends of a step; `over` where the run ends with it.
     pub fn take(&mut self, before: &ImpactState, now: &ImpactState, over: bool) {
         self.summary.push(now);
+        self.farthest = farther(self.farthest, now.displacement);
         self.between.take(before, now, self.time_step);
         self.end = Ending::of(before, now, over && self.until == Until::StrikerStop, self.time_step);
     }
@@ -105,7 +127,7 @@ impl Telling {
     /// The results, as far as steps were taken.
     #[must_use]
     pub fn finish(self) -> Outcome {
-        let Self { summary, between, end, .. } = self;
+        let Self { summary, between, end, farthest, .. } = self;
         let summary = summary.finish();
         let values = [
             between.displacement,
@@ -123,7 +145,7 @@ impl Telling {
             end.damping,
             summary.striker_energy,
         ];
-        Outcome { summary, values, unseen: 0.0 }
+        Outcome { summary, values, unseen: 0.0, farthest }
     }
 }
 
@@ -200,7 +222,6 @@ impl Ending {
 mod tests {
     use super::*;
     use crate::mechanics::contact::ContactLaw;
-    use crate::mechanics::recorded_path::Reading;
     use crate::plan::Integrator;
 
     const STIFFNESS: f64 = 327.65;

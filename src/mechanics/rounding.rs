@@ -6,7 +6,7 @@
 //! same for readings of one quantum's distance as for one and the same reading, q²/12, and as good as none for readings that lie anyhow. So
 //! a fine grid makes independent errors, and a coarse one nearly one error for all. By Fourier, B₂({t})/2 = Σ cos(2πkt)/(2π²k²), and a sum
 //! with weights wᵢ has the variance q² Σₖ |Σᵢ wᵢ e^(2πi·k·yᵢ)|²/(2π²k²). Noise of σ quanta ahead of the rounding leaves e^(−(2πkσ)²) of
-//! what two readings share (Widrow and Kollár, Quantization Noise, 2008, ch. 9 and 19).
+//! what two readings share: of the k-th harmonic of either reading the characteristic function of a normal error, e^(−(2πkσ)²/2).
 
 use std::f64::consts::TAU;
 

@@ -12,8 +12,7 @@
 //! and a step is stable where all of them lie in the unit circle (the criterion of Schur and Cohn, in the form of Jury). Without
 //! damping two bounds follow in closed form. With s = (K − `K_I`)/K:
 //!
-//! - at z = −1 it turns over beyond `k s = 4 / ((1+2α)((1−α)² − α²/s))`, which for α = 0 is Δt = 2√(M/(K − `K_I`)) (Combescure and
-//!   Pegon 1997);
+//! - at z = −1 it turns over beyond `k s = 4 / ((1+2α)((1−α)² − α²/s))`, which for α = 0 is Δt = 2√(M/(K − `K_I`));
 //! - at z near exp(iωΔt), ln|z| = ½(ωΔt)⁴·¼|α|·((1−α)²s − (1+α)²) to leading order: where s > ((1+α)/(1−α))² a vibration gains energy
 //!   from every step, however short. What little that is while steps are short is judged against `TRIFLE`.
 //!
@@ -55,7 +54,8 @@ impl Met {
 
 /// Longest stable Δt, s; infinite where there is none.
 ///
-/// - Explicit Newmark: Δt ≤ T/π = 2/ω for the highest frequency of the structure (Mahin and Williams 1980).
+/// - Explicit Newmark: Δt ≤ T/π = 2/ω for the highest frequency of the structure, where the roots of z² − (2 − ω²Δt²)z + 1 leave the
+///   unit circle.
 /// - α-OS: none while `K_I ≥ K_t`; else by its amplification factors, above.
 /// - Tangent: constant average acceleration has none as long as its tangent is the structure's. See [`super::tangent`] for one that
 ///   changes.
@@ -107,7 +107,7 @@ fn amplification(by: Coefficients, c: f64, k: f64, operator: f64) -> [f64; 4] {
     [1.0 + now * two, -2.0 + now * one - alpha * two, 1.0 + now * none - alpha * one, -alpha * none]
 }
 
-/// Whether all roots of a real cubic lie in the unit circle or on it (Jury 1964), p(1) > 0 taken for granted: it is k.
+/// Whether all roots of a real cubic lie in the unit circle or on it (Jury's criterion), p(1) > 0 taken for granted: it is k.
 fn inside([three, two, one, none]: [f64; 4]) -> bool {
     three > 0.0
         && -three + two - one + none <= 0.0

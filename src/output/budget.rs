@@ -187,6 +187,10 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
             (format!("resolution of the readings of {name}"), From::Rig, None, None, Dimension::FORCE)
         }
+        Source::Secant { procedure, .. } => {
+            let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
+            (format!("noise and resolution of two readings of {name}"), From::Rig, None, None, Dimension::FORCE)
+        }
         Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);

@@ -68,7 +68,8 @@ pub(super) struct Parts {
     pub unit: String,
 }
 
-/// A value with its uncertainties, apart for the columns of a table.
+/// A value with its uncertainties, apart for the columns of a table. Where plain decimals would be a row of zeros all have one
+/// power of ten.
 pub(super) fn parts(value: f64, known: Option<Known>, dimension: Dimension) -> Parts {
     let (unit, factor) = unit(value, dimension);
     let set = display::typeset(&unit);
@@ -80,11 +81,13 @@ pub(super) fn parts(value: f64, known: Option<Known>, dimension: Dimension) -> P
     };
     let (uncertainty, expanded) = (known.standard / factor, known.expanded() / factor);
     let scaled = value / factor;
-    let (value, [standard, expanded]) = match decimals_of(scaled, uncertainty) {
-        Some(decimals) => (
-            minus(&format!("{scaled:.decimals$}")),
-            [uncertainty, expanded].map(|uncertainty| format!("{uncertainty:.decimals$}")),
-        ),
+    let power = power_of(scaled.abs().max(uncertainty));
+    let by = 10.0_f64.powi(power);
+    let (value, [standard, expanded]) = match decimals_of(scaled / by, uncertainty / by) {
+        Some(decimals) => {
+            let text = |number: f64| raised(&minus(&format!("{:.decimals$}", number / by)), power);
+            (text(scaled), [uncertainty, expanded].map(text))
+        }
         None => {
             (digits(value, factor, dimension), [uncertainty, expanded].map(|uncertainty| minus(&significant(uncertainty, 2))))
         }
@@ -92,11 +95,34 @@ pub(super) fn parts(value: f64, known: Option<Known>, dimension: Dimension) -> P
     Parts { value, standard: Some(standard), expanded: Some(expanded), unit: set }
 }
 
+/// The power of ten that a number of this size is told with: none as long as plain decimals are readable.
+fn power_of(size: f64) -> i32 {
+    if size == 0.0 || !size.is_finite() || (1e-3..1e7).contains(&size) {
+        return 0;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "between -324 and 308")]
+    let power = size.log10().floor() as i32;
+    power
+}
+
+/// `1.70` with a power of ten: `1.70 × 10⁻⁷`.
+fn raised(number: &str, power: i32) -> String {
+    if power == 0 { number.to_owned() } else { minus(&format!("{number}e{power}")) }
+}
+
+/// Two numbers that end alike, as one: `9.480 ± 0.948`, and with one power of ten for both, `(1.70 ± 0.23) × 10⁻⁷`.
+pub(super) fn plus_minus(value: &str, uncertainty: &str) -> String {
+    match (value.split_once(" × "), uncertainty.split_once(" × ")) {
+        (Some((value, power)), Some((uncertainty, same))) if power == same => format!("({value} ± {uncertainty}) × {power}"),
+        _ => format!("{value} ± {uncertainty}"),
+    }
+}
+
 /// A value and its standard uncertainty in one unit, both to the uncertainty's second digit: `300.02 ± 0.15 kN/m`.
 pub(super) fn with_uncertainty(value: f64, uncertainty: Option<f64>, dimension: Dimension) -> String {
     let parts = parts(value, uncertainty.map(Known::surely), dimension);
     match parts.standard {
-        Some(standard) => joined(&format!("{} ± {standard}", parts.value), &parts.unit),
+        Some(standard) => joined(&plus_minus(&parts.value, &standard), &parts.unit),
         None => text(value, dimension),
     }
 }
@@ -119,7 +145,7 @@ pub(super) fn value(condition: &ConditionOutcome) -> Option<String> {
     let parts = parts(scale * value, known, condition.dimension);
     Some(
         match parts.expanded {
-            Some(expanded) => joined(&format!("{} ± {expanded}", parts.value), &parts.unit),
+            Some(expanded) => joined(&plus_minus(&parts.value, &expanded), &parts.unit),
             None => text(scale * value, condition.dimension),
         } + percent,
     )
@@ -139,31 +165,37 @@ pub(super) fn bound(condition: &ConditionOutcome) -> String {
     match condition.bound {
         None => "—".to_owned(),
         Some(Bound::Compare { comparison, limit }) => format!("{} {}", comparison_sign(comparison), number(limit)),
-        // Nearer than a thousandth, the tolerance is readable only in a unit of its own.
-        Some(Bound::Within { target, tolerance }) if tolerance >= 1e-3 * target.abs() && target != 0.0 => {
+        Some(Bound::Within { target, tolerance }) => {
             let (unit, factor) = unit(target, condition.dimension);
-            let (target, tolerance) = to_one_decimal(digits(target, factor), digits(tolerance, factor));
-            join(&format!("{target} ± {tolerance}"), &unit) + percent
+            // Nearer than a thousandth, the tolerance is readable only in a unit of its own.
+            if unit.is_empty() || (tolerance >= 1e-3 * target.abs() && target != 0.0) {
+                join(&around(scale * target / factor, scale * tolerance / factor), &unit) + percent
+            } else {
+                format!("{} ± {}", number(target), number(tolerance))
+            }
         }
-        Some(Bound::Within { target, tolerance }) => format!("{} ± {}", number(target), number(tolerance)),
     }
 }
 
-/// Two numbers that end at the same decimal; as they are where one has a power of ten.
-fn to_one_decimal(a: String, b: String) -> (String, String) {
-    let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    if a.contains('×') || b.contains('×') {
-        return (a, b);
-    }
-    let wanted = decimals(&a).max(decimals(&b));
-    let filled = |text: String| match wanted - decimals(&text) {
-        0 => text,
-        lacking => {
-            let point = if text.contains('.') { "" } else { "." };
-            text + point + &"0".repeat(lacking)
-        }
+/// A target and its tolerance, to the digit that tells the tolerance: the third where that is all of it, else the second.
+fn around(target: f64, tolerance: f64) -> String {
+    let power = power_of(target.abs().max(tolerance));
+    let by = 10.0_f64.powi(power);
+    let (target, tolerance) = (target / by, tolerance / by);
+    let third: f64 = format!("{tolerance:.2e}").parse().unwrap_or(tolerance);
+    let whole = (third - tolerance).abs() <= 1e-9 * tolerance;
+    let Some(second) = decimals_of(target, tolerance) else {
+        return plus_minus(&minus(&trimmed(&significant(target * by, 6))), &minus(&trimmed(&significant(tolerance * by, 3))));
     };
-    (filled(a), filled(b))
+    let decimals = second + usize::from(whole);
+    let ends = |number: f64| format!("{number:.decimals$}");
+    let (mut target, mut tolerance) = (ends(target), ends(tolerance));
+    // Zeros that neither of them needs.
+    while target.contains('.') && [&target, &tolerance].iter().all(|text| text.ends_with('0') || text.ends_with('.')) {
+        target.pop();
+        tolerance.pop();
+    }
+    plus_minus(&raised(&minus(&target), power), &raised(&minus(&tolerance), power))
 }
 
 /// The margin of a condition in the unit of its value; None where there is no margin.
@@ -250,6 +282,16 @@ mod tests {
         assert_eq!(margin(&reached).unwrap(), "0.784\u{a0}J");
         let stiff = Bound::Within { target: 3e5, tolerance: 1.5e3 };
         assert_eq!(bound(&condition("k within 0.5 % of 300 kN/m", Dimension::STIFFNESS, stiff, 3e5)), "300.0 ± 1.5\u{a0}kN/m");
+        let told = |target: f64, tolerance: f64, dimension| {
+            bound(&condition("x within y of z", dimension, Bound::Within { target, tolerance }, target))
+        };
+        assert_eq!(told(0.156_19, 0.002 * 0.156_19, Dimension::LENGTH), "0.15619 ± 0.00031\u{a0}m");
+        assert_eq!(told(0.833_333_3, 0.000_833_333, Dimension::NUMBER), "0.83333 ± 0.00083");
+        assert_eq!(told(1.7e-7, 2e-8, Dimension::NUMBER), "(1.7 ± 0.2) × 10⁻⁷");
+        assert_eq!(told(20.0, 1.0, Dimension::NUMBER), "20 ± 1");
+        assert_eq!(told(100.0, 10.0, Dimension::FORCE), "100 ± 10\u{a0}N");
+        assert_eq!(told(1.0, 1e-6, Dimension::NUMBER), "1.000000 ± 0.000001");
+        assert_eq!(told(0.0, 1e-6, Dimension::LENGTH), "0\u{a0}mm ± 1\u{a0}µm");
     }
 
     #[test]
@@ -270,5 +312,9 @@ mod tests {
         assert_eq!(with_uncertainty(-0.002_5, Some(0.000_01), Dimension::LENGTH), "−2.500 ± 0.010\u{a0}mm");
         assert_eq!(with_uncertainty(5.0, None, Dimension::NUMBER), "5");
         assert_eq!(with_uncertainty(5.0, Some(0.0), Dimension::FORCE), "5.000 ± 0\u{a0}N");
+        assert_eq!(with_uncertainty(-1.7e-7, Some(2.345e-8), Dimension::NUMBER), "(−1.70 ± 0.23) × 10⁻⁷");
+        assert_eq!(with_uncertainty(2.5e8, Some(1.25e6), Dimension::NUMBER), "(2.500 ± 0.013) × 10⁸");
+        let column = parts(1.7e-7, Some(Known::surely(2.3e-8)), Dimension::NUMBER);
+        assert_eq!((column.value.as_str(), column.standard.as_deref()), ("1.70 × 10⁻⁷", Some("0.23 × 10⁻⁷")));
     }
 }

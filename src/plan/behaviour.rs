@@ -20,9 +20,9 @@ pub enum Behaviour {
     /// Piecewise linear, with kinematic hardening: corners of the first loading, displacement (m) and force (N), both rising,
     /// each stretch softer than the one before; the last one goes on.
     Multilinear { corners: Vec<[f64; 2]> },
-    /// Smooth hysteresis (Bouc 1967, Wen 1976). `sharpness` is n; γ = 1 − `beta`.
+    /// Smooth hysteresis after Bouc and Wen. `sharpness` is n; γ = 1 − `beta`.
     BoucWen { stiffness: f64, yield_force: f64, hardening: f64, sharpness: f64, beta: f64 },
-    /// Pinched hysteresis, peak-oriented (Ibarra, Medina & Krawinkler 2005).
+    /// Pinched hysteresis, peak-oriented, after Ibarra, Medina & Krawinkler.
     Pinching(Pinching),
     /// R = K(x) X with K(x) = K (r + (1 − r)/(1 + x/h)), x the largest displacement so far (either way), h where half of what
     /// can be lost is lost.

@@ -76,8 +76,8 @@ pub struct VirtualLink {
 impl VirtualLink {
     /// An ideal rig in place of another: nothing is done to its readings, and uncertainties are foretold with their errors.
     #[must_use]
-    pub fn ideal_of(link: &Link) -> Self {
-        let (seed, foretold) = match link {
+    pub fn ideal_of(rig: &RigPlan) -> Self {
+        let (seed, foretold) = match &rig.link {
             Link::Virtual(link) => {
                 let Self { seed, noise, resolution, force_resolution, .. } = *link;
                 (seed, ReadingErrors { noise, resolution, force_resolution })
@@ -86,7 +86,8 @@ impl VirtualLink {
                 let axes = || (0..link.axes.len().max(1)).map(|axis| link.readings_of(axis));
                 let noise = axes().map(|rules| rules.noise).fold(0.0, f64::max);
                 let resolution = axes().map(|rules| rules.resolution).fold(0.0, f64::max);
-                (0, ReadingErrors { noise, resolution, force_resolution: 0.0 })
+                let force_resolution = rig.calibration.newtons_per_count.unwrap_or(0.0).abs();
+                (0, ReadingErrors { noise, resolution, force_resolution })
             }
         };
         Self { seed, foretold: Some(foretold), ..Self::default() }

@@ -171,6 +171,8 @@ pub struct RampStep {
 /// A stiffness ramp, place by place, and what was fitted to it.
 #[derive(Clone, Debug)]
 pub struct RampHistory {
+    /// The reading before the first increment, m and N.
+    pub start: Option<(f64, f64)>,
     pub steps: Vec<RampStep>,
     /// None if too few steps were recorded, or the fit is of two lines.
     pub fit: Option<LineFit>,

@@ -72,6 +72,12 @@ impl Actuator {
         travel
     }
 
+    /// The reference stands where it is to be, and passes there at `velocity` (m/s): a way that was cut off is gone on with.
+    pub(super) const fn pass(&mut self, velocity: f64) -> Travel {
+        self.reference_velocity = velocity;
+        Travel::rest(0.0)
+    }
+
     /// The reference runs to `to` in `seconds`, its velocity a parabola in time with these ends. With e = reference − x:
     /// ė = q − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
     pub(super) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Travel {

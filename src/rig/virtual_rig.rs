@@ -134,7 +134,12 @@ impl VirtualRig {
         let began = self.time - seconds * fraction(done);
         for sample in done + 1..=samples {
             let to = if sample == samples { aim } else { from + (aim - from) * fraction(sample) };
-            let travel = self.actuator.advance(to, each_takes);
+            let travel = if sample == done + 1 && done_already(to, self.actuator.reference(), (aim - from) / seconds * each_takes)
+            {
+                self.actuator.pass((aim - from) / seconds)
+            } else {
+                self.actuator.advance(to, each_takes)
+            };
             self.time = began + seconds * fraction(sample);
             self.follow(&travel);
             let reading = self.reading();
@@ -261,6 +266,11 @@ impl Rig for VirtualRig {
     }
 }
 
+/// Whether a stroke was cut off just where its next reading is due, a step (m) after the one before: that it is read again, moving.
+fn done_already(to: f64, stands: f64, step: f64) -> bool {
+    (to - stands).abs() < 1e-6 * step.abs()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,6 +284,29 @@ mod tests {
 
     fn rig(link: VirtualLink) -> VirtualRig {
         VirtualRig::new(link, AT_ONCE, Some(&specimen(0.0, 0.0)), 1.0)
+    }
+
+    /// A way that was cut off where a reading is due is gone on with: the reading is made again, and of a damper that moves.
+    #[test]
+    fn a_reading_that_was_lost_is_made_again_under_way() {
+        /// Takes readings, and is killed at the one after so many.
+        fn up_to(read: &mut Vec<f64>, most: usize) -> impl FnMut(Reading) -> Result<(), RigFault> {
+            move |reading| {
+                if read.len() == most {
+                    return Err(RigFault::Device("killed".to_owned()));
+                }
+                read.push(reading.force[0]);
+                Ok(())
+            }
+        }
+        let damped = || VirtualRig::new(VirtualLink::default(), AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
+        let (mut whole, mut parts) = (Vec::new(), Vec::new());
+        damped().traverse(&[2e-3], 0.01, 4, &mut up_to(&mut whole, 4)).unwrap();
+        let mut rig = damped();
+        assert!(rig.traverse(&[2e-3], 0.01, 4, &mut up_to(&mut parts, 2)).is_err());
+        let cut_off = CutOff { from: &[0.0], to: &[2e-3], samples: 4, done: 2 };
+        rig.traverse_on(&cut_off, 0.01, &mut up_to(&mut parts, 4)).unwrap();
+        assert_eq!(parts, whole);
     }
 
     /// Moves at 10 mm/s and reads: time, displacement, force.

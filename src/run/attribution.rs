@@ -3,7 +3,8 @@
 //! what follows from them knows what they share.
 
 use super::inputs::Inputs;
-use super::rounding_doubts;
+use super::propagation::quanta;
+use super::{rounding_doubts, secant_doubts};
 use crate::formula::{Formula, ProcedureId, ResultValue};
 use crate::mechanics::backbone::SHARED;
 use crate::mechanics::multilinear_fit::{CurveShares, MultilinearFit};
@@ -50,6 +51,9 @@ pub(super) fn attribute(
         of_lists(procedure, fit, calibration, results);
     }
     rounding_doubts::widen(kind, history, plan, (procedure, declared), results);
+    if let (ProcedureKind::StiffnessRamp(asked), History::Ramp(ramp)) = (kind, history) {
+        secant_doubts::give((asked, ramp), (quanta(plan, declared, 0), calibration), procedure, results);
+    }
     if let (ProcedureKind::DampingSweep(sweep), History::Sweep(found)) = (kind, history) {
         let specimen = plan.specimens.get(sweep.specimen);
         let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);
@@ -137,7 +141,7 @@ fn of_lists(procedure: ProcedureId, fit: &MultilinearFit, calibration: &Calibrat
 
 /// A result that is made of forces F, displacements X and times alone, as F^p·X^q, grows with the factor of the load cell
 /// to the p and that of the transducer to the q: p is the exponent of mass in its dimension, q that of length less p.
-fn of_calibration(result: &NamedResult, value: f64, calibration: &Calibration) -> Vec<Contribution> {
+pub(super) fn of_calibration(result: &NamedResult, value: f64, calibration: &Calibration) -> Vec<Contribution> {
     let Dimension { mass, length, .. } = result.dimension;
     let (force, displacement) = (mass.as_f64(), length.as_f64() - mass.as_f64());
     let zero = if SHIFTED.contains(&result.name) { calibration.zero() } else { 0.0 };

@@ -1,4 +1,4 @@
-//! An impact without a stop (Melo et al. 2006, sec. 1.2; Nakashima and Masaoka 1999): the actuator follows a smooth path
+//! An impact without a stop (Melo et al. 2006, sec. 1.2): the actuator follows a smooth path
 //! at a time scale (`gliding`), and is read as it passes its targets. In: what is known before the first step, the rig behind its
 //! guard. Out: every step as it ended.
 //!

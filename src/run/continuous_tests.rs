@@ -150,7 +150,7 @@ fn a_blow_is_no_trend_to_go_on_with() {
     let plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
-    begin(&mut journal, &crate::run::tape::tests::header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &crate::run::testing::header(), &["text".to_owned()]).unwrap();
     let whole = record(&plan, &mut VirtualRig::of_plan(&plan), &mut Unwatched, journal, Box::new(|| None));
     let hardest = steps(&whole.record).iter().map(|step| STIFFNESS * step.computed.abs()).fold(0.0, f64::max);
     assert!(steps(&whole.record).iter().filter(|step| step.contact_force > 0.0).count() > 1);
@@ -214,7 +214,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
     plan.rig.link = Link::Virtual(VirtualLink { lag: 0.02, noise: 0.01, seed: 5, ..VirtualLink::default() });
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
-    begin(&mut journal, &crate::run::tape::tests::header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &crate::run::testing::header(), &["text".to_owned()]).unwrap();
     let mut rig = VirtualRig::of_plan(&plan);
     let whole = record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     assert_eq!(whole.record.outcome, Outcome::Completed, "{:?}", whole.record.events);

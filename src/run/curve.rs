@@ -1,6 +1,7 @@
 //! The multilinear curve that a plan asks for: fitted, and what a person should know of it. In: measured points. Out: the fit,
 //! results, remarks. It moves nothing.
 
+use super::foreseen::Foreseen;
 use super::results::measured;
 use crate::formula::ResultValue;
 use crate::mechanics::multilinear_fit::{BreakCount, MultilinearFit, fit_multilinear};
@@ -8,10 +9,15 @@ use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::NamedResult;
 
-/// The curve through (m, N); `what` names the points in a remark.
-pub(super) fn fitted(points: &[(f64, f64)], count: BreakCount, what: &str) -> (Option<MultilinearFit>, Vec<String>) {
+/// The curve through (m, N), means of so many samples; `what` names the points in a remark.
+pub(super) fn fitted(
+    points: &[(f64, f64)],
+    count: BreakCount,
+    what: &str,
+    (foreseen, samples): (Foreseen, u32),
+) -> (Option<MultilinearFit>, Vec<String>) {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-    let fit = fit_multilinear(&x, &r, count);
+    let fit = fit_multilinear(&x, &r, count).map(|fit| foreseen.multilinear(&fit, (&x, &r), samples).unwrap_or(fit));
     let remarks = remarks(fit.as_ref(), count, points.len(), what);
     (fit, remarks)
 }

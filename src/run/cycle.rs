@@ -5,7 +5,9 @@
 use super::Performed;
 use super::curve;
 use super::cycle_doubts;
+use super::foreseen::Foreseen;
 use super::inputs::Inputs;
+use super::propagation::quanta;
 use super::results::result;
 use super::samples::{mean, scatter};
 use super::session::{Session, first};
@@ -20,22 +22,23 @@ use crate::record::{CycleHistory, CycleStep, EventKind, History, NamedResult, Wh
 pub(super) fn perform(plan: &Cycle, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut cycling = Cycling { history: CycleHistory::default(), amplitude: 0.0, cycle: 0 };
     let stop = cycling.run(plan, inputs, session).err();
+    // Means of the samples at a target; on the way every reading stands alone.
+    let samples = if plan.rate.is_some() { 1 } else { plan.samples.max(1) };
     if let Some(count) = plan.fit {
-        let (backbone, remarks) = curve::fitted(&cycling.history.backbone_points(), count, "ends of first cycles");
+        let foreseen = (Foreseen::of(whole), samples);
+        let (backbone, remarks) = curve::fitted(&cycling.history.backbone_points(), count, "ends of first cycles", foreseen);
         cycling.history.backbone = backbone;
         for text in remarks.into_iter().filter(|_| stop.is_none()) {
             session.event(EventKind::Remark, text);
         }
     }
     let mut results = results(&cycling.history);
-    // Means of the samples at a target; on the way every reading stands alone.
-    let samples = if plan.rate.is_some() { 1 } else { plan.samples.max(1) };
     cycle_doubts::propagate(
         &cycling.history,
         samples,
         &whole.rig.calibration_of(0),
         inputs,
-        &session.guard.declared_noise(),
+        quanta(whole, session.guard.declared_noise(), 0),
         &mut results,
     );
     Performed { history: History::Cycle(cycling.history), results, stop }

@@ -3,14 +3,15 @@
 //! from readings with drawn errors. What is fitted to the backbone has its own scatter, and is not touched here.
 
 use super::cycle::results;
+use super::cycle_rounding::of_loops;
 use super::inputs::Inputs;
+use super::rounding_doubts::Quanta;
 use super::study::draws_of;
 use crate::formula::ResultValue;
 use crate::mechanics::cyclic::{LoopPoint, loop_of};
 use crate::mechanics::recorded_path::{Distortion, Noise};
 use crate::plan::Calibration;
 use crate::record::{CycleHistory, CycleStep, NamedResult};
-use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Source, combined};
 
 /// Results that follow from the loops.
@@ -26,7 +27,7 @@ pub(super) fn propagate(
     samples: u32,
     calibration: &Calibration,
     inputs: &Inputs<'_>,
-    declared: &DeclaredNoise,
+    quanta: Quanta,
     told: &mut [NamedResult],
 ) {
     let procedure = inputs.procedure();
@@ -47,17 +48,21 @@ pub(super) fn propagate(
             parts.push(Contribution::new(source, 0.5 * (up - down)));
         }
     }
-    if declared.force > 0.0 || declared.resolution > 0.0 {
+    if quanta.noise > 0.0 {
         let draws = draws_of(history.steps.len() as u64);
-        let averaged = f64::from(samples).sqrt();
-        let (force, displacement) = (declared.force / averaged, declared.resolution / 12.0_f64.sqrt());
+        let force = quanta.noise / f64::from(samples).sqrt();
         for draw in 0..draws {
-            let noise = Some(Noise { force, displacement, draw });
+            let noise = Some(Noise { force, displacement: 0.0, draw });
             let found = moved(Distortion { noise, ..Distortion::NONE });
             for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(nominal) {
                 let amount = (found - nominal) / f64::from(draws).sqrt();
                 parts.push(Contribution::new(Source::Readings { procedure, draw }, amount));
             }
+        }
+    }
+    for (name, amount) in of_loops(history, quanta, samples) {
+        if let Some(index) = OF_LOOPS.iter().position(|of_loop| *of_loop == name) {
+            contributions[index].push(Contribution::new(Source::Rounding { procedure, result: name, entry: 0 }, amount));
         }
     }
     for (name, parts) in OF_LOOPS.into_iter().zip(contributions) {

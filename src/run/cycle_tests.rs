@@ -1,7 +1,7 @@
 //! Cycles as run on virtual rigs.
 
-use super::testing::{elastic_plan, number, run_unwatched};
-use crate::formula::{Formula::Constant, ResultValue};
+use super::testing::{elastic_plan, list, number, run_unwatched};
+use crate::formula::Formula::Constant;
 use crate::plan::{Behaviour, Cycle, CycleInspection, Level, Plan, ProcedureKind, Sides};
 use crate::record::{CycleHistory, EventKind, History, Outcome, Record};
 
@@ -39,13 +39,6 @@ fn history(record: &Record) -> &CycleHistory {
     }
 }
 
-fn list(record: &Record, name: &str) -> Vec<f64> {
-    match &record.procedures[0].result(name).unwrap().value {
-        ResultValue::List(values) => values.clone(),
-        other @ ResultValue::Number { .. } => panic!("{other:?}"),
-    }
-}
-
 #[test]
 fn an_elastic_specimen_gives_everything_back() {
     let record = run_unwatched(&plan(cycle(&[0.001, 0.004], 2)));
@@ -53,7 +46,7 @@ fn an_elastic_specimen_gives_everything_back() {
     assert!(number(&record, 0, "dissipated_energy").0.unwrap().abs() < 1e-16);
     assert_eq!((number(&record, 0, "max_force").0, number(&record, 0, "min_force").0), (Some(4.0), Some(-4.0)));
     assert!((number(&record, 0, "stiffness").0.unwrap() - 1000.0).abs() < 1e-9);
-    assert_eq!((list(&record, "energies").len(), number(&record, 0, "cycles").0), (4, Some(4.0)));
+    assert_eq!((list(&record, 0, "energies").len(), number(&record, 0, "cycles").0), (4, Some(4.0)));
     assert_eq!(history(&record).steps.len(), 1 + 4 * 40);
     assert_eq!(history(&record).steps.last().unwrap().command, 0.0);
 }
@@ -63,7 +56,7 @@ fn an_elastic_specimen_gives_everything_back() {
 #[test]
 fn a_yielding_specimen_spends_the_area_of_its_loop() {
     let record = run_unwatched(&yielding(Cycle { points: 30, ..cycle(&[0.03], 2) }));
-    let energies = list(&record, "energies");
+    let energies = list(&record, 0, "energies");
     assert!((energies[1] - 0.72).abs() < 1e-12, "{} J", energies[1]);
     // The first begins on the virgin curve: from the sum of the areas under it, by hand.
     // 0 → 30 mm: ½·10·10 mm + 11·20 mm; → −30 mm over the corner at 10 mm, −8 N; → 0 over −10 mm, 8 N.
@@ -84,7 +77,7 @@ fn friction_costs_its_force_times_the_way() {
     let energy = |points: u32| {
         let mut plan = plan(Cycle { points, ..cycle(&[0.01], 2) });
         plan.specimens[0].coulomb = 3.0;
-        list(&run_unwatched(&plan), "energies")[1]
+        list(&run_unwatched(&plan), 0, "energies")[1]
     };
     let exact = 4.0 * 3.0 * 0.01;
     for points in [10, 20, 40] {
@@ -115,7 +108,7 @@ fn moved_without_stopping_it_is_read_at_its_rate() {
         plan.specimens[0].damping = damping;
         let record = run_unwatched(&plan);
         assert_eq!(history(&record).cycles.len(), 2);
-        list(&record, "energies")[1]
+        list(&record, 0, "energies")[1]
     };
     let exact = damping * speed * 4.0 * amplitude;
     let (coarse, fine) = (exact - energy(100.0), exact - energy(1000.0));

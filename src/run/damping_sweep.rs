@@ -12,6 +12,7 @@
 use std::ops::Range;
 
 use super::Performed;
+use super::foreseen::Foreseen;
 use super::inputs::Inputs;
 use super::results::{largest, measured, result};
 use super::session::{Session, first};
@@ -58,7 +59,8 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     let kept = paired.iter().filter(|(stroke, _)| !told.left_out.contains(&stroke.out.start));
     let of_history = |pair: &OutAndBack| ((pair.velocity, pair.half_difference), [pair.place, pair.mean]);
     let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = kept.flat_map(|(_, pairs)| pairs.iter().map(of_history)).unzip();
-    let fit = fit_of(&pairs);
+    let foreseen = Foreseen::of(whole);
+    let fit = fit_of(&pairs).map(|fit| widened(foreseen, fit, &pairs, &middles));
     if fit.is_none() && stop.is_none() {
         let text =
             "no damping: the steady parts of the strokes hold too few readings, or too few velocities, for a line".to_owned();
@@ -95,6 +97,14 @@ pub(super) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
         None if steady > 0.0 => (STEADY_SAMPLES / steady).ceil() + 1.0,
         None => STEADY_SAMPLES,
     }
+}
+
+/// With what readings are yet to scatter by.
+fn widened(foreseen: Foreseen, fit: LineFit, pairs: &[(f64, f64)], middles: &[[f64; 2]]) -> LineFit {
+    let moving = || pairs.iter().zip(middles).filter(|((velocity, _), _)| *velocity != 0.0);
+    let speeds: Vec<f64> = moving().map(|((velocity, _), _)| velocity.abs()).collect();
+    let forces: Vec<[f64; 2]> = moving().map(|((_, half), [_, mean])| [mean + half, mean - half]).collect();
+    foreseen.damping(fit, &speeds, &forces)
 }
 
 fn fit_of(pairs: &[(f64, f64)]) -> Option<LineFit> {

@@ -4,7 +4,7 @@
 use std::cell::Cell;
 
 use super::driven::{DrivenStep, Driver, Specimen};
-use super::tape::{self, Header, HeaderFile, Played};
+use super::tape::{self, Header, Played};
 use super::testing::elastic_plan;
 use super::{Inspection, Observer, Parting};
 use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
@@ -50,24 +50,7 @@ impl Observer for Person {
 }
 
 fn header() -> Header {
-    let files = vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }];
-    let text = || "0".to_owned();
-    Header {
-        run_id: "0123456789abcdef".to_owned(),
-        psd: text(),
-        build: text(),
-        toolchain: String::new(),
-        files,
-        settings: Vec::new(),
-        rig: None,
-        equipment: None,
-        rehearsal: false,
-        served: Some("nees".to_owned()),
-        date: None,
-        operator: None,
-        host: None,
-        began: None,
-    }
+    Header { served: Some("nees".to_owned()), ..super::testing::header() }
 }
 
 /// The record of a served rig; the same from the journal alone says the same.

@@ -20,6 +20,9 @@ use crate::verdict::{Verdict, assess_condition};
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut history = EscalateHistory::default();
     let stop = run(plan, whole, inputs, session, &mut history).err();
+    if stop.is_none() {
+        session.remark_again();
+    }
     Performed { results: results(&history), history: History::Escalate(history), stop }
 }
 

@@ -1,8 +1,8 @@
 //! Blows of rising energy, as run on a virtual rig.
 
-use super::testing::{elastic_plan, every, impact, number, run_unwatched};
+use super::testing::{elastic_plan, every, impact, list, number, run_unwatched};
 use crate::formula::Formula::{self, Constant};
-use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use crate::formula::{Part, ProcedureId, ResultReference};
 use crate::plan::{
     Behaviour, Between, BlowOn, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Test, Unload, Until,
 };
@@ -47,13 +47,6 @@ fn history(record: &Record) -> &EscalateHistory {
     }
 }
 
-fn list(record: &Record, name: &str) -> Vec<f64> {
-    match &record.procedures[0].result(name).unwrap().value {
-        ResultValue::List(values) => values.clone(),
-        other @ ResultValue::Number { .. } => panic!("{other:?}"),
-    }
-}
-
 /// Each blow is the impact that the plan could have written out, one unload after the other.
 #[test]
 fn every_blow_is_an_impact_of_its_own() {
@@ -79,8 +72,8 @@ fn every_blow_is_an_impact_of_its_own() {
         let rest = number(&apart, 2 * index + 1, "residual_displacement").0;
         assert_eq!(blow.rest_of_struck().map(|rest| rest.0), rest);
     }
-    assert_eq!(list(&record, "velocities"), velocities);
-    let peaks = list(&record, "max_displacements");
+    assert_eq!(list(&record, 0, "velocities"), velocities);
+    let peaks = list(&record, 0, "max_displacements");
     assert_eq!(number(&record, 0, "max_displacement").0, Some(peaks[2]));
     assert!(peaks.windows(2).all(|pair| pair[0] < pair[1]));
 }
@@ -96,7 +89,7 @@ fn it_ends_with_the_first_blow_that_fails() {
     let reckoned = |velocity: f64| velocity * 10.0 / (2e4_f64 * 11.0).sqrt();
     let fails = velocities.iter().position(|velocity| reckoned(*velocity) >= 0.0150).unwrap();
     assert_eq!(fails, 3);
-    for (peak, velocity) in list(&record, "max_displacements").iter().zip(velocities) {
+    for (peak, velocity) in list(&record, 0, "max_displacements").iter().zip(velocities) {
         assert!((peak / reckoned(velocity) - 1.0).abs() < 1e-3);
     }
     let energy = |velocity: f64| Some(0.5 * 10.0 * velocity * velocity);

@@ -2,20 +2,18 @@
 //! frame of the plan, its damping, the rig's calibration. Out: the sources, inputs with sources moved, the runs to take again.
 //! The run itself is not touched, and no rig is moved.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::inputs::Inputs;
 use super::propagation::{LATE, reading_errors};
 use super::session::Session;
 use super::stepping::FrameSteps;
 use super::stop::Stop;
 use super::storey_impact::no_frame;
-use super::study::{CLOSE, Effort, Study, Taken, Unknown, give, give_entry, is_alike};
+use super::study::{CLOSE, Effort, Study, give, give_entry, is_alike};
 use crate::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
-use crate::mechanics::frame_rerun::{Floors, FloorsOutcome, FrameRun};
+use crate::mechanics::frame_rerun::{Floors, FrameRun};
 use crate::mechanics::recorded_path::Noise;
-use crate::plan::{Frame, Plan, Shake, ShakeDamping, Stepping, StoreyImpact};
+use crate::plan::{Frame, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyImpact};
 use crate::record::NamedResult;
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Moved, Source, sources_of};
@@ -254,13 +252,23 @@ impl<'run> FrameDoubts<'run> {
             steps: steps.steps,
             force_noise: self.noise.force,
             resolution: self.noise.resolution,
+            gliding: matches!(self.stepping.mode, Mode::Continuous { .. }),
         }
     }
 
     /// The way that was recorded.
     pub fn path(&self, steps: &FrameSteps, readings: Vec<FrameReading>) -> Result<FramePath, String> {
+        self.passed(steps, readings, Vec::new())
+    }
+
+    /// The same way, once it is known how fast its targets were passed (m/s).
+    pub fn under_way(&self, steps: &FrameSteps, path: FramePath, velocities: Vec<Vec<f64>>) -> Result<FramePath, String> {
+        if velocities.is_empty() { Ok(path) } else { self.passed(steps, path.into_readings(), velocities) }
+    }
+
+    fn passed(&self, steps: &FrameSteps, readings: Vec<FrameReading>, velocities: Vec<Vec<f64>>) -> Result<FramePath, String> {
         let stiffness = &steps.properties.matrices.stiffness;
-        let path = FramePath::new(readings, stiffness, self.noise.force, self.noise.resolution);
+        let path = FramePath::new(readings, (velocities, steps.time_step), stiffness, self.noise.force, self.noise.resolution);
         path.ok_or_else(|| "nothing was recorded".to_owned())
     }
 }
@@ -290,50 +298,6 @@ pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
         told.len() == found.len() && told.iter().zip(found).all(near)
     })
-}
-
-/// Runs of one frame that a study takes, held against the run itself.
-pub(super) struct Again<'run> {
-    itself: &'run Floors,
-    /// Numbers that a run comes to.
-    count: usize,
-    grown: AtomicBool,
-}
-
-impl<'run> Again<'run> {
-    pub(super) const fn of(itself: &'run Floors, count: usize) -> Self {
-        Self { itself, count, grown: AtomicBool::new(false) }
-    }
-
-    /// What a run came to: its floors, and its numbers; no numbers where it could not be taken.
-    pub(super) fn taken<T, E>(
-        &self,
-        found: Result<T, E>,
-        floors: impl Fn(&T) -> &FloorsOutcome,
-        numbers: impl Fn(&T) -> Vec<f64>,
-    ) -> Taken {
-        let Ok(found) = found else { return Taken { values: vec![f64::NAN; self.count], seen: false } };
-        let outcome = floors(&found);
-        if grows(&outcome.between, self.itself) {
-            self.grown.store(true, Ordering::Relaxed);
-        }
-        Taken { values: numbers(&found), seen: outcome.seen }
-    }
-
-    /// What the study found, unless a run grew without bound.
-    pub(super) fn told(self, parts: Result<Vec<Vec<Contribution>>, Stop>) -> Result<Vec<Vec<Contribution>>, Unknown> {
-        const GROWS: &str = "errors of its readings, taken along the recorded way, grow without bound";
-        let parts = parts.map_err(Unknown::Stop)?;
-        if self.grown.into_inner() { Err(GROWS.to_owned().into()) } else { Ok(parts) }
-    }
-}
-
-/// Whether a run that was taken again went ten times as far as the run itself did: what a small error makes of such a way is
-/// no uncertainty, but a way that is not stable against it.
-pub(super) fn grows(again: &Floors, itself: &Floors) -> bool {
-    const FARTHER: f64 = 10.0;
-    let farthest = itself.max_displacement.iter().fold(0.0_f64, |most, place| most.max(place.abs()));
-    again.max_displacement.iter().any(|place| place.is_nan() || place.abs() > FARTHER * farthest)
 }
 
 /// Results that wait for the end of the run, beside those of any impact.

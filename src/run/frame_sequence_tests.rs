@@ -2,10 +2,10 @@
 
 use super::Unwatched;
 use super::session::Session;
-use super::testing::{elastic_plan, number, struck_frame};
+use super::testing::{elastic_plan, list, number, run_unwatched, struck_frame};
 use super::unload::{of_frame, to_rest};
 use crate::formula::Formula::Constant;
-use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
+use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
     Behaviour, Between, BlowOn, Comparison, Condition, Escalate, Frame, FrameUnload, Interval, Link, Plan, Procedure,
     ProcedureKind, Storey, StoreyImpact, Striker, Test, Unload, VirtualLink,
@@ -37,17 +37,6 @@ pub(super) fn three(hardening: f64) -> Plan {
     plan.specimens[0].frame = Some(Frame::of_storeys((0..3).map(|index| storey(index, hardening)).collect()));
     plan.specimens[0].behaviour = None;
     plan
-}
-
-fn run_unwatched(plan: &Plan) -> Record {
-    super::run(plan, virtual_rig(plan).as_mut(), &mut Unwatched)
-}
-
-fn list(record: &Record, procedure: usize, name: &str) -> Vec<f64> {
-    match record.procedures[procedure].result(name).map(|result| &result.value) {
-        Some(ResultValue::List(values)) => values.clone(),
-        other => panic!("{name} is {other:?}"),
-    }
 }
 
 fn rest(within: Option<f64>) -> ProcedureKind {
@@ -274,6 +263,23 @@ fn a_row_of_blows_on_a_storey_is_the_blows_written_out() {
         assert_eq!(list(&row, 0, "max_drift")[storey], of("max_drift").into_iter().fold(0.0, f64::max));
         assert_eq!(list(&row, 0, "storey_energy")[storey], of("storey_energy").iter().sum::<f64>());
     }
+}
+
+/// After a row of blows each cell's zero z leaves the drift of a storey off by −z/k for each floor above it, and Σ of the squares is
+/// u(`residual_drift`): of the last blow's rest, as its own results tell.
+#[test]
+fn what_stays_after_a_row_is_as_uncertain_as_the_zeros_above() {
+    let mut plan = rising(&[0.9, 1.2], 10.0, Between::Unload);
+    plan.rig.calibration.zero_uncertainty = 0.05;
+    let record = run_unwatched(&plan);
+    let result = record.procedures[0].result("residual_drift").unwrap();
+    let told = result.entry_uncertainties();
+    for (storey, stiffness) in [500.0, 300.0].into_iter().enumerate() {
+        let floors: f64 = if storey == 0 { 2.0 } else { 1.0 };
+        let by_hand = 0.05 * floors.sqrt() / stiffness;
+        assert!((told[storey].unwrap() / by_hand - 1.0).abs() < 1e-6, "storey {storey}: {told:?}, by hand {by_hand}");
+    }
+    assert_eq!(result.contributions, blows(&record).blows.last().unwrap().rest.as_ref().unwrap().doubts_of_drifts());
 }
 
 /// It ends with the first blow after which a storey has drifted too far, and after the last of the list.

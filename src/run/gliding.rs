@@ -10,11 +10,10 @@
 
 use super::session::Session;
 use super::stop::Stop;
+use crate::mechanics::growth::AHEAD;
 use crate::mechanics::path::Path;
 use crate::rig::{Reading, RigFault};
 
-/// Share of a step in which the targets are not known yet.
-const AHEAD: f64 = 0.2;
 /// Readings while they are not, and on the way to them: each is held against the limits.
 const READINGS: (usize, usize) = (1, 4);
 /// Steps' time in which the actuators come to rest at the end.

@@ -4,8 +4,8 @@
 use super::results::{measured, result};
 use super::session::{Session, first};
 use super::stop::Stop;
-use crate::mechanics::reached_fit::{ReachedFit, fit_reached};
-use crate::mechanics::relaxation::{Hold, RelaxationFit, Unrelaxed, fit_relaxation};
+use crate::mechanics::reached_fit::{ReachedFit, fit_reached_of};
+use crate::mechanics::relaxation::{Hold, RelaxationFit, Unrelaxed, fit_relaxation_of};
 use crate::mechanics::relaxation_law::RelaxationLaw;
 use crate::plan::WatchedModel;
 use crate::quantity::Dimension;
@@ -42,14 +42,15 @@ pub(super) struct Told {
     pub remarks: Vec<String>,
 }
 
-/// `start`: displacement (m) and force (N) before the first move; `noise`: what the rig declares of its cell, N.
-pub(super) fn told(holds: &[Hold], start: (f64, f64), asked: Option<WatchedModel>, noise: Option<f64>) -> Told {
+/// `start`: displacement (m) and force (N) before the first move; `noise`: what the rig declares of its cell, N; `hidden`: what the
+/// readings of a run are to scatter by beyond these, N².
+pub(super) fn told(holds: &[Hold], start: (f64, f64), asked: Option<WatchedModel>, (noise, hidden): (Option<f64>, f64)) -> Told {
     let mut told = Told::default();
     let mut accuracy = noise;
     match asked {
         Some(WatchedModel::Decay { model, accuracy: asked }) => {
             accuracy = asked.or(noise);
-            match fit_relaxation(holds, start.0, model) {
+            match fit_relaxation_of(holds, start.0, model, hidden) {
                 Ok(fit) => {
                     told.remarks = remarks(&fit, holds, accuracy);
                     told.relaxation = Some(fit);
@@ -57,7 +58,7 @@ pub(super) fn told(holds: &[Hold], start: (f64, f64), asked: Option<WatchedModel
                 Err(reason) => told.remarks.push(unrelaxed(reason).to_owned()),
             }
         }
-        Some(WatchedModel::Reached { law, rate }) => match fit_reached(holds, start.1, law, rate) {
+        Some(WatchedModel::Reached { law, rate }) => match fit_reached_of(holds, start.1, law, (rate, hidden)) {
             Ok(fit) => {
                 told.remarks = reached_remarks(&fit, holds, rate, noise);
                 told.reached = Some(fit);

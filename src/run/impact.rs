@@ -179,16 +179,16 @@ pub(super) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
 /// What a reader of the results must know of how the run ended.
 pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
     if until == Until::StrikerStop && summary.stop_time.is_none() {
-        session.event(EventKind::Remark, "the striker did not stop within the duration".to_owned());
+        session.remark("the striker did not stop within the duration".to_owned());
     }
     if summary.still_rising {
         let text = "the structure was still moving on at the end: its largest displacement is not a peak";
-        session.event(EventKind::Remark, text.to_owned());
+        session.remark(text.to_owned());
     }
     unbalanced(summary.energy_error, session);
     if summary.last_blow_cut {
         let text = "the striker stopped with a contact force in its last step: the last blow is cut";
-        session.event(EventKind::Remark, text.to_owned());
+        session.remark(text.to_owned());
     }
 }
 

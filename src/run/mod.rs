@@ -5,6 +5,7 @@ mod axes;
 #[cfg(test)]
 mod balance_tests;
 mod blow;
+mod bounded;
 #[cfg(test)]
 mod contacts_tests;
 mod continuous;
@@ -13,6 +14,9 @@ mod continuous_tests;
 mod curve;
 mod cycle;
 mod cycle_doubts;
+mod cycle_rounding;
+#[cfg(test)]
+mod cycle_rounding_tests;
 #[cfg(test)]
 mod cycle_tests;
 mod damping_sweep;
@@ -29,6 +33,9 @@ mod followed;
 mod followed_tests;
 #[cfg(test)]
 mod forecast_tests;
+mod foreseen;
+#[cfg(test)]
+mod foreseen_tests;
 mod frame_doubts;
 #[cfg(test)]
 mod frame_doubts_tests;
@@ -37,7 +44,14 @@ mod frame_sequence_tests;
 mod frame_steps;
 mod gate;
 mod gliding;
+#[cfg(test)]
+mod gliding_doubts_tests;
+#[cfg(test)]
+mod growth_tests;
 mod hold;
+mod hold_rounding;
+#[cfg(test)]
+mod hold_rounding_tests;
 mod impact;
 #[cfg(test)]
 mod impact_tests;
@@ -66,6 +80,7 @@ mod rounding_doubts;
 #[cfg(test)]
 mod rounding_doubts_tests;
 mod samples;
+mod secant_doubts;
 #[cfg(test)]
 mod sequence_tests;
 mod session;
@@ -331,7 +346,7 @@ fn afterwards(plan: &Plan) -> &'static str {
 
 fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     match &procedure.kind {
-        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, inputs, session),
+        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, plan, inputs, session),
         ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
         ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
         ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),

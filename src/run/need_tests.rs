@@ -1,8 +1,8 @@
 //! What a run is reckoned to write, held against what it wrote: never less, and not wildly more.
 
 use super::need::{self, FRAME};
-use super::tape::{self, tests::header};
-use super::testing::{elastic_plan, every, impact, ramp, result_of};
+use super::tape;
+use super::testing::{elastic_plan, every, header, impact, ramp, result_of};
 use super::{Unwatched, testing};
 use crate::formula::Formula::Constant;
 use crate::plan::{

@@ -69,7 +69,7 @@ fn laws() -> Vec<(&'static str, Contact)> {
 fn truth(input: &ImpactInput, until: Until, steps: u64, behaviour: &Behaviour) -> [f64; OUTCOMES.len()] {
     let mut model = SpecimenModel::new(behaviour);
     let force = model.move_to(0.0);
-    integrate(input, until, steps, (0.0, 0.0, force), |target| (target, model.move_to(target))).values
+    integrate(input, until, steps, (0.0, 0.0, force), |target, _| (target, model.move_to(target))).values
 }
 
 struct Cell {

@@ -3,15 +3,16 @@
 //! its recorded way is taken again with one input moved at a time (JCGM 100:2008, 5.1.3 and 5.1.4: half the difference of
 //! the results at ±u), and with drawn errors of all its readings. It moves no rig.
 
+use super::bounded::Bounded;
 use super::impact::Setting;
 use super::inputs::Inputs;
 use super::rounding_doubts::Quanta;
 use super::study::{CLOSE, Effort, Study, Taken, Tick, Unknown, give, over_rules};
 use crate::formula::{Formula, ProcedureId, Results};
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath, UNSEEN};
-use crate::mechanics::rerun::{OUTCOMES, Outcome, rerun};
+use crate::mechanics::rerun::{OUTCOMES, Outcome, foretold, rerun};
 use crate::mechanics::summary::ImpactSummary;
-use crate::plan::{Contact, Impact, Link, Plan, ReadingRules, Striker, VirtualLink};
+use crate::plan::{Contact, Impact, Link, Mode, Plan, ReadingRules, Striker, VirtualLink};
 use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Moved, Source, sources_of};
@@ -65,15 +66,8 @@ impl<'run> Doubts<'run> {
         if sources.is_empty() && !sampled {
             return Ok(());
         }
-        let readings = steps.iter().map(|step| Reading {
-            target: step.command,
-            displacement: step.displacement,
-            force: step.restoring_force,
-        });
-        let input = &setting.input;
-        let path = RecordedPath::new(readings.collect(), input.stiffness, input.force_noise, input.resolution);
-        let path = path.ok_or_else(|| "nothing was recorded".to_owned())?;
-        let again = rerun(input, self.plan.until, setting.steps, &path, Distortion::NONE);
+        let path = self.path(setting, steps).ok_or_else(|| "nothing was recorded".to_owned())?;
+        let again = rerun(&setting.input, self.plan.until, setting.steps, &path, Distortion::NONE);
         if !same(&again.summary, recorded) {
             return Err(LEADS_ELSEWHERE.to_owned().into());
         }
@@ -88,22 +82,24 @@ impl<'run> Doubts<'run> {
             let distortion = Distortion { noise: Some(Noise { force, displacement, draw }), ..Distortion::NONE };
             study.draws.push((source, Job { setting: *setting, distortion }));
         }
-        let mut contributions = over_rules(&rules, tick, &mut |rule, tick| {
+        let runs = Bounded::new(again.farthest, again.values.len() + 1);
+        let contributions = over_rules(&rules, tick, &mut |rule, tick| {
             let path = path.clone().supposing(rule);
             let take = |Job { setting, distortion }: &Job| {
-                taken(setting, &rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion))
+                let found = rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion);
+                runs.taken(Some((found.farthest, taken(setting, &found))))
             };
             let as_it_was = take(&Job { setting: *setting, distortion: Distortion::NONE });
             study.contributions(&as_it_was.values, &take, tick)
-        })
-        .map_err(Unknown::Stop)?;
+        });
+        let mut contributions = runs.told(contributions)?;
         if path.swung_back() {
             let late = OUTCOMES.iter().zip(&mut contributions).filter(|(name, _)| LATE.contains(name));
             for part in late.flat_map(|(_, parts)| parts) {
                 part.smooth = false;
             }
         }
-        round_times(self.procedure, input.time_step, &mut contributions);
+        round_times(self.procedure, setting.input.time_step, &mut contributions);
         let names = OUTCOMES.iter().copied().chain(["critical_time_step"]);
         for (name, parts) in names.zip(contributions) {
             if let Some(result) = results.iter_mut().find(|result| result.name == name) {
@@ -111,6 +107,21 @@ impl<'run> Doubts<'run> {
             }
         }
         Ok(())
+    }
+
+    /// The way that was recorded; None of no reading.
+    fn path(&self, setting: &Setting, steps: &[ImpactStep]) -> Option<RecordedPath> {
+        let readings = steps.iter().map(|step| Reading {
+            target: step.command,
+            displacement: step.displacement,
+            force: step.restoring_force,
+        });
+        let (input, readings) = (&setting.input, readings.collect::<Vec<Reading>>());
+        if self.plan.stepping.mode == Mode::StepAndPause {
+            return RecordedPath::new(readings, input.stiffness, input.force_noise, input.resolution);
+        }
+        let velocities = foretold(input, self.plan.until, setting.steps, &readings);
+        RecordedPath::under_way(readings, (&velocities, input.time_step), input.stiffness, input.force_noise, input.resolution)
     }
 
     /// The sources that can be moved, each once.

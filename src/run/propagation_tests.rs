@@ -2,9 +2,9 @@
 //! that share sources, requirements with a guard band.
 
 use super::testing::{Uniform, elastic_plan, every, impact, number, ramp, result_of, run_unwatched, scatter};
-use crate::formula::Formula;
+use crate::formula::{Formula, ProcedureId};
 use crate::mechanics::summary::ImpactSummary;
-use crate::plan::{Behaviour, Calibration, Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
+use crate::plan::{Behaviour, Calibration, Contact, Impact, Integrator, Link, Plan, ProcedureKind, Stepping, Until, VirtualLink};
 use crate::record::Record;
 use crate::uncertainty::{Contribution, Source, combined};
 
@@ -92,6 +92,26 @@ fn an_elastic_blow_comes_out_by_its_closed_form() {
     assert!(parts.iter().all(|part| part.smooth), "{parts:?}");
     assert_eq!(number(&record, 0, "max_displacement").1, combined(parts));
     assert!(!record.events.iter().any(|event| event.text.contains("uncertainty")), "{:?}", record.events);
+}
+
+/// Δtc = (2π/10)√(M/K) of a K that a ramp told: half of its relative error, by the same source, and half of that of M; and so of the
+/// critical step of every blow of a row.
+#[test]
+fn the_critical_step_is_as_uncertain_as_the_ramp() {
+    let blow = Impact { mass_uncertainty: 0.02 * MASS, ..impact(result_of(0, "stiffness")) };
+    let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::StiffnessRamp(ramp(1e-3)), ProcedureKind::Impact(blow)]);
+    plan.rig.link = Link::Virtual(VirtualLink { noise: 0.02, seed: 9, ..VirtualLink::default() });
+    let record = run_unwatched(&plan);
+    let (stiffness, known) = number(&record, 0, "stiffness");
+    let (critical, told) = number(&record, 1, "critical_time_step");
+    let (relative, critical) = (known.unwrap() / stiffness.unwrap(), critical.unwrap());
+    let by_hand = 0.5 * critical * relative.hypot(0.02);
+    assert!(relative > 1e-3 && (told.unwrap() / by_hand - 1.0).abs() < 1e-3, "{told:?}, by hand {by_hand}");
+    let parts = contributions(&record, 1, "critical_time_step");
+    let of = |source| parts.iter().find(|part| part.source == source).map_or(0.0, |part| part.amount);
+    let fitted = Source::Fit { procedure: ProcedureId(0), result: "stiffness" };
+    assert!((of(fitted) / (-0.5 * critical * relative) - 1.0).abs() < 1e-3, "{parts:?}");
+    assert!((of(Source::SpecimenMass(0)) / (0.01 * critical) - 1.0).abs() < 1e-3, "{parts:?}");
 }
 
 /// Nothing uncertain, nothing told.
@@ -334,4 +354,28 @@ fn blows_of_one_striker_share_what_is_uncertain_of_it() {
     assert!((largest_u.unwrap() / largest.unwrap() - 0.01).abs() < 1e-4);
     let (of_blows, (_, u), _) = run(0.0, 0.5);
     assert!((u.unwrap() / of_blows[0].hypot(of_blows[1]) - 1.0).abs() < 1e-9, "{u:?} of {of_blows:?}");
+}
+
+/// Explicit steps just below 2/ω are stable; of a cell that reads 2 % more, for a step of 2.01/ω, they are not, and what such a
+/// cell would make of the results is no uncertainty of them. A tenth of that is.
+#[test]
+fn a_way_that_grows_without_bound_is_told_as_such() {
+    let with = |force_uncertainty: f64| {
+        let blow = Impact {
+            contact: Contact::Restitution { coefficient: constant(0.5) },
+            stepping: Stepping { integrator: Integrator::Explicit, ..every(1.99 / 300.0_f64.sqrt()) },
+            duration: constant(30.0),
+            until: Until::Duration,
+            ..impact(constant(300.0))
+        };
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        plan.strikers[0].mass = 0.5;
+        plan.rig.calibration = Calibration { force_uncertainty, ..Calibration::default() };
+        let record = run_unwatched(&plan);
+        let grows = record.events.iter().any(|event| event.text.contains("grow without bound"));
+        (grows, number(&record, 0, "max_displacement").1)
+    };
+    assert_eq!(with(0.02), (true, None));
+    let (grows, u) = with(0.002);
+    assert!(!grows && u.is_some(), "{u:?}");
 }

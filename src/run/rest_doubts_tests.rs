@@ -9,6 +9,7 @@ use super::testing::elastic_plan;
 use super::unload::{of_frame, to_rest};
 use crate::formula::{NoResults, ProcedureId};
 use crate::mechanics::frame::Unloading;
+use crate::mechanics::path::Path;
 use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
 use crate::record::Rest;
 use crate::rig::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault, virtual_rig};
@@ -16,18 +17,26 @@ use crate::uncertainty::{Contribution, Source, combined};
 
 /// What the cell of each axis makes of newtons, what it reads of none (N), and what its transducer makes of metres.
 #[derive(Clone, Copy, Debug)]
-struct Wrong {
-    force: f64,
-    zero: f64,
-    displacement: f64,
+pub(super) struct Wrong {
+    pub force: f64,
+    pub zero: f64,
+    pub displacement: f64,
 }
 
-const RIGHT: Wrong = Wrong { force: 1.0, zero: 0.0, displacement: 1.0 };
+pub(super) const RIGHT: Wrong = Wrong { force: 1.0, zero: 0.0, displacement: 1.0 };
 
 /// A rig that goes, and reads, by wrong factors.
-struct Misread {
-    rig: Box<dyn Rig>,
-    axes: Vec<Wrong>,
+pub(super) struct Misread {
+    pub rig: Box<dyn Rig>,
+    pub axes: Vec<Wrong>,
+}
+
+fn misread(axes: &[Wrong], mut reading: Reading) -> Reading {
+    for (axis, (displacement, force)) in axes.iter().zip(reading.displacement.iter_mut().zip(&mut reading.force)) {
+        *displacement *= axis.displacement;
+        *force = axis.force * *force + axis.zero;
+    }
+    reading
 }
 
 impl Rig for Misread {
@@ -42,7 +51,8 @@ impl Rig for Misread {
     }
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
         let true_targets: Vec<f64> = targets.iter().zip(&self.axes).map(|(target, axis)| target / axis.displacement).collect();
-        self.rig.propose(&true_targets, speed)
+        let offer = self.rig.propose(&true_targets, speed)?;
+        Ok(Offer { targets: targets.to_vec(), ..offer })
     }
     fn execute(&mut self) -> Result<(), RigFault> {
         self.rig.execute()
@@ -51,15 +61,22 @@ impl Rig for Misread {
         self.rig.pause(seconds)
     }
     fn read(&mut self) -> Result<Reading, RigFault> {
-        let mut reading = self.rig.read()?;
-        for (axis, (displacement, force)) in self.axes.iter().zip(reading.displacement.iter_mut().zip(&mut reading.force)) {
-            *displacement *= axis.displacement;
-            *force = axis.force * *force + axis.zero;
-        }
-        Ok(reading)
+        Ok(misread(&self.axes, self.rig.read()?))
     }
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         self.rig.traverse(targets, velocity, samples, each)
+    }
+    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+        let truly = |(path, axis): (&Path, &Wrong)| Path {
+            from: path.from / axis.displacement,
+            to: path.to / axis.displacement,
+            start_velocity: path.start_velocity / axis.displacement,
+            end_velocity: path.end_velocity / axis.displacement,
+            seconds: path.seconds,
+        };
+        let true_paths: Vec<Path> = paths.iter().zip(&self.axes).map(truly).collect();
+        let axes = &self.axes;
+        self.rig.glide(&true_paths, samples, &mut |reading| each(misread(axes, reading)))
     }
     fn hold(&mut self) {
         self.rig.hold();

@@ -4,10 +4,12 @@
 
 use nalgebra::DMatrix;
 
+use super::hold_rounding::of_holds;
 use super::propagation::quanta;
 use crate::formula::{ProcedureId, ResultValue};
 use crate::mechanics::breaks::row;
 use crate::mechanics::identification::fit_line;
+use crate::mechanics::relaxation_law::RelaxationLaw;
 use crate::mechanics::rounding::{Rounded, along, line_weights};
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::{BilinearFit, History, LineFit, MultilinearFit, NamedResult, RampStep, SweepHistory};
@@ -51,6 +53,9 @@ pub(super) fn widen(
                 let points: Vec<[f64; 2]> = first.iter().map(|step| [step.command, step.displacement]).collect();
                 doubts.give_curve(&curve, &points, asked.samples, results);
             }
+            for (name, variance, own) in of_holds(ramp, quanta, results) {
+                doubts.add(results, name, 0, &[(name, (variance - own * own).max(0.0).sqrt())]);
+            }
         }
         (ProcedureKind::Cycle(asked), History::Cycle(cycle)) => {
             if let Some(mut curve) = cycle.backbone.as_ref().map(Curve::of_multilinear) {
@@ -87,6 +92,23 @@ pub(super) fn floor(history: &mut History, results: &[NamedResult]) {
             if let Some(fit) = &mut ramp.bilinear {
                 widened(&mut fit.stiffness_error, "stiffness");
                 widened(&mut fit.yield_force_error, "yield_force");
+            }
+            if let Some(fit) = &mut ramp.relaxation {
+                widened(&mut fit.time_constant.1, "time_constant");
+                widened(&mut fit.remaining.1, "remaining_relaxation");
+                for (part, name) in
+                    [(&mut fit.relaxed_stiffness, "relaxed_stiffness"), (&mut fit.branch_stiffness, "branch_stiffness")]
+                {
+                    if let Some((_, error)) = part {
+                        widened(error, name);
+                    }
+                }
+            }
+            if let Some(fit) = ramp.reached.as_mut().and_then(|fit| fit.fits.first_mut()) {
+                let time = if fit.law == RelaxationLaw::Exponential { "time_constant" } else { "reference_time" };
+                widened(&mut fit.share.1, "relaxation_share");
+                widened(&mut fit.time.1, time);
+                widened(&mut fit.rate.1, "relaxation_rate");
             }
             if let Some((_, error)) = ramp.multilinear.as_mut().and_then(|fit| fit.stiffnesses.first_mut()) {
                 widened(error, "stiffness");
@@ -241,7 +263,7 @@ fn smooth(sweep: &SweepHistory) -> Vec<[f64; 2]> {
 }
 
 /// Straight stretches that meet, turned so that the ramp pushes, with the standard errors that its scatter tells.
-struct Curve {
+pub(super) struct Curve {
     way: f64,
     intercept: f64,
     slopes: Vec<f64>,
@@ -254,7 +276,7 @@ struct Curve {
 type Told = (&'static str, usize, Vec<f64>, f64);
 
 impl Curve {
-    fn of_bilinear(fit: &BilinearFit) -> Self {
+    pub(super) fn of_bilinear(fit: &BilinearFit) -> Self {
         let (way, knee) = (fit.way, fit.way * fit.yield_displacement);
         let (first, last) = (fit.stiffness, fit.hardened);
         let told = [
@@ -269,7 +291,7 @@ impl Curve {
         Self { way, intercept: way * fit.intercept, slopes: vec![first, last], breaks: vec![knee], told }
     }
 
-    fn of_multilinear(fit: &MultilinearFit) -> Self {
+    pub(super) fn of_multilinear(fit: &MultilinearFit) -> Self {
         let way = fit.way;
         let breaks: Vec<f64> = fit.breaks.iter().map(|(place, _)| way * place).collect();
         let slopes: Vec<f64> = fit.stiffnesses.iter().map(|(slope, _)| *slope).collect();
@@ -304,22 +326,27 @@ impl Curve {
         curve
     }
 
+    /// 1, or −1 of a curve that pulls.
+    pub(super) const fn way(&self) -> f64 {
+        self.way
+    }
+
     fn numbers(&self) -> impl Iterator<Item = Told> {
         self.told.iter().cloned()
     }
 
     /// What intercept, stiffnesses and breaks do to the force at `x`.
-    fn effects(&self, x: f64) -> Vec<f64> {
+    pub(super) fn effects(&self, x: f64) -> Vec<f64> {
         let falls = self.breaks.iter().zip(self.slopes.windows(2));
         let beyond = falls.map(|(place, pair)| if x > *place { pair[0] - pair[1] } else { 0.0 });
         row(x, &self.breaks).chain(beyond).collect()
     }
 
-    fn force(&self, x: f64) -> f64 {
+    pub(super) fn force(&self, x: f64) -> f64 {
         row(x, &self.breaks).zip(std::iter::once(&self.intercept).chain(&self.slopes)).map(|(part, by)| part * by).sum()
     }
 
-    fn slope(&self, x: f64) -> f64 {
+    pub(super) fn slope(&self, x: f64) -> f64 {
         self.slopes[self.breaks.iter().filter(|place| x > **place).count()]
     }
 

@@ -23,6 +23,8 @@ pub(super) struct Session<'run> {
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
     step: Option<u64>,
+    /// What a reader was told of a blow of this procedure, and after how many more of its blows it was so again.
+    remarks: Vec<(String, usize)>,
     /// Where the rig was found, m.
     home: Vec<f64>,
     /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
@@ -52,7 +54,7 @@ impl<'run> Session<'run> {
         match guard {
             Ok(guard) => {
                 let home = guard.commanded().to_vec();
-                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, home, reckoned })
+                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, remarks: Vec::new(), home, reckoned })
             }
             Err(fault) => {
                 let stop = Stop::Rig(fault);
@@ -80,6 +82,7 @@ impl<'run> Session<'run> {
     pub(super) fn enter(&mut self, procedure: &Procedure, plan: &Plan) {
         self.procedure = Some(procedure.name.clone());
         self.step = None;
+        self.remarks.clear();
         self.observer.procedure_started(&procedure.name, procedure.kind.keyword(), steps(&procedure.kind, plan));
     }
 
@@ -114,6 +117,27 @@ impl<'run> Session<'run> {
         let event = Event { time: self.guard.time(), procedure: self.procedure.clone(), step: self.step, kind, text };
         self.observer.event(&event);
         self.events.push(event);
+    }
+
+    /// What a reader must know of a blow, once: of further blows of the same procedure it is counted.
+    pub(super) fn remark(&mut self, text: String) {
+        if let Some((_, again)) = self.remarks.iter_mut().find(|(known, _)| *known == text) {
+            *again += 1;
+            return;
+        }
+        self.remarks.push((text.clone(), 0));
+        self.event(EventKind::Remark, text);
+    }
+
+    /// Says what was so of more blows than one.
+    pub(super) fn remark_again(&mut self) {
+        for (text, again) in std::mem::take(&mut self.remarks) {
+            match again {
+                0 => {}
+                1 => self.event(EventKind::Remark, format!("after one more blow: {text}")),
+                _ => self.event(EventKind::Remark, format!("after {again} more blows: {text}")),
+            }
+        }
     }
 
     /// Tells who watches that a step is done, and asks whether to go on.

@@ -1,14 +1,15 @@
 //! What the uncertainty of the inputs makes of the results of a shake. In: what went into it, and the recorded steps. Out: for
 //! each number, what each source contributes. The recorded way is taken again, under the same ground.
 
-use super::frame_doubts::{Again, FrameDoubts, Shifts, give_all, leads_there, mark_late};
+use super::bounded::{Bounded, farthest};
+use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
 use super::propagation::LEADS_ELSEWHERE;
 use super::shake::Setting;
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
-use super::study::{Tick, Unknown, over_rules};
+use super::study::{Taken, Tick, Unknown, over_rules};
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
-use crate::mechanics::frame_rerun::{Floors, FrameRun};
+use crate::mechanics::frame_rerun::{Floors, FloorsOutcome, FrameRun};
 use crate::mechanics::ground::acceleration_at;
 use crate::plan::{Ground, Shake};
 use crate::quantity::Dimension;
@@ -64,10 +65,11 @@ pub(super) fn propagate(
         distortion: FrameDistortion::none(floors),
         periods: setting.frame.properties.modes.periods.clone(),
     };
-    let found = take(&as_it_was, &path).map_err(|error| error.to_string())?;
+    let mut found = take(&as_it_was, &path).map_err(|error| error.to_string())?;
     if !leads_there(&found.ends, "max_displacement", results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
+    let path = doubts.under_way(&setting.frame, path, std::mem::take(&mut found.velocities))?;
     let job = |shifts: Shifts<'_>, distortion| {
         let (run, periods, scale) = moved(doubts, plan, setting, (ground, shifts))
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))?;
@@ -75,10 +77,16 @@ pub(super) fn propagate(
     };
     let rules = path.rules();
     let study = doubts.study(&sources, doubts.effort(history.steps.len(), rules.len(), &sources), job)?;
-    let runs = Again::of(&found.between, numbers(&as_it_was, &found.between).len());
+    let far = |floors: &Floors| farthest(floors.max_displacement.iter().copied());
+    let runs = Bounded::new(far(&found.between), numbers(&as_it_was, &found.between).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {
         let path = path.supposing(rule);
-        let again = |job: &Job| runs.taken(take(job, &path), |found| found, |found| numbers(job, &found.between));
+        let again = |job: &Job| {
+            let found = take(job, &path).ok();
+            runs.taken(
+                found.map(|FloorsOutcome { between, seen, .. }| (far(&between), Taken { values: numbers(job, &between), seen })),
+            )
+        };
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
     let mut parts = runs.told(parts)?;

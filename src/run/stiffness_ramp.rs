@@ -3,6 +3,7 @@
 //! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
 
 use super::Performed;
+use super::foreseen::Foreseen;
 use super::inputs::Inputs;
 use super::results::{largest, measured, result};
 use super::samples::{mean, scatter};
@@ -11,20 +12,22 @@ use super::stop::Stop;
 use super::{curve, hold};
 use crate::mechanics::backbone::fit_bilinear;
 use crate::mechanics::identification::{fit_line, loop_energy};
-use crate::plan::{RampFit, StiffnessRamp, WatchedHold};
+use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
 use crate::quantity::Dimension;
 use crate::record::{BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory, RampStep};
 
-pub(super) fn perform(plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
+pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut ramp = Ramp { steps: Vec::new(), start: None, loops: Vec::new(), holds: Vec::new(), last_reading: 0.0 };
     let stop = ramp.run(plan, inputs, session).err();
-    let fits = ramp.fits(plan);
+    let foreseen = Foreseen::of(whole);
+    let fits = ramp.fits(plan, foreseen);
     for text in fits.remarks.iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text.clone());
     }
     let noise = session.guard.declared_noise().force;
-    let noise = (noise > 0.0).then_some(noise);
-    let told = hold::told(&ramp.holds, ramp.start.unwrap_or_default(), plan.relaxation.map(|asked| asked.model), noise);
+    let noise = foreseen.noise().or((noise > 0.0).then_some(noise));
+    let asked = plan.relaxation.map(|asked| asked.model);
+    let told = hold::told(&ramp.holds, ramp.start.unwrap_or_default(), asked, (noise, foreseen.readings()));
     for text in told.remarks.into_iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text);
     }
@@ -33,7 +36,8 @@ pub(super) fn perform(plan: &StiffnessRamp, inputs: &mut Inputs<'_>, session: &m
     let Fits { line: fit, bilinear, multilinear, .. } = fits;
     let (multilinear, relaxation, reached) =
         (multilinear.map(Box::new), told.relaxation.map(Box::new), told.reached.map(Box::new));
-    let history = RampHistory { steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
+    let history =
+        RampHistory { start: ramp.start, steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
     Performed { history: History::Ramp(history), results, stop }
 }
 
@@ -137,22 +141,24 @@ impl Ramp {
 
     /// One line R = intercept + K·X over the outward steps of all repeats. Two or more through those of the first repeat: what
     /// comes after yield no longer bends as it did.
-    fn fits(&self, plan: &StiffnessRamp) -> Fits {
+    fn fits(&self, plan: &StiffnessRamp, foreseen: Foreseen) -> Fits {
         let first = || self.steps.iter().take(plan.displacements.len()).map(point);
         match plan.fit {
             RampFit::Linear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().filter(|step| !step.returning).map(point).unzip();
-                Fits { line: fit_line(&x, &r), ..Fits::default() }
+                let line = fit_line(&x, &r).map(|fit| foreseen.line(fit, &x, plan.samples));
+                Fits { line, ..Fits::default() }
             }
             RampFit::Bilinear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
-                let bilinear = fit_bilinear(&x, &r);
+                let bilinear = fit_bilinear(&x, &r).map(|fit| foreseen.bilinear(&fit, (&x, &r), plan.samples).unwrap_or(fit));
                 let none = "no bilinear fit: the outward steps are fewer than six, or show no knee that softens";
                 let remarks = if bilinear.is_none() { vec![none.to_owned()] } else { Vec::new() };
                 Fits { bilinear, remarks, ..Fits::default() }
             }
             RampFit::Multilinear(count) => {
-                let (multilinear, remarks) = curve::fitted(&first().collect::<Vec<Point>>(), count, "outward steps");
+                let (multilinear, remarks) =
+                    curve::fitted(&first().collect::<Vec<Point>>(), count, "outward steps", (foreseen, plan.samples));
                 Fits { multilinear, remarks, ..Fits::default() }
             }
         }

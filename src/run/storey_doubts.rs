@@ -1,13 +1,14 @@
 //! What the uncertainty of the inputs makes of the results of an impact on a storey. In: what went into it, and the recorded
 //! steps. Out: for each number, what each source contributes. The recorded way of all floors is taken again.
 
-use super::frame_doubts::{Again, FrameDoubts, Shifts, give_all, leads_there, mark_late};
+use super::bounded::{Bounded, farthest};
+use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
 use super::impact::law;
 use super::propagation::{LEADS_ELSEWHERE, contact_formulas, round_times, same};
 use super::stepping;
 use super::stop::Stop;
 use super::storey_impact::Setting;
-use super::study::{Tick, Unknown, over_rules};
+use super::study::{Taken, Tick, Unknown, over_rules};
 use crate::mechanics::approach::Approach;
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Blow, BlowOutcome, FrameRun};
@@ -60,20 +61,25 @@ pub(super) fn propagate(
         periods: setting.frame.properties.modes.periods.clone(),
         critical_time_step: setting.frame.critical_time_step,
     };
-    let found = take(&as_it_was, &path).map_err(|error| error.to_string())?;
+    let mut found = take(&as_it_was, &path).map_err(|error| error.to_string())?;
     if !same(&found.blow.summary, recorded) || !leads_there(&found.floors.ends, "floor_displacement", results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
+    let path = doubts.under_way(&setting.frame, path, std::mem::take(&mut found.floors.velocities))?;
     let job = |shifts: Shifts<'_>, distortion| {
         moved(doubts, plan, setting, shifts, distortion)
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))
     };
     let rules = path.rules();
     let study = doubts.study(&sources, doubts.effort(history.floors.len(), rules.len(), &sources), job)?;
-    let runs = Again::of(&found.floors.between, numbers(&as_it_was, &found).len());
+    let far = |found: &BlowOutcome| farthest(found.floors.between.max_displacement.iter().copied());
+    let runs = Bounded::new(far(&found), numbers(&as_it_was, &found).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {
         let path = path.supposing(rule);
-        let again = |job: &Job| runs.taken(take(job, &path), |found| &found.floors, |found| numbers(job, found));
+        let again = |job: &Job| {
+            let found = take(job, &path).ok();
+            runs.taken(found.map(|found| (far(&found), Taken { values: numbers(job, &found), seen: found.floors.seen })))
+        };
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
     let mut parts = runs.told(parts)?;

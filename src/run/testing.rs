@@ -8,6 +8,7 @@ use crate::plan::{
 };
 use crate::record::Record;
 use crate::rig::virtual_rig;
+use crate::run::tape::{Header, HeaderFile};
 
 /// Nothing but an ideal virtual rig.
 pub(crate) fn empty_plan() -> Plan {
@@ -133,7 +134,35 @@ pub(crate) fn number(record: &Record, procedure: usize, name: &str) -> (Option<f
     }
 }
 
-/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator (Park and Miller 1988).
+/// Entries of a result that is a list, of the procedure `p0`, `p1`, …
+pub(crate) fn list(record: &Record, procedure: usize, name: &str) -> Vec<f64> {
+    match record.procedures[procedure].result(name).map(|result| &result.value) {
+        Some(ResultValue::List(values)) => values.clone(),
+        other => panic!("{name} is {other:?}"),
+    }
+}
+
+/// What a record begins with that nobody looks at.
+pub(crate) fn header() -> Header {
+    Header {
+        run_id: "0123456789abcdef".to_owned(),
+        psd: "0".to_owned(),
+        build: "0".to_owned(),
+        toolchain: String::new(),
+        files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
+        settings: Vec::new(),
+        rig: None,
+        equipment: None,
+        rehearsal: false,
+        served: None,
+        date: None,
+        operator: None,
+        host: None,
+        began: None,
+    }
+}
+
+/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator.
 pub(crate) struct Uniform(pub(crate) u64);
 
 impl Uniform {

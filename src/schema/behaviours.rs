@@ -138,7 +138,7 @@ pub(super) const BEHAVIOURS: &[Variant] = &[
             DETERIORATION_EXPONENT,
             RESIDUAL_STRENGTH,
         ],
-        "pinched hysteresis that reloads towards its peaks (Ibarra, Medina and Krawinkler 2005)",
+        "pinched hysteresis that reloads towards its peaks, after Ibarra, Medina and Krawinkler",
     ),
     Variant::with(
         "degrading",

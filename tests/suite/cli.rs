@@ -101,7 +101,8 @@ fn changed(from: &str, to: &str) -> String {
     SOUND.replace(from, to)
 }
 
-fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+/// The files below a folder with their bytes, by their paths in it, in order.
+pub fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(next) = open.pop() {
@@ -366,6 +367,68 @@ fn a_plan_without_a_procedure_is_not_run() {
         assert!(!bench.path("here").exists(), "nothing is left behind");
         bench.psd(&["check", plan]).with(0);
     }
+}
+
+/// A sweep about a place past yield, whose first stroke is not read, holds while a force relaxes, cycles on a coarse cell, and a row
+/// of blows of which the same is to be said.
+const PAST_YIELD: &str = r"
+specimen bracket {
+  mass      = 1 kg
+  behaviour = maxwell(
+    of: bilinear(stiffness: 300 kN/m, yield_force: 600 N, hardening: 0.1),
+    stiffness: 20 kN/m,
+    time_constant: 1 s,
+  )
+  damping   = 400 N*s/m
+}
+
+striker weight {
+  mass     = 5 kg
+  velocity = 0.5 m/s
+}
+
+rig frame {
+  link = virtual(noise: 0.2 N, force_resolution: 0.5 N, resolution: 1 um, seed: 4)
+}
+
+stiffness ramp k0 {
+  displacements = 0.2 mm .. 1 mm step 0.2 mm
+  pause         = 3 s
+  relaxation    = exponential(readings: 12, accuracy: 1 N)
+}
+
+damping sweep c {
+  velocities = [5, 20] mm/s
+  stroke     = 1 mm
+  about      = 5 mm
+  stiffness  = k0.stiffness
+}
+
+cycle loops {
+  amplitudes = [0.5 mm, 1 mm]
+  points     = 4
+}
+
+escalate rising {
+  striker   = weight
+  stiffness = k0.stiffness
+  contact   = rigid
+  time_step = 0.2 ms
+  duration  = 40 ms
+  speeds    = [0.1, 0.15, 0.2] m/s
+  while     = max_displacement < 50 mm
+}
+";
+
+#[test]
+fn results_of_strokes_that_nobody_reads_and_of_coarse_cells_are_made_anew_too() {
+    let bench = Bench::new(&[("bracket.psd", PAST_YIELD)]);
+    bench.psd(&["run", "bracket.psd", "--out", "run"]).with(0);
+    bench.psd(&["verify", "run"]).with(0);
+    bench.psd(&["report", "run", "--out", "again"]).with(0);
+    let mut diff = Command::new("diff");
+    let compared = diff.args(["-r", "run", "again"]).current_dir(bench.folder.path()).output().unwrap();
+    assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stdout));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::ops::{Add as _, Sub as _};
 use super::FrameMatrices;
 
 /// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
-/// (the relative form, Uang and Bertero 1990: what an absolute one adds is the ground's own work). They add up:
+/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90: what an absolute one adds is the ground's own work). They add up:
 /// `kinetic + restoring + damping + error = input`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FrameEnergies {

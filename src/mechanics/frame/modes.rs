@@ -110,9 +110,10 @@ mod tests {
     use super::super::storeys::storey_stiffness;
     use super::*;
 
-    /// Masses 2, 1 and storeys 2, 1: ω² = ½ and 2 times k/m, shapes (½, 1) and (−1, 1) (Chopra 2012, ex. 10.4).
+    /// Masses 2, 1 and storeys 2, 1: det(K − ω²M) = (3 − 2ω²)(1 − ω²) − 1 = (2ω² − 1)(ω² − 2), and φ₂ = (3 − 2ω²)φ₁:
+    /// ω² = ½ and 2, shapes (½, 1) and (−1, 1).
     #[test]
-    fn two_storeys_of_the_textbook() {
+    fn two_storeys_by_hand() {
         let (mass, stiffness) = (SymmetricBand::diagonal(&[2.0, 1.0]), storey_stiffness(&[2.0, 1.0]));
         let modes = modes(&mass, &stiffness).expect("two modes");
         let near = |value: f64, expected: f64| assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");

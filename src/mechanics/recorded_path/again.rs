@@ -4,6 +4,7 @@
 //! back as stiffly as the specimen first was, and says that it went where nothing is recorded.
 
 use super::map::Map;
+use super::under_way::Speed;
 use super::{Distortion, RecordedPath, Rule};
 
 /// A curve whose last slope is less than this share of its first has settled on that.
@@ -24,6 +25,8 @@ pub struct Again<'a> {
     turns: Vec<f64>,
     /// The last place, in metres of the record.
     place: f64,
+    /// With which it passed there, in metres of the record.
+    speed: Speed,
     aside: Option<Aside>,
     /// m
     unseen: f64,
@@ -55,11 +58,23 @@ struct Fading {
 
 impl<'a> Again<'a> {
     pub(super) fn new(path: &'a RecordedPath, distortion: Distortion) -> Self {
-        let turns = path.branches.iter().map(|branch| path.readings[branch.end].target).collect();
+        let turns = path.branches.iter().map(|branch| branch.turn.target).collect();
         let place = path.readings[0].target;
         let maps = vec![Map::NONE; path.branches.len()];
         let fading = vec![None; path.branches.len()];
-        Self { path, distortion, step: 0, piece: 0, maps, fading, turns, place, aside: None, unseen: 0.0 }
+        Self {
+            path,
+            distortion,
+            step: 0,
+            piece: 0,
+            maps,
+            fading,
+            turns,
+            place,
+            speed: Speed::default(),
+            aside: None,
+            unseen: 0.0,
+        }
     }
 
     /// Where it begins (m), and what is read there: displacement (m) and force (N).
@@ -71,10 +86,17 @@ impl<'a> Again<'a> {
 
     /// Displacement (m) and force (N) read at the target of the next step, m.
     pub fn move_to(&mut self, target: f64) -> (f64, f64) {
-        let place = target / self.distortion.displacement_scale;
+        self.pass(target, 0.0)
+    }
+
+    /// The same of a target that is passed with a velocity, m/s.
+    pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
+        let (target, velocity) = (target / self.distortion.displacement_scale, velocity / self.distortion.displacement_scale);
+        let speed = self.path.under_way.as_ref().map(|under_way| under_way.speed(self.speed, velocity)).unwrap_or_default();
+        let place = self.path.under_way.as_ref().map_or(target, |under_way| under_way.place(target, speed.felt));
         self.step += 1;
-        self.go(place);
-        self.place = place;
+        self.go(place, speed.felt);
+        (self.place, self.speed) = (place, speed);
         self.read()
     }
 
@@ -88,7 +110,8 @@ impl<'a> Again<'a> {
         self.path.pieces[self.piece].branch
     }
 
-    fn go(&mut self, place: f64) {
+    /// Goes on to a place (m), to be there with a velocity (m/s).
+    fn go(&mut self, place: f64, velocity: f64) {
         let path = self.path;
         if let Some(aside) = self.aside {
             let branch = self.branch();
@@ -103,15 +126,18 @@ impl<'a> Again<'a> {
                 return;
             }
         } else {
-            let moved = place - self.place;
+            let under_way = path.under_way.as_ref();
+            let moved = if under_way.is_some() { velocity } else { place - self.place };
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
+                let between = under_way.and_then(|it| it.turn_between((self.place, self.speed.felt), (place, velocity)));
+                let from = between.unwrap_or(self.place);
                 if self.matched(self.step - 1) {
-                    self.turn(self.place);
+                    self.turn(from);
                 } else {
-                    let (displacement, force) = self.recorded();
-                    self.aside = Some(Aside { from: self.place, displacement, force, direction: moved.signum() });
-                    self.unseen = self.unseen.max(moved.abs());
+                    let (displacement, force) = self.at(from);
+                    self.aside = Some(Aside { from, displacement, force, direction: moved.signum() });
+                    self.unseen = self.unseen.max((place - from).abs());
                     return;
                 }
             } else if self.missed() {
@@ -133,7 +159,7 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// Whether the turn after `step` is one of the record, nearer than the last one of that direction. Loops of the record
+    /// Whether the turn after `step` is one of the record, nearer than the last one of either direction. Loops of the record
     /// that were not made by then are skipped.
     fn matched(&mut self, step: usize) -> bool {
         let path = self.path;
@@ -143,8 +169,9 @@ impl<'a> Again<'a> {
         if !turned(branch) {
             return false;
         }
-        let last = branch.checked_sub(2).map_or(0, |last| path.branches[last].end);
-        if last.abs_diff(step) < off(branch) {
+        // Nearer to the turn that it came from, it only slowed down there in the record.
+        let ended = |back: usize| branch.checked_sub(back).map_or(0, |before| path.branches[before].end);
+        if [1, 2].into_iter().any(|back| ended(back).abs_diff(step) < off(branch)) {
             return false;
         }
         while turned(self.branch() + 2) && off(self.branch() + 2) < off(self.branch()) {
@@ -182,7 +209,7 @@ impl<'a> Again<'a> {
         let path = self.path;
         let branch = self.branch();
         let next = branch + 1;
-        let turn = path.readings[path.branches[branch].end];
+        let turn = path.branches[branch].turn;
         let (frame, at) = self.stand(place);
         let moved = frame.back(place) - turn.target;
         // Readings so near each other tell noise.
@@ -190,7 +217,7 @@ impl<'a> Again<'a> {
         let rise = if off.abs() <= path.least {
             path.pieces[path.branches[branch].last_piece].end_tangent * off
         } else {
-            path.at(self.piece, self.nearest(), at).1 - turn.force
+            path.at(self.piece, self.nearest(), at).1 - path.branches[branch].led_to
         };
         let retraces = path.branches[next].retraces;
         let own = if retraces { Map::shifted(moved - off, 0.0) } else { self.moved(next, moved, rise) };
@@ -204,7 +231,7 @@ impl<'a> Again<'a> {
     fn moved(&self, branch: usize, moved: f64, rise: f64) -> Map {
         let path = self.path;
         let piece = path.pieces[path.branches[branch].first_piece];
-        let turn = path.readings[piece.begin];
+        let turn = piece.begin;
         let shifted = Map::shifted(moved, rise);
         match path.rule {
             Rule::Pivoted => {
@@ -259,14 +286,23 @@ impl<'a> Again<'a> {
             let back = self.place - aside.from;
             return (aside.displacement + back, aside.force + path.pieces[0].start_tangent * back);
         }
-        let (map, at) = self.stand(self.place);
-        let (displacement, force) = path.at(self.piece, self.nearest(), at);
-        (displacement + (self.place - at), map.force(force))
+        self.at(self.place)
+    }
+
+    /// The same at a place (m) on the curve that it is on.
+    fn at(&self, place: f64) -> (f64, f64) {
+        let (map, at) = self.stand(place);
+        let (displacement, force) = self.path.at(self.piece, self.nearest(), at);
+        (displacement + (place - at), map.force(force))
     }
 
     fn read(&self) -> (f64, f64) {
         let Distortion { force_scale, displacement_scale, zero, noise } = self.distortion;
         let (displacement, force) = self.recorded();
+        let step = self.nearest();
+        let recorded = self.path.readings[step].force;
+        let felt = self.path.under_way.as_ref().map(|under_way| under_way.force(step, (force, recorded), self.speed.felt));
+        let force = felt.unwrap_or(force);
         let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * force + zero);
         if let Some(noise) = noise {
             let [of_force, of_displacement] = noise.errors(self.step as u64, 0);

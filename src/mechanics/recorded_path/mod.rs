@@ -4,16 +4,19 @@
 //!
 //! The record is cut into curves (`pieces`), on which the force is interpolated; beyond what was recorded of one it goes on
 //! along the tangent there. The way taken again goes from curve to curve at its own turns (`again`). What a curve does when
-//! its beginning has moved, the record does not tell: `Rule` says what is supposed. At the recorded targets the recorded
-//! readings come back as they were, to the bit.
+//! its beginning has moved, the record does not tell: `Rule` says what is supposed. What an actuator under way adds to its
+//! readings is taken off them first (`under_way`). At the recorded targets the recorded readings come back as they were, to the bit.
 
 mod again;
 mod map;
 mod pieces;
+mod under_way;
 
 pub use again::Again;
+pub(super) use under_way::lag;
 
 use self::pieces::{Branch, Piece};
+use self::under_way::UnderWay;
 use super::tangent::NOISE_MULTIPLE;
 
 /// One step of the record.
@@ -32,7 +35,7 @@ pub struct Reading {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Its curve begins at the turn and keeps its shape: exact of elastic specimens and of elastic–plastic elements side by
-    /// side (Iwan 1967), however many. One that passed an earlier turn of the record elsewhere than through it, so that no
+    /// side (Iwan's model), however many. One that passed an earlier turn of the record elsewhere than through it, so that no
     /// loop was closed, keeps the line that it settled on.
     Shifted,
     /// Its curve is stretched about where the one before it began, if it came back softer than it first was: exact of those
@@ -99,6 +102,8 @@ pub struct RecordedPath {
     /// Places no farther apart tell no difference of force, m.
     least: f64,
     rule: Rule,
+    /// Of readings made without a stop: `readings` are those of the specimen at rest.
+    under_way: Option<UnderWay>,
 }
 
 impl RecordedPath {
@@ -109,15 +114,37 @@ impl RecordedPath {
         if readings.is_empty() {
             return None;
         }
+        Some(Self::of(readings, None, stiffness, (force_noise, resolution)))
+    }
+
+    /// The same of readings made under way, `time_step` (s) apart, with the velocities foretold for their targets, m/s.
+    #[must_use]
+    pub fn under_way(
+        readings: Vec<Reading>,
+        (velocities, time_step): (&[f64], f64),
+        stiffness: f64,
+        force_noise: f64,
+        resolution: f64,
+    ) -> Option<Self> {
+        if readings.is_empty() {
+            return None;
+        }
+        let found = UnderWay::of(readings, velocities, time_step, resolution);
+        Some(Self::of(found.at_rest(), Some(found), stiffness, (force_noise, resolution)))
+    }
+
+    fn of(readings: Vec<Reading>, under_way: Option<UnderWay>, stiffness: f64, (force_noise, resolution): (f64, f64)) -> Self {
         let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
-        let (branches, pieces) = pieces::cut(&readings, stiffness, force_noise, least);
-        Some(Self { readings, branches, pieces, least, rule: Rule::Shifted })
+        let unsure = under_way.as_ref().map_or(0.0, |under_way| under_way.unsure(stiffness, resolution));
+        let (branches, pieces) = pieces::cut(&readings, (stiffness, force_noise.hypot(unsure), least), under_way.as_ref());
+        Self { readings, branches, pieces, least, rule: Rule::Shifted, under_way }
     }
 
     /// The recorded reading of a step; past the end of the record, of its last.
     #[must_use]
     pub fn recorded(&self, step: usize) -> &Reading {
-        &self.readings[step.min(self.readings.len() - 1)]
+        let step = step.min(self.readings.len() - 1);
+        self.under_way.as_ref().map_or(&self.readings[step], |under_way| under_way.reading(step))
     }
 
     /// Whether it swung through no force and back after it flowed: what came then rests on more than one supposition.
@@ -164,7 +191,7 @@ impl RecordedPath {
         while let Some(before) = origin.before {
             origin = self.pieces[before];
         }
-        let (begun, turn) = (self.readings[origin.begin], self.readings[self.pieces[first_piece].begin]);
+        let (begun, turn) = (origin.begin, self.pieces[first_piece].begin);
         let fallen = origin.start_tangent - (turn.force - begun.force) / (turn.target - begun.target);
         let lost = origin.start_tangent - self.pieces[first_piece].start_tangent;
         (fallen > 0.0 && lost > KEPT * fallen).then_some([begun.target, begun.force])
@@ -177,16 +204,16 @@ impl RecordedPath {
         let piece = loop {
             let piece = self.pieces[index];
             let direction = self.branches[piece.branch].direction;
-            let beyond = |reading: usize| (place - self.readings[reading].target) * direction;
+            let beyond = |reading: &Reading| (place - reading.target) * direction;
             index = match (piece.before, piece.after) {
-                (Some(before), _) if beyond(piece.begin) < 0.0 => before,
-                (_, Some(after)) if beyond(piece.last) > 0.0 => after,
+                (Some(before), _) if beyond(&piece.begin) < 0.0 => before,
+                (_, Some(after)) if beyond(&self.pieces[after].begin) > 0.0 => after,
                 _ => break piece,
             };
         };
         let direction = self.branches[piece.branch].direction;
         let count = piece.last + 1 - piece.first;
-        let reading = |point: usize| self.readings[if point == 0 { piece.begin } else { piece.first + point - 1 }];
+        let reading = |point: usize| if point == 0 { piece.begin } else { self.readings[piece.first + point - 1] };
         let mut from = (step + 1).saturating_sub(piece.first).min(count);
         let here = reading(from);
         if place == here.target {
@@ -221,7 +248,7 @@ impl RecordedPath {
     }
 }
 
-/// Bits of a step in a draw, the same in every run: the finaliser of `SplitMix64` (Steele, Lea and Flood 2014).
+/// Bits of a step in a draw, the same in every run: the finaliser of `SplitMix64`.
 fn drawn(draw: u16, step: u64) -> u64 {
     let mut bits = (u64::from(draw) << 48 ^ step).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -2,10 +2,11 @@
 //! goes along. In: the readings. Out: branches and pieces with their tangents. It knows no way but the recorded one.
 //!
 //! A curve begins where the specimen turns. It is left where the specimen turns again, and gone on with once the place of
-//! that turn is passed on the way back: the loop is closed and forgotten (Masing 1926; the return-point memory of Iwan's
+//! that turn is passed on the way back: the loop is closed and forgotten (Masing's rule; the return-point memory of Iwan's
 //! and Preisach's models). So one branch may have pieces of several curves, and one curve pieces on several branches.
 
 use super::Reading;
+use super::under_way::UnderWay;
 
 /// Loops no thicker than this share of the force they span are none: the way back is the way there.
 const THIN: f64 = 1e-3;
@@ -17,8 +18,8 @@ const NOISE_BOUND: f64 = 3.0;
 /// Part of a curve that was gone along at a stretch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
-    /// The reading it begins at: that of the turn where its curve begins or had been left.
-    pub begin: usize,
+    /// Where it begins: the turn where its curve begins or had been left.
+    pub begin: Reading,
     /// Readings after that; the first is past the last where there is none.
     pub first: usize,
     pub last: usize,
@@ -40,8 +41,12 @@ pub(super) struct Piece {
 pub(super) struct Branch {
     /// 1 or −1; 0 of a record that goes nowhere.
     pub direction: f64,
-    /// The reading of the turn at its end, or the last.
+    /// The reading before the turn at its end, or the last.
     pub end: usize,
+    /// That turn, as the next branch begins with it: a reading, or between two of them.
+    pub turn: Reading,
+    /// The force there as its own curve leads to it, N.
+    pub led_to: f64,
     /// Its pieces, one at least.
     pub first_piece: usize,
     pub last_piece: usize,
@@ -54,19 +59,34 @@ pub(super) struct Branch {
 }
 
 /// Cuts a record; `least` (m) is how long a piece must be to tell a tangent, `stiffness` (N/m) what holds where none does.
-pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least: f64) -> (Vec<Branch>, Vec<Piece>) {
+/// Readings made under way turn between two of them.
+pub(super) fn cut(
+    readings: &[Reading],
+    (stiffness, force_noise, least): (f64, f64, f64),
+    under_way: Option<&UnderWay>,
+) -> (Vec<Branch>, Vec<Piece>) {
     let mut branches: Vec<Branch> = Vec::new();
     let mut pieces: Vec<Piece> = Vec::new();
     // Branches that ended in a turn whose loop is not closed.
     let mut open: Vec<usize> = Vec::new();
     let mut elastic = stiffness;
-    for (begin, end, direction) in stretches(readings) {
+    let found = under_way.map_or_else(|| stretches(readings), |under_way| stretches_of(under_way.velocities()));
+    for (begin, end, direction) in found {
         let branch = branches.len();
-        if branch > 0 {
-            open.push(branch - 1);
+        let mut turn = readings[begin];
+        if let Some(before) = branch.checked_sub(1) {
+            if let Some(place) = under_way.and_then(|under_way| under_way.turned(begin)) {
+                let onto = readings[begin + 1];
+                let tangent = tangent(readings[begin + 1..=end].iter(), least).unwrap_or(elastic);
+                let displacement = onto.displacement + (place - onto.target);
+                branches[before].led_to += pieces[branches[before].last_piece].end_tangent * (place - turn.target);
+                turn = Reading { target: place, displacement, force: onto.force + tangent * (place - onto.target) };
+                branches[before].turn = turn;
+            }
+            open.push(before);
         }
         let own = Piece {
-            begin,
+            begin: turn,
             first: begin + 1,
             last: end,
             branch,
@@ -83,12 +103,12 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
         for step in begin + 1..=end {
             let (mut rejoined, mut passed) = (None, false);
             while let [.., left, _] = open[..]
-                && (readings[step].target - readings[branches[left].end].target) * direction > 0.0
+                && (readings[step].target - branches[left].turn.target) * direction > 0.0
             {
-                let turn = readings[branches[left].end];
-                let (near, far) = (readings[step - 1], readings[step]);
+                let (near, far) = (if step == begin + 1 { own.begin } else { readings[step - 1] }, readings[step]);
+                let turn = branches[left].turn;
                 let force = near.force + (turn.target - near.target) / (far.target - near.target) * (far.force - near.force);
-                let height = (turn.force - readings[begin].force).abs();
+                let height = (turn.force - own.begin.force).abs();
                 let unsure = NOISE_BOUND * force_noise + 0.5 * (far.force - near.force).abs();
                 let closed = (force - turn.force).abs() <= unsure + OPEN * height;
                 rejoined = closed.then_some(left);
@@ -102,14 +122,14 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
                 pieces[here - 1].last = step - 1;
                 pieces[before].after = Some(here);
                 let curve = pieces[before].curve;
-                let begin = branches[left].end;
+                let begin = branches[left].turn;
                 pieces.push(Piece { begin, first: step, curve, rejoins: Some(left), before: Some(before), ..own });
             }
         }
         for index in first_piece..pieces.len() {
             let piece = pieces[index];
             let known = piece.before.map_or(elastic, |before| pieces[before].end_tangent);
-            let steps = || std::iter::once(piece.begin).chain(piece.first..=piece.last).map(|step| &readings[step]);
+            let steps = || std::iter::once(&piece.begin).chain(readings[piece.first..=piece.last].iter());
             let start = tangent(steps(), least);
             pieces[index].start_tangent = start.unwrap_or(known);
             pieces[index].end_tangent = tangent(steps().rev(), least).or(start).unwrap_or(known);
@@ -120,6 +140,8 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
         branches.push(Branch {
             direction,
             end,
+            turn: readings[end],
+            led_to: readings[end].force,
             first_piece,
             last_piece: pieces.len() - 1,
             retraces: false,
@@ -135,10 +157,16 @@ pub(super) fn cut(readings: &[Reading], stiffness: f64, force_noise: f64, least:
 
 /// Readings at the ends of each stretch without a turn, and its direction.
 fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
+    let moved = readings.windows(2).map(|two| two[1].target - two[0].target);
+    stretches_of(std::iter::once(0.0).chain(moved))
+}
+
+/// The same of how it went to each reading: a way, or a velocity.
+pub(super) fn stretches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
-    let (mut begin, mut direction) = (0, 0.0);
-    for step in 1..readings.len() {
-        let moved = readings[step].target - readings[step - 1].target;
+    let (mut begin, mut last, mut direction) = (0, 0, 0.0);
+    for (step, moved) in went.enumerate() {
+        last = step;
         if moved * direction < 0.0 {
             found.push((begin, step - 1, direction));
             begin = step - 1;
@@ -147,7 +175,7 @@ fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
             direction = moved.signum();
         }
     }
-    found.push((begin, readings.len().saturating_sub(1), direction));
+    found.push((begin, last, direction));
     found
 }
 
@@ -155,7 +183,7 @@ fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
 fn retraces(readings: &[Reading], pieces: &[Piece], branches: &[Branch], branch: usize, noise: f64) -> bool {
     let own = pieces[branches[branch].first_piece];
     let from = branches[branch - 1].last_piece;
-    let turn = readings[own.begin];
+    let turn = own.begin;
     let (mut thickness, mut span) = (0.0_f64, 0.0_f64);
     for reading in readings.iter().take(own.last + 1).skip(own.first) {
         let Some((_, force)) = within(readings, pieces, branches, from, reading.target) else { break };
@@ -167,9 +195,9 @@ fn retraces(readings: &[Reading], pieces: &[Piece], branches: &[Branch], branch:
 
 /// Where the force is none, and how fast it changes there.
 fn gone(readings: &[Reading], piece: &Piece) -> Option<[f64; 2]> {
-    let begun = readings[piece.begin].force;
+    let begun = piece.begin.force;
     let step = (piece.first..=piece.last).find(|step| readings[*step].force * begun < 0.0)?;
-    let near = readings[if step == piece.first { piece.begin } else { step - 1 }];
+    let near = if step == piece.first { piece.begin } else { readings[step - 1] };
     let slope = (readings[step].force - near.force) / (readings[step].target - near.target);
     (slope.is_finite() && slope != 0.0).then(|| [near.target - near.force / slope, slope])
 }
@@ -177,14 +205,20 @@ fn gone(readings: &[Reading], piece: &Piece) -> Option<[f64; 2]> {
 /// Displacement and force at a place on the curve of a piece, where the record went there before.
 fn within(readings: &[Reading], pieces: &[Piece], branches: &[Branch], piece: usize, place: f64) -> Option<(f64, f64)> {
     let mut piece = piece;
-    while (place - readings[pieces[piece].begin].target) * branches[pieces[piece].branch].direction < 0.0 {
+    while (place - pieces[piece].begin.target) * branches[pieces[piece].branch].direction < 0.0 {
         piece = pieces[piece].before?;
     }
-    let Piece { begin, first, last, .. } = pieces[piece];
-    let direction = branches[pieces[piece].branch].direction;
+    let Piece { begin, first, last, branch, .. } = pieces[piece];
+    let Branch { direction, turn, led_to, last_piece, .. } = branches[branch];
     let reached = readings[first..=last].partition_point(|reading| (reading.target - place) * direction < 0.0);
-    let far = readings.get(first + reached).filter(|_| first + reached <= last)?;
-    let near = readings[if reached == 0 { begin } else { first + reached - 1 }];
+    let far = if first + reached <= last {
+        readings[first + reached]
+    } else if piece == last_piece && (turn.target - place) * direction >= 0.0 {
+        Reading { force: led_to, ..turn }
+    } else {
+        return None;
+    };
+    let near = if reached == 0 { begin } else { readings[first + reached - 1] };
     let share = if far.target == near.target { 1.0 } else { (place - near.target) / (far.target - near.target) };
     Some((near.displacement + share * (far.displacement - near.displacement), near.force + share * (far.force - near.force)))
 }

@@ -3,8 +3,9 @@
 
 use super::RestoringForce;
 
-/// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))] (Bouc 1967; Wen 1976), normalised to γ = 1 − β, so
-/// that z tends to ±1; it takes energy on every path for β ≥ ½ (Erlicher & Point 2004).
+/// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))], the form that goes by the names of Bouc and Wen, normalised to γ = 1 − β, so
+/// that z tends to ±1. What it takes beyond the store ½z² F_y/K of its spring is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)), which is
+/// negative on no path where β ≥ |γ|, that is β ≥ ½.
 ///
 /// With y = |ΔX| K/F_y and u = z counted along the move, du/dy = 1 − uⁿ loading (u ≥ 0) and 1 + (2β − 1)|u|ⁿ unloading (u < 0).
 /// Unloading ends at u = 0, where the right-hand side loses derivatives: the way there is integrated first, so that no step

@@ -3,7 +3,7 @@
 
 use super::RestoringForce;
 
-/// Elastic–plastic elements in parallel (Iwan 1967; the one-dimensional case of Mróz 1967): with slopes k₁ > k₂ > … of the
+/// Elastic–plastic elements in parallel (Iwan's model): with slopes k₁ > k₂ > … of the
 /// first loading between the corners x₁ < x₂ < …, element i has the stiffness kᵢ − kᵢ₊₁ and yields at xᵢ; what is left, the
 /// last slope, is elastic. Unloading and reloading follow Masing: the first loading, twice as large.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use crate::plan::{Capping, Pinching};
 /// After Ibarra, Medina & Krawinkler, *Hysteretic models that incorporate strength and stiffness deterioration*, Earthquake
 /// Engng Struct. Dyn. 34 (2005) 1489–1511; the break point and the order of the deterioration as `IMKPinching` of OpenSees has them:
 /// - the backbone is K to F_y, then hardening, and, where it is capped, from `x_c` on a line that falls, down to the residual strength;
-/// - unloading has the stiffness K (x_y/x_p)^a, x_p the peak displacement that way (Takeda, Sozen & Nielsen 1970), but at
+/// - unloading has the stiffness K (x_y/x_p)^a, x_p the peak displacement that way (as in Takeda's model), but at
 ///   least that of the peak's chord, F_p/x_p; a return before the force is gone goes back up the same line;
 /// - from no force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with U_p the
 ///   permanent displacement of the peak that way, and on to the peak; where u₀ is past the break point, straight to the peak;

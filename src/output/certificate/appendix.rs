@@ -9,8 +9,17 @@ use crate::inert;
 use crate::mechanics::self_test;
 use crate::plan::PlanFile;
 
-/// Plan, provenance, statements, signatures.
+/// Statements, plan, provenance, signatures.
 pub(super) fn all(run: &Run<'_>, tables: &[Listed], body: &mut Vec<Block>) {
+    // Ahead of what is long, so that no page bears nothing else.
+    body.push(Block::section("Statements"));
+    body.push(Block::paragraph(format!(
+        "These results relate only to the items tested{}. This report is not to be reproduced except in full without the approval \
+         of the issuer. Data marked as the plan's were supplied with it and not measured; the issuer answers for what was measured. \
+         The report is structured after ISO/IEC 17025:2017, clause 7.8; that is a statement about its form and no claim of \
+         accreditation.",
+        if run.record.rig.simulated { ", here a virtual specimen on a simulated rig" } else { "" }
+    )));
     body.push(Block::section("Plan as run"));
     for (file, kept) in run.plan.files.iter().zip(plan_files(run.plan)) {
         body.push(Block::part(file.name.as_str()));
@@ -35,14 +44,6 @@ pub(super) fn all(run: &Run<'_>, tables: &[Listed], body: &mut Vec<Block>) {
     }));
     body.push(Block::part("Validation of the program"));
     validation(run, body);
-    body.push(Block::section("Statements"));
-    body.push(Block::paragraph(format!(
-        "These results relate only to the items tested{}. This report is not to be reproduced except in full without the approval \
-         of the issuer. Data marked as the plan's were supplied with it and not measured; the issuer answers for what was measured. \
-         The report is structured after ISO/IEC 17025:2017, clause 7.8; that is a statement about its form and no claim of \
-         accreditation.",
-        if run.record.rig.simulated { ", here a virtual specimen on a simulated rig" } else { "" }
-    )));
     if !run.plan.report.sign.is_empty() {
         let name = |name: &String| Text::from(format!("{name}: name, date and signature"));
         body.push(Block::Signatures { names: run.plan.report.sign.iter().map(name).collect() });

@@ -84,7 +84,8 @@ fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
     let factor = expansion::factor(*known);
     let of_degrees =
         if expansion::is_more(*known) { format!(", ν = {}", expansion::degrees_text(*known)) } else { String::new() };
-    let whole = format!("combined: {} ± {expanded}\u{a0}{}, U = {factor}\u{a0}u{of_degrees}", parts.value, parts.unit);
+    let whole =
+        format!("combined: {}\u{a0}{}, U = {factor}\u{a0}u{of_degrees}", number::plus_minus(&parts.value, &expanded), parts.unit);
     rows.push(vec![whole.into(), "".into(), "".into(), amount(*uncertainty), "100\u{a0}%".into()]);
     rows
 }

@@ -96,11 +96,17 @@ fn displaced(history: &EscalateHistory) -> Cow<'static, str> {
     }
 }
 
-/// Earlier blows lighter, the last one in a colour of its own; the first and the last bear their energies.
+/// Labels of blows, at most: more of them hide what they are to tell.
+const MOST_LABELS: usize = 7;
+
+/// Earlier blows lighter, the last one in a colour of its own. All bear their energies, of many blows every so many and the last.
 fn over_each_other(history: &EscalateHistory, x: Quantity, y: Quantity, of: impl Fn(&ImpactStep) -> (f64, f64)) -> Chart {
     let last = history.blows.len().saturating_sub(1);
+    let every = history.blows.len().div_ceil(MOST_LABELS).max(1);
+    // One just before the last would stand in its way.
+    let labelled = |index: usize| index == last || (index.is_multiple_of(every) && last - index >= every.div_ceil(2));
     let series = history.blows.iter().enumerate().map(|(index, blow)| Series {
-        label: if index == 0 || index == last { format!("blow {}, {}", index + 1, energy(blow)) } else { String::new() },
+        label: if labelled(index) { format!("blow {}, {}", index + 1, energy(blow)) } else { String::new() },
         points: blow.impact().steps.iter().map(&of).collect(),
         style: if index == last {
             Style::line(palette::VERMILION, 2.0, SOLID)

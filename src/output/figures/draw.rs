@@ -199,8 +199,8 @@ impl Sheet<'_> {
     }
 }
 
-/// Whether the straight line between two points passes through the rectangle between two corners (Liang and Barsky 1984:
-/// what is left of it, cut at each side in turn).
+/// Whether the straight line between two points passes through the rectangle between two corners (after Liang and
+/// Barsky: what is left of it, cut at each side in turn).
 fn crosses((from, to): (Point, Point), (low, high): (Point, Point)) -> bool {
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
     for (start, way, low, high) in [(from.0, to.0 - from.0, low.0, high.0), (from.1, to.1 - from.1, low.1, high.1)] {

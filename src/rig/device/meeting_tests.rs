@@ -6,12 +6,14 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::{Device, DeviceFault, Force, Instron, Mark10, Mark10Gauge, Modbus, Nees, Talk};
-use crate::plan::{Behaviour, Interval, ModbusMap, ModbusNumber};
+use crate::plan::{ModbusMap, ModbusNumber};
 use crate::rig::Wish;
 use crate::rig::port::{Clock as _, Emergency, Port};
 use crate::rig::testing::VirtualClock;
-use crate::simulator::{Bench, BenchSettings, Firmware, firmware};
+use crate::simulator::firmware::testing::spring;
+use crate::simulator::{Bench, Firmware, firmware};
 
+/// Of the spring on the bench, N/m.
 const STIFFNESS: f64 = 1e5;
 
 /// A controller on its bench, at the other end of a line without delay.
@@ -30,17 +32,7 @@ struct Shared {
 
 impl Controller {
     fn new(firmware: Box<dyn Firmware>) -> Self {
-        let bench = Bench::new(BenchSettings {
-            behaviour: Behaviour::Elastic { stiffness: STIFFNESS },
-            damping: 0.0,
-            noise: 0.0,
-            resolution: 0.0,
-            newtons_per_count: 0.01,
-            zero_count: 0.0,
-            seed: 1,
-            limits: Interval { low: -0.02, high: 0.06 },
-            top_speed: 0.05,
-        });
+        let bench = spring();
         Self { clock: VirtualClock::default(), shared: Arc::new(Mutex::new(Shared { firmware, bench, coming: Vec::new() })) }
     }
 

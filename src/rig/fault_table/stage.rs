@@ -12,7 +12,8 @@ use crate::record::{EventKind, History, Outcome, Record};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::real::RealRig;
 use crate::rig::{Rig as _, RigFault, Tally, Wish, device};
-use crate::run::tape::{self, Header, HeaderFile, Played};
+use crate::run::tape::{self, Played};
+pub(super) use crate::run::testing::header;
 use crate::run::testing::{elastic_plan, ramp};
 use crate::run::{Observer, Unwatched};
 use crate::simulator::testing::SharedText;
@@ -138,25 +139,6 @@ pub(super) fn open(plan: &Plan, stand: &InProcess) -> Result<RealRig, RigFault> 
     };
     let (actuator, load_cell) = (of_role(actuators, 0).unwrap(), of_role(cells, first_cell));
     RealRig::open(&plan.rig, &plan.limits, actuator, load_cell, Box::new(stand.clock()), Wish::default())
-}
-
-pub(super) fn header() -> Header {
-    Header {
-        run_id: "0123456789abcdef".to_owned(),
-        psd: "0".to_owned(),
-        build: "0".to_owned(),
-        toolchain: String::new(),
-        files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
-        settings: Vec::new(),
-        rig: None,
-        equipment: None,
-        date: None,
-        operator: None,
-        host: None,
-        began: None,
-        rehearsal: false,
-        served: None,
-    }
 }
 
 /// The same run with one guard off.

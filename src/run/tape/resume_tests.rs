@@ -6,11 +6,12 @@ use super::*;
 use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DriftCheck, Escalate, Frame, FrameUnload, Ground, Impact,
-    InspectTrigger, Integrator, Level, Mode, Move, Procedure, ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp,
-    Storey, Test, Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
+    Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame, FrameUnload, Ground,
+    Impact, InspectTrigger, Integrator, Level, Mode, Move, Procedure, ProcedureKind, Shake, ShakeDamping, Sides, Stepping,
+    StiffnessRamp, Storey, Test, Unload, Until, WatchedHold, WatchedModel, ZeroAfter,
 };
 use crate::quantity::Dimension;
+use crate::record::History;
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{Identity, JUST_STARTED};
 use crate::run::testing::{elastic_plan, every, impact, ramp, result_of, struck_frame};
@@ -152,6 +153,19 @@ fn frame_row() -> Plan {
     plan
 }
 
+/// A sweep about a place past yield: one stroke that is not read takes the flow before those that are.
+fn swept_past_yield() -> Plan {
+    let sweep = DampingSweep {
+        specimen: 0,
+        velocities: vec![Constant(0.01), Constant(0.02)],
+        stroke: Constant(5e-3),
+        about: Some(Constant(0.03)),
+        stiffness: Constant(300.0),
+        rate: Some(Constant(24.0)),
+    };
+    yielding(vec![ProcedureKind::DampingSweep(sweep), to(0.0)])
+}
+
 /// Every plan here, by what it shows.
 fn plans() -> Vec<(&'static str, Plan)> {
     vec![
@@ -166,6 +180,7 @@ fn plans() -> Vec<(&'static str, Plan)> {
         ("unload", unloading()),
         ("escalate on a storey", frame_row()),
         ("watched", watched()),
+        ("sweep past yield", swept_past_yield()),
     ]
 }
 
@@ -213,6 +228,17 @@ fn a_blow_on_a_storey_without_a_stop() {
 #[test]
 fn pauses_that_are_watched() {
     killed("watched");
+}
+
+/// Nothing of a stroke that flowed is read, and what is read comes back over the line that it went: there is no damper.
+#[test]
+fn a_sweep_about_a_place_past_yield() {
+    let (_, whole, _) = recorded(&swept_past_yield());
+    let (damping, _) = crate::run::testing::number(&whole.record, 0, "damping");
+    assert!(damping.unwrap().abs() < 1e-9, "{damping:?}");
+    let History::Sweep(sweep) = &whole.record.procedures[0].history else { panic!() };
+    assert!(sweep.steps.iter().all(|step| (step.displacement - 0.03).abs() < 2.6e-3), "the stroke that flows is not read");
+    killed("sweep past yield");
 }
 
 #[test]

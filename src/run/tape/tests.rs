@@ -15,7 +15,7 @@ use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, virtual_rig};
 use crate::run::Inspection;
-use crate::run::testing::{elastic_plan, impact, ramp, result_of, struck_frame};
+use crate::run::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
 
 /// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
 #[derive(Clone)]
@@ -135,25 +135,6 @@ fn plan() -> Plan {
             ProcedureKind::Move(home),
         ],
     )
-}
-
-pub(crate) fn header() -> Header {
-    Header {
-        run_id: "0123456789abcdef".to_owned(),
-        psd: "0".to_owned(),
-        build: "0".to_owned(),
-        toolchain: String::new(),
-        files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
-        settings: Vec::new(),
-        rig: None,
-        equipment: None,
-        rehearsal: false,
-        served: None,
-        date: None,
-        operator: None,
-        host: None,
-        began: None,
-    }
 }
 
 fn no_wall() -> Wall {

@@ -14,7 +14,7 @@ mod native;
 mod nees;
 mod scpi;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use grbl::Grbl;
 pub use hx711::Hx711;

@@ -64,6 +64,7 @@ pub fn finished() -> Finished {
             number("r_squared", Some(0.999_98), None, Dimension::NUMBER),
         ],
         history: History::Ramp(RampHistory {
+            start: None,
             steps: ramp_steps(),
             fit: Some(line(327.72, 0.41, -0.012, 0.035)),
             bilinear: None,

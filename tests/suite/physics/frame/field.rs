@@ -26,7 +26,7 @@ fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     b
 }
 
-/// On a linear specimen α-OS with `K_I` = K is the implicit HHT-α (Hilber, Hughes and Taylor 1977), solved here for the
+/// On a linear specimen α-OS with `K_I` = K is the implicit HHT-α, solved here for the
 /// displacement with dense matrices of its own:
 /// M a₁ + (1+α)(C v₁ + K d₁) − α(C v₀ + K d₀) = (1+α)f₁ − αf₀.
 #[test]
