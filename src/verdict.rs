@@ -5,7 +5,7 @@ use crate::formula::{Formula, FormulaError, Operator, ResultReference, ResultVal
 use crate::mechanics::energy::WORTHLESS;
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
-use crate::record::{Beyond, History, Outcome, ProcedureRecord, Record};
+use crate::record::{Beyond, Outcome, ProcedureRecord, Record};
 use crate::rig::failpoint::{self, Guarding};
 use crate::uncertainty::{FEW, Known, known};
 
@@ -178,9 +178,7 @@ fn no_peak(read: &[Read<'_>], outcome: &ConditionOutcome) -> Option<String> {
     if past_it == Some(outcome.verdict) {
         return None;
     }
-    let growing = |(procedure, result): &&Read<'_>| {
-        GROWING.contains(result) && matches!(&procedure.history, History::Impact(history) if history.still_rising())
-    };
+    let growing = |(procedure, result): &&Read<'_>| GROWING.contains(result) && procedure.history.still_rising();
     let (procedure, _) = read.iter().find(growing)?;
     let name = &procedure.name;
     Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))

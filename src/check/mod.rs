@@ -40,6 +40,7 @@ mod portal;
 mod print;
 mod procedures;
 mod real_rig;
+mod record_size;
 mod report;
 mod require;
 mod rig;
@@ -261,6 +262,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     if !checker.faults.iter().any(Diagnostic::is_error) {
         let blocks: Vec<usize> = procedures.iter().map(|(block, _)| *block).collect();
         tracking::warn(checker, &plan, &blocks, rig_block);
+        record_size::fits(checker, &plan, &blocks);
     }
     Some(plan)
 }

@@ -144,8 +144,8 @@ pub(super) fn energy(plan: &Plan, procedure: usize) -> Vec<Vec<String>> {
 const CORRECTED: &str = "none to first order: the I-modification corrects the force to the target";
 
 fn late_by(late: f64, unsettled: f64) -> Vec<String> {
-    let text = format!("{} of virtual time, ± {}", readable(late, Dimension::TIME), readable(unsettled, Dimension::LENGTH));
-    vec!["late by".to_owned(), text]
+    let either_way = if unsettled > 0.0 { format!(", ± {}", readable(unsettled, Dimension::LENGTH)) } else { String::new() };
+    vec!["late by".to_owned(), format!("{} of virtual time{either_way}", readable(late, Dimension::TIME))]
 }
 
 /// How the actuators of the rig follow targets (m) that go so.

@@ -133,6 +133,7 @@ codes! {
     E650 RelaxationWithoutHold Error;
     E651 NotTogether Error;
     E652 NobodyToFreeIt Error;
+    E653 RecordTooLong Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;

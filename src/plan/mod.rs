@@ -12,8 +12,10 @@ mod frame;
 mod golden;
 mod identification;
 mod integrator;
+mod known_steps;
 mod limits;
 mod portal;
+mod record_size;
 mod rig;
 mod stepping;
 mod undeclared;
@@ -37,6 +39,7 @@ pub use identification::{
 pub use integrator::{Integrator, Mode};
 pub use limits::{Interval, Limits};
 pub use portal::{ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses};
+pub use record_size::{Counts, FRAME, MOST_RECORD_BYTES, WALL};
 pub use rig::{
     Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
     RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,

@@ -4,7 +4,8 @@
 use super::{InspectTrigger, Integrator, Mode};
 use crate::formula::Formula;
 
-/// Steps of one procedure, at most: a record of them takes some 2 GB. `check` counts them where it can, `run` where it must.
+/// Steps of one procedure, of a frame times its storeys, at most. `check` counts them where it can, `run` where it must; of one or a
+/// few storeys what the record may hold (`MOST_RECORD_BYTES`) ends sooner.
 pub const MOST_STEPS: f64 = 1e7;
 
 /// What every procedure that integrates says of its steps.

@@ -47,6 +47,23 @@ fn history(record: &Record) -> &EscalateHistory {
     }
 }
 
+/// What is so of every blow is said after the first, and at the end of how many more; a row of one says nothing more.
+#[test]
+fn what_is_so_of_every_blow_is_said_once() {
+    let of = |velocities: &[f64]| {
+        let short = Impact { duration: Constant(4e-3), until: Until::Duration, ..blow() };
+        let row = Escalate { blow: BlowOn::Specimen(short), ..rising(velocities, 1.0, Between::Home) };
+        let record = run_unwatched(&yielding(vec![ProcedureKind::Escalate(row)]));
+        assert_eq!(record.outcome, Outcome::Completed);
+        let told = record.events.into_iter().map(|event| event.text).filter(|text| text.contains("not a peak"));
+        told.collect::<Vec<String>>()
+    };
+    let text = "the structure was still moving on at the end: its largest displacement is not a peak";
+    assert_eq!(of(&[0.1]), [text]);
+    assert_eq!(of(&[0.1, 0.2]), [text.to_owned(), format!("after one more blow: {text}")]);
+    assert_eq!(of(&[0.1, 0.2, 0.3, 0.4]), [text.to_owned(), format!("after 3 more blows: {text}")]);
+}
+
 /// Each blow is the impact that the plan could have written out, one unload after the other.
 #[test]
 fn every_blow_is_an_impact_of_its_own() {

@@ -7,11 +7,11 @@
 
 use crate::formula::{Formula, ResultReference, ResultValue, Results};
 use crate::plan::{
-    BlowOn, DampingSweep, Dialect, Impact, Interval, Mode, Plan, ProcedureKind, RealLink, Sides, StiffnessRamp, StoreyImpact,
-    Striker, steps_in,
+    BlowOn, Counts, DampingSweep, FRAME, Impact, Interval, Plan, ProcedureKind, Sides, StiffnessRamp, StoreyImpact, Striker,
+    steps_in,
 };
 
-use super::{shake, storey_impact, zero};
+use super::zero;
 
 /// What a run may write.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,20 +24,6 @@ pub struct Need {
     pub unknown: Vec<String>,
 }
 
-/// A float as the record writes it, with what stands between it and the next: sign, 17 digits, point, exponent, comma.
-const NUMBER: f64 = 25.0;
-/// Number, type, chain and checksum of a line, its blanks and its end.
-const LINE: f64 = 96.0;
-/// The wall clock of a record.
-pub(crate) const WALL: f64 = 34.0;
-/// The bytes of a target: frames are no longer than 96 bytes.
-const WIRE: f64 = 200.0;
-/// What another axis adds to a frame or to a reply: its target; its place and its force.
-const AXIS: f64 = 60.0;
-/// A reading that was not usable and taken again, a TALLY: one in ten readings.
-const MENDED: f64 = 1.1;
-/// Header, plan texts apart; the gate, events, notes, faults.
-pub(crate) const FRAME: f64 = 131_072.0;
 /// A row of the tables and what figures and pages show of it.
 const ROW: f64 = 1_200.0;
 /// Certificate on page and paper, with the fonts of the latter; the figures of one procedure, drawn and set in both.
@@ -46,39 +32,6 @@ const REPORT: f64 = 1_048_576.0;
 const MOST_INCREMENTS: f64 = 1e5;
 /// Targets of one unloading, at most.
 const UNLOADING: f64 = 50.0;
-
-/// Records of each type.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Counts {
-    /// INTENT, those of ways that are read on the way included.
-    targets: f64,
-    /// INTENT with a path, and STROKE.
-    ways: f64,
-    /// SAMPLE
-    readings: f64,
-    /// STEP, and a row of a table.
-    steps: f64,
-}
-
-impl Counts {
-    fn times(self, count: f64) -> Self {
-        Self {
-            targets: self.targets * count,
-            ways: self.ways * count,
-            readings: self.readings * count,
-            steps: self.steps * count,
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            targets: self.targets + other.targets,
-            ways: self.ways + other.ways,
-            readings: self.readings + other.readings,
-            steps: self.steps + other.steps,
-        }
-    }
-}
 
 /// What a run of the plan may write.
 #[must_use]
@@ -101,12 +54,7 @@ pub fn of(plan: &Plan) -> Need {
         }
     }
     let axes = f64::from(u32::try_from(plan.degrees_of_freedom()).unwrap_or(u32::MAX));
-    let (raw, wire) = plan.rig.link.as_real().map_or((0.0, 0.0), |link| (raw(link, axes), WIRE + AXIS * (axes - 1.0) + WALL));
-    let target = LINE + wire + 90.0 + NUMBER * (4.0 + 2.0 * axes);
-    let path = LINE + 20.0 + 2.0 * NUMBER + 5.0 * axes * (NUMBER + 18.0);
-    let reading = LINE + 20.0 + NUMBER * (1.0 + 2.0 * axes) + raw + if raw > 0.0 { WALL } else { 0.0 };
-    let step = LINE + 8.0 * (NUMBER + 5.0) + (axes - 1.0) * 5.0 * (NUMBER + 5.0);
-    let lines = all.targets * target + all.ways * path + MENDED * all.readings * reading + all.steps * step;
+    let lines = all.bytes(plan);
     // Twice: in the record, where a sign outside ASCII takes six bytes or twelve, and beside it.
     let texts: f64 = plan.files.iter().map(|file| bytes(&file.text)).sum();
     let record = FRAME + lines + texts;
@@ -135,20 +83,6 @@ fn way(plan: &Plan) -> f64 {
     let Interval { low, high } = plan.limits.displacement;
     let increments = (high - low) / plan.limits.increment.high;
     if increments.is_finite() { (increments.ceil() + 1.0).clamp(1.0, MOST_INCREMENTS) } else { 1.0 }
-}
-
-/// The replies of one reading, escaped twice as the record writes them: a byte that is no letter takes five.
-fn raw(link: &RealLink, axes: f64) -> f64 {
-    let reply = |dialect: &Dialect| match dialect {
-        Dialect::Modbus(_) => 4.0 * 5.0 * 20.0,
-        Dialect::Native => 180.0 + AXIS * (axes - 1.0),
-        Dialect::Grbl | Dialect::Nees { .. } => 180.0,
-        Dialect::Instron | Dialect::Mark10 => 120.0,
-        Dialect::Scpi { newtons_per_unit } => newtons_per_unit.iter().map(|_| 60.0).sum(),
-        Dialect::Hx711 | Dialect::Indicator | Dialect::Mark10Gauge => 60.0,
-    };
-    let devices = link.devices().into_iter().map(|(_, device)| reply(&device.dialect));
-    f64::from(link.readings.samples.max(1)) * devices.sum::<f64>()
 }
 
 /// What results are taken to be before they are measured: only stiffnesses, the highest that can come.
@@ -196,8 +130,8 @@ impl Reckoner<'_> {
             }
             ProcedureKind::StoreyImpact(impact) => self.storey_blow(impact, self.plan.strikers.get(impact.striker)?),
             ProcedureKind::Shake(shaking) => {
-                let steps = rounded(shake::steps(shaking, self.plan)?) + 1.0;
-                Some(stepped(shaking.stepping.mode, steps))
+                let steps = rounded(shaking.known_steps(self.plan)?) + 1.0;
+                Some(Counts::stepped(shaking.stepping.mode, steps))
             }
             ProcedureKind::Cycle(cycle) => {
                 let begin = Counts { targets: self.way, readings: 2.0 + f64::from(cycle.samples), steps: 1.0, ways: 0.0 };
@@ -249,20 +183,11 @@ impl Reckoner<'_> {
         let critical = impact.critical_time_step(striker, |formula| self.number(formula))?;
         let time_step = impact.stepping.time_step.evaluate(&self.assumed, Some(critical)).ok()?.value;
         let steps = steps_in(self.number(&impact.duration)?, time_step) + 1.0;
-        Some(stepped(impact.stepping.mode, steps))
+        Some(Counts::stepped(impact.stepping.mode, steps))
     }
 
     fn storey_blow(&self, impact: &StoreyImpact, striker: &Striker) -> Option<Counts> {
-        let steps = rounded(storey_impact::steps(impact, self.plan, striker)?) + 1.0;
-        Some(stepped(impact.stepping.mode, steps))
+        let steps = rounded(impact.known_steps(self.plan, striker)?) + 1.0;
+        Some(Counts::stepped(impact.stepping.mode, steps))
     }
-}
-
-/// Steps of a procedure that integrates, the reading before the first and the braking after the last.
-fn stepped(mode: Mode, steps: f64) -> Counts {
-    let each = match mode {
-        Mode::StepAndPause => Counts { targets: 1.0, readings: 1.0, steps: 1.0, ways: 0.0 },
-        Mode::Continuous { .. } => Counts { targets: 2.0, ways: 2.0, readings: 5.0, steps: 1.0 },
-    };
-    each.times(steps).plus(Counts { targets: 1.0, ways: 1.0, readings: 5.0, steps: 1.0 })
 }

@@ -1,12 +1,13 @@
 //! What a run is reckoned to write, held against what it wrote: never less, and not wildly more.
 
-use super::need::{self, FRAME};
+use super::need;
 use super::tape;
 use super::testing::{elastic_plan, every, header, impact, ramp, result_of};
 use super::{Unwatched, testing};
 use crate::formula::Formula::Constant;
 use crate::plan::{
-    Between, Cycle, DampingSweep, Interval, Level, Mode, Move, Plan, ProcedureKind, Sides, Stepping, StiffnessRamp, Unload, Until,
+    Between, Cycle, DampingSweep, FRAME, Interval, Level, Mode, Move, Plan, ProcedureKind, Sides, Stepping, StiffnessRamp,
+    Unload, Until,
 };
 use crate::record::Outcome;
 use crate::record::journal::testing::PowerLoss;

@@ -2,13 +2,10 @@
 //! It knows no procedure's physics.
 
 use super::escalate::most_moves;
-use super::shake;
 use super::stop::Stop;
-use super::storey_impact;
 use super::study::Unknown;
 use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
-use crate::formula::{Formula, NoResults};
-use crate::plan::{BlowOn, Impact, Plan, Procedure, ProcedureKind, Striker, step_count};
+use crate::plan::{BlowOn, Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
 
@@ -303,26 +300,20 @@ fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
             Some(once * u64::from(ramp.repeats))
         }
         ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => None,
-        ProcedureKind::Impact(impact) => steps_of_blow(impact, plan.strikers.get(impact.striker)?),
+        ProcedureKind::Impact(impact) => impact.known_steps(plan.strikers.get(impact.striker)?),
         ProcedureKind::Escalate(escalate) => {
             let fastest = escalate.fastest(plan.strikers.get(escalate.striker())?);
             let blow = match &escalate.blow {
-                BlowOn::Specimen(blow) => steps_of_blow(blow, &fastest)?,
-                BlowOn::Storey(blow) => storey_impact::steps(blow, plan, &fastest)?,
+                BlowOn::Specimen(blow) => blow.known_steps(&fastest)?,
+                BlowOn::Storey(blow) => blow.known_steps(plan, &fastest)?,
             };
             let blow = blow.saturating_add(most_moves(escalate.between));
             Some(blow.saturating_mul(escalate.velocities.len() as u64))
         }
-        ProcedureKind::StoreyImpact(impact) => storey_impact::steps(impact, plan, plan.strikers.get(impact.striker)?),
-        ProcedureKind::Shake(shaking) => shake::steps(shaking, plan),
+        ProcedureKind::StoreyImpact(impact) => impact.known_steps(plan, plan.strikers.get(impact.striker)?),
+        ProcedureKind::Shake(shaking) => shaking.known_steps(plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
     }
-}
-
-fn steps_of_blow(impact: &Impact, striker: &Striker) -> Option<u64> {
-    let critical = impact.critical_time_step(striker, Formula::constant)?;
-    let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-    Some(step_count(impact.duration.constant()?, time_step))
 }

@@ -13,11 +13,10 @@ use super::shake_results::{ShakeSummary, results};
 use super::shaking::Shaking;
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
-use crate::formula::{Formula, NoResults};
+use crate::formula::Formula;
 use crate::mechanics::frame::Damping;
-use crate::mechanics::frame_properties::FrameProperties;
 use crate::mechanics::ground::peak_velocity;
-use crate::plan::{Frame, Ground, Plan, Shake, ShakeDamping, rayleigh, step_count};
+use crate::plan::{Frame, Ground, Plan, Shake, ShakeDamping, rayleigh};
 use crate::quantity::Dimension;
 use crate::record::{History, ShakeHistory};
 
@@ -65,18 +64,6 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
         stop = session.told_of(found);
     }
     Performed { results, history: History::Shake(shaking.history), stop }
-}
-
-/// Steps of a shake, where the plan alone tells.
-pub(super) fn steps(shake: &Shake, plan: &Plan) -> Option<u64> {
-    let frame = plan.specimens.get(shake.specimen)?.frame.as_ref()?;
-    let critical = FrameProperties::of(frame, &Damping::None).ok()?.critical_time_step();
-    let time_step = shake.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-    let duration = match &shake.duration {
-        Some(duration) => duration.constant()?,
-        None => plan.grounds.get(shake.ground)?.duration(),
-    };
-    Some(step_count(duration, time_step))
 }
 
 /// Everything known before the first step.

@@ -13,14 +13,12 @@ use super::stop::Stop;
 use super::storey_doubts;
 use super::storey_summary::{StoreySummary, results};
 use super::striking::Striking;
-use crate::formula::{Formula, NoResults};
 use crate::mechanics::approach::Approach;
 use crate::mechanics::contact::ContactLaw;
-use crate::mechanics::frame::Damping;
 use crate::mechanics::frame_properties::FrameProperties;
 use crate::mechanics::impact::ImpactInput;
 use crate::mechanics::structure::Structure;
-use crate::plan::{Frame, Plan, StoreyImpact, Striker, step_count};
+use crate::plan::{Frame, Plan, StoreyImpact, Striker};
 use crate::quantity::Dimension;
 use crate::record::{History, ImpactHistory, NamedResult, StoreyImpactHistory};
 
@@ -98,16 +96,6 @@ fn history_of(plan: &StoreyImpact, setting: Option<&Setting>) -> StoreyImpactHis
         modes: properties.map(|properties| properties.modes.clone()),
         damping_ratios: properties.map(FrameProperties::damping_ratios).unwrap_or_default(),
     }
-}
-
-/// Steps of an impact of this striker on a storey, where the plan alone tells.
-pub(super) fn steps(impact: &StoreyImpact, plan: &Plan, striker: &Striker) -> Option<u64> {
-    let frame = plan.specimens.get(impact.specimen)?.frame.as_ref()?;
-    let properties = FrameProperties::of(frame, &Damping::None).ok()?;
-    let approach = impact.contact.approach(striker, Formula::constant)?;
-    let critical = properties.critical_on_impact(impact.struck, &approach);
-    let time_step = impact.stepping.time_step.evaluate(&NoResults, Some(critical)).ok()?.value;
-    Some(step_count(impact.duration.constant()?, time_step))
 }
 
 /// Everything known before the first step.

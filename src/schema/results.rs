@@ -10,14 +10,14 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
         Dimension::STIFFNESS,
         "slope of the straight line fitted to force on displacement; of a bilinear or multilinear fit that of the first stretch",
     ),
-    ResultKind::new("secant_stiffness", Dimension::STIFFNESS, "force over displacement of the first increment"),
+    ResultKind::measured("secant_stiffness", Dimension::STIFFNESS, "force over displacement of the first increment"),
     ResultKind::measured("intercept_force", Dimension::FORCE, "force of the fitted line at no displacement"),
     ResultKind::new("r_squared", Dimension::NUMBER, "coefficient of determination of the fit"),
     ResultKind::new("max_force", Dimension::FORCE, "largest size of the restoring force"),
     ResultKind::new("max_displacement", Dimension::LENGTH, "largest size of the measured displacement"),
     ResultKind::new("loop_energy", Dimension::ENERGY, "energy of the hysteresis loop, with `return = true`"),
     ResultKind::new("relaxation", Dimension::FORCE, "mean loss of force during a pause"),
-    ResultKind::new(
+    ResultKind::measured(
         "tangent_stiffness",
         Dimension::STIFFNESS,
         "secant of the last outward step: the tangent where the ramp ended",

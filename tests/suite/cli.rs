@@ -320,11 +320,11 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
     let child =
         bench.command(&["run", "long.psd", "--out", "here"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let started = std::time::Instant::now();
-    while !bench.path("here").exists() && started.elapsed() < Duration::from_secs(20) {
+    // Into the run, so that there is a record of its steps.
+    let recorded = || std::fs::metadata(bench.path("here/journal.psdj")).map_or(0, |record| record.len());
+    while recorded() < 50_000 && started.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(2));
     }
-    // Into the run, so that there is a record.
-    std::thread::sleep(Duration::from_millis(30));
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let ended = Ended::from(child.wait_with_output().unwrap()).with(4);
     assert!(ended.stderr.contains("ABORTED"), "{}", ended.stderr);

@@ -48,7 +48,7 @@ impl Served {
 
     pub fn connect(&self) -> TcpStream {
         let stream = TcpStream::connect(&self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
+        stream.set_read_timeout(Some(Duration::from_mins(3))).unwrap();
         stream
     }
 
@@ -260,11 +260,13 @@ fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
 /// Also while it waits for a client, and while a client is silent: nobody moves a rig that is not there.
 #[test]
 fn a_rig_that_goes_away_while_nobody_asks_is_noticed() {
-    let mut served = Served::nees("after 40 readings: hang up");
+    // It is heard from eight times in the time of its watchdog.
+    let hanging_up = || Served::start_on(Stage::of(watched, "after 40 readings: hang up"), "nees", &[]);
+    let mut served = hanging_up();
     let (code, printed) = served.ended();
     assert!(code == Some(3) && printed.contains("the line is gone"), "{printed}");
 
-    let mut served = Served::nees("after 40 readings: hang up");
+    let mut served = hanging_up();
     let mut client = served.connect();
     assert!(is_closed(&mut client));
     assert_eq!(served.ended().0, Some(3));

@@ -94,9 +94,12 @@ pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Dia
 /// Neither a mass nor a weight that moves with the load.
 pub fn portal_without_mass(name: Option<&Ident>, head: Span) -> Diagnostic {
     let name = name.map_or("", |name| name.node.as_str());
-    Diagnostic::new(Code::MissingField, format!("specimen `{name}` lacks the field `mass`, and nothing of its portal that moves has one"))
-        .at(head, "`mass` is missing")
-        .help("say what the frame weighs, such as `mass_per_length: 12 kg/m` in `portal(…)`, or add a line such as `mass = 25 kg`")
+    Diagnostic::new(
+        Code::MissingField,
+        format!("specimen `{name}` lacks the field `mass`, and nothing of its portal that moves has one"),
+    )
+    .at(head, "`mass` is missing")
+    .help("say what the frame weighs, such as `mass_per_length: 12 kg/m` in `portal(…)`, or add a line such as `mass = 25 kg`")
 }
 
 pub fn too_few_parts(variant: &str, span: Span) -> Diagnostic {

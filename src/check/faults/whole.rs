@@ -68,6 +68,15 @@ fn time(value: f64) -> String {
     shown(value, Dimension::TIME)
 }
 
+/// Bytes of a record by the end of a procedure and at most; steps of the procedure, and how many would fit.
+pub fn record_too_long(span: Span, (bytes, most): (f64, f64), (steps, fit): (u64, f64)) -> Diagnostic {
+    let (bytes, most) = (bytes / 1e9, most / 1e9);
+    let message = format!("the record of this run may take {bytes:.1} GB, and none of more than {most:.1} GB is read back");
+    Diagnostic::new(Code::RecordTooLong, message)
+        .at(span, format!("{steps} steps"))
+        .help(format!("shorten `duration` or take a longer `time_step`: {fit} steps fit here"))
+}
+
 pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
     let (step, critical) = (time(step), time(critical));
     Diagnostic::new(Code::StepAboveCritical, format!("the time step {step} is above the critical time step {critical}"))

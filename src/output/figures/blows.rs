@@ -131,6 +131,7 @@ fn shade(index: usize, last: usize) -> Colour {
         let byte = value.round() as u8;
         byte
     };
-    let (light, dark) = (palette::SKY, palette::BLUE);
+    // Paler than sky and darker than blue, so that neighbours are told apart.
+    let (light, dark) = ((150, 206, 242), (0, 66, 120));
     (mix(light.0, dark.0), mix(light.1, dark.1), mix(light.2, dark.2))
 }

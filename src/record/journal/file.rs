@@ -18,7 +18,7 @@ pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
 
 /// The largest journal that is read back, bytes: of some five million steps. What proves it holds all of it in memory.
-pub const MOST_BYTES: u64 = 4 << 30;
+pub const MOST_BYTES: u64 = crate::plan::MOST_RECORD_BYTES;
 
 /// Who may read and write what lies here: the operator.
 const MODE: u32 = 0o600;

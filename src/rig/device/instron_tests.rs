@@ -1,37 +1,16 @@
 //! Transcripts of a console: a ramp read back before it starts, glitches to zero, silences, trips.
 
 use super::*;
-use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Script, ScriptedPort, VirtualClock};
 
 const T: f64 = 0.5;
 const RAMP: &str = "P909,1 C904,0 C1,0 C300,1 C2,1,3 C86,1,5.000 C4,1,0.05000000 P909,0 ";
 const START: &str = "P909,1 C904,0 C1,1 P909,0 ";
 const HOLD: &str = "P909,1 C904,0 C1,2 P909,0 ";
 
-/// What is sent, and what comes back; an empty answer is silence.
-struct Script {
-    port: ScriptedPort,
-    expected: Vec<String>,
-}
-
-impl Script {
-    fn on(&mut self, frame: &str, answer: &str) -> &mut Self {
-        self.expected.push(frame.to_owned());
-        let bytes = format!("{answer}\r\n").into_bytes();
-        self.port.reply(&if answer.is_empty() { vec![] } else { vec![Say::After(0.02, bytes)] });
-        self
-    }
-
-    /// One round of status, movement, position and load.
-    fn round(&mut self, movement: &str, position: &str, load: &str) -> &mut Self {
-        self.on("Q22 ", "0").on("Q1 ", movement).on("Q134,1,0 ", position).on("Q134,2,0 ", load)
-    }
-
-    /// All that was expected was sent, and nothing else.
-    fn done(&self) {
-        let sent: Vec<String> = self.port.sent().iter().map(|(_, frame)| text(frame)).collect();
-        assert_eq!(sent, self.expected);
-    }
+/// One round of status, movement, position and load.
+fn round<'a>(script: &'a mut Script, movement: &str, position: &str, load: &str) -> &'a mut Script {
+    script.on("Q22 ", "0").on("Q1 ", movement).on("Q134,1,0 ", position).on("Q134,2,0 ", load)
 }
 
 fn text(frame: &[u8]) -> String {
@@ -42,13 +21,13 @@ fn console() -> (Instron, Script) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     let talk = Talk::new(Box::new(port.clone()), Box::new(clock), T);
-    (Instron::new(talk), Script { port, expected: Vec::new() })
+    (Instron::new(talk), Script::new(port, 0.02, text))
 }
 
 /// 100 mm and 50 kN of full scale, at rest at 1 % of each.
 fn opened() -> (Instron, Script) {
     let (mut console, mut script) = console();
-    script.on("Q308,1 ", "0.1").on("Q308,2 ", "50000").round("0", "0.01", "0.01");
+    round(script.on("Q308,1 ", "0.1").on("Q308,2 ", "50000"), "0", "0.01", "0.01");
     console.identify().unwrap();
     (console, script)
 }
@@ -56,7 +35,7 @@ fn opened() -> (Instron, Script) {
 #[test]
 fn readings_are_fractions_of_full_scale_and_polls_keep_their_distance() {
     let (mut console, mut script) = opened();
-    script.round("1", "0.02500000", "-0.005");
+    round(&mut script, "1", "0.02500000", "-0.005");
     let sample = console.sample().unwrap();
     assert_eq!((sample.displacement, sample.force), (Some(0.025 * 0.1), Some(Force::Newtons(-250.0))));
     assert_eq!((sample.moving, sample.raw.len()), (Some(true), 4));
@@ -115,7 +94,7 @@ fn an_exact_zero_is_asked_again_and_believed_twice() {
     let sample = console.sample().unwrap();
     assert_eq!((sample.displacement, sample.force), (Some(0.012 * 0.1), Some(Force::Newtons(0.0))));
     // The load is known to be zero now: it is not asked twice for ever.
-    script.round("0", "0.012", "0.0");
+    round(&mut script, "0", "0.012", "0.0");
     console.sample().unwrap();
     script.done();
     assert_eq!(console.tally().reread, 1, "a zero that is one mended nothing");
@@ -124,7 +103,7 @@ fn an_exact_zero_is_asked_again_and_believed_twice() {
 #[test]
 fn a_stop_that_is_a_glitch_is_asked_again() {
     let (mut console, mut script) = opened();
-    script.round("1", "0.02", "0.02");
+    round(&mut script, "1", "0.02", "0.02");
     assert_eq!(console.sample().unwrap().moving, Some(true));
     script.on("Q22 ", "0").on("Q1 ", "0").on("Q1 ", "1").on("Q134,1,0 ", "0.02").on("Q134,2,0 ", "0.02");
     assert_eq!(console.sample().unwrap().moving, Some(true));

@@ -2,46 +2,31 @@
 
 use super::*;
 use crate::rig::device::Mark10Gauge;
-use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Say, Script, ScriptedPort, VirtualClock};
 
 const T: f64 = 0.2;
 const FORCE: &str = "/?\r\\";
 
-/// What is sent, and what comes back; an empty answer is silence.
-struct Script {
-    port: ScriptedPort,
-    expected: Vec<String>,
+/// One round of status, travel and force.
+fn round<'a>(script: &'a mut Script, status: &str, travel: &str, force: &str) -> &'a mut Script {
+    script.on("p", status).on("x", travel).on(FORCE, force)
 }
 
-impl Script {
-    fn on(&mut self, frame: &str, answer: &str) -> &mut Self {
-        self.expected.push(frame.to_owned());
-        let bytes = format!("{answer}\r\n").into_bytes();
-        self.port.reply(&if answer.is_empty() { vec![] } else { vec![Say::After(0.01, bytes)] });
-        self
-    }
-
-    fn round(&mut self, status: &str, travel: &str, force: &str) -> &mut Self {
-        self.on("p", status).on("x", travel).on(FORCE, force)
-    }
-
-    fn done(&self) {
-        let sent: Vec<String> = self.port.sent().iter().map(|(_, frame)| String::from_utf8(frame.clone()).unwrap()).collect();
-        assert_eq!(sent, self.expected);
-    }
+fn text(frame: &[u8]) -> String {
+    String::from_utf8(frame.to_vec()).unwrap()
 }
 
 fn line() -> (Talk, Script) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
-    (Talk::new(Box::new(port.clone()), Box::new(clock), T), Script { port, expected: Vec::new() })
+    (Talk::new(Box::new(port.clone()), Box::new(clock), T), Script::new(port, 0.01, text))
 }
 
 /// At 1 mm, stopped.
 fn opened() -> (Mark10, Script) {
     let (talk, mut script) = line();
     let mut stand = Mark10::new(talk);
-    script.on("ilo", "").on("p", "SL").round("SL", "1.00", "100.0 N");
+    round(script.on("ilo", "").on("p", "SL"), "SL", "1.00", "100.0 N");
     stand.identify().unwrap();
     (stand, script)
 }
@@ -49,7 +34,7 @@ fn opened() -> (Mark10, Script) {
 #[test]
 fn a_sample_is_status_travel_and_force() {
     let (mut stand, mut script) = opened();
-    script.round("UL", "2.35", "-0.25 kN");
+    round(&mut script, "UL", "2.35", "-0.25 kN");
     let sample = stand.sample().unwrap();
     assert_eq!((sample.displacement, sample.force), (Some(0.002_35), Some(Force::Newtons(-250.0))));
     assert_eq!((sample.moving, sample.raw), (Some(true), vec![b"UL".to_vec(), b"2.35".to_vec(), b"-0.25 kN".to_vec()]));
@@ -149,7 +134,7 @@ fn after_a_silence_travel_and_force_are_asked_twice() {
     script.done();
     // What comes unasked is thrown away.
     script.port.say(&[Say::After(0.0, b"999.99\r\n".to_vec())]);
-    script.round("SL", "1.00", "100 N");
+    round(&mut script, "SL", "1.00", "100 N");
     assert_eq!(stand.sample().unwrap().displacement, Some(0.001));
     assert!(stand.tally().ignored >= 1);
 }
@@ -158,7 +143,7 @@ fn after_a_silence_travel_and_force_are_asked_twice() {
 fn what_is_no_number_or_has_no_known_unit_is_no_reading() {
     for force in ["*10", "nan N", "100", "1,5 N", "OVL", "inf N", "100 lb", "1e400 N", " N"] {
         let (mut stand, mut script) = opened();
-        script.round("SL", "1.00", force);
+        round(&mut script, "SL", "1.00", force);
         assert!(matches!(stand.sample(), Err(DeviceFault::NoReading { .. })), "{force}");
     }
     for travel in ["0.04 in", "1,00", "SL", "nan"] {

@@ -4,7 +4,8 @@ use super::stage::{device_link, link, plan_of, run};
 use super::unnumbered::{grbl, modbus};
 use crate::formula::Formula::Constant;
 use crate::plan::{Dialect, Impact, Interval, Plan, ProcedureKind, StiffnessRamp, Until};
-use crate::run::need::{self, FRAME, WALL};
+use crate::plan::{FRAME, WALL};
+use crate::run::need;
 use crate::run::testing::{every, impact, ramp, result_of};
 
 fn procedures() -> Vec<ProcedureKind> {

@@ -2,6 +2,7 @@
 //! say. In: a script. Out: bytes at their times. No test of a rig sleeps.
 
 mod device;
+mod script;
 
 use std::collections::VecDeque;
 use std::io;
@@ -11,6 +12,7 @@ use std::time::Duration;
 use super::port::{Clock, Emergency, Port};
 
 pub use device::FakeDevice;
+pub use script::Script;
 
 /// Time that all clones share, s.
 #[derive(Clone, Debug, Default)]
