@@ -1,7 +1,7 @@
 //! Transcripts of a console: a ramp read back before it starts, glitches to zero, silences, trips.
 
 use super::*;
-use crate::rig::testing::{Script, ScriptedPort, VirtualClock};
+use crate::rig::testing::{ScriptedPort, Transcript, VirtualClock};
 
 const T: f64 = 0.5;
 const RAMP: &str = "P909,1 C904,0 C1,0 C300,1 C2,1,3 C86,1,5.000 C4,1,0.05000000 P909,0 ";
@@ -9,7 +9,7 @@ const START: &str = "P909,1 C904,0 C1,1 P909,0 ";
 const HOLD: &str = "P909,1 C904,0 C1,2 P909,0 ";
 
 /// One round of status, movement, position and load.
-fn round<'a>(script: &'a mut Script, movement: &str, position: &str, load: &str) -> &'a mut Script {
+fn round<'a>(script: &'a mut Transcript, movement: &str, position: &str, load: &str) -> &'a mut Transcript {
     script.on("Q22 ", "0").on("Q1 ", movement).on("Q134,1,0 ", position).on("Q134,2,0 ", load)
 }
 
@@ -17,15 +17,15 @@ fn text(frame: &[u8]) -> String {
     String::from_utf8(frame.to_vec()).unwrap().replace("\r\n", " ")
 }
 
-fn console() -> (Instron, Script) {
+fn console() -> (Instron, Transcript) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     let talk = Talk::new(Box::new(port.clone()), Box::new(clock), T);
-    (Instron::new(talk), Script::new(port, 0.02, text))
+    (Instron::new(talk), Transcript::new(port, 0.02, text))
 }
 
 /// 100 mm and 50 kN of full scale, at rest at 1 % of each.
-fn opened() -> (Instron, Script) {
+fn opened() -> (Instron, Transcript) {
     let (mut console, mut script) = console();
     round(script.on("Q308,1 ", "0.1").on("Q308,2 ", "50000"), "0", "0.01", "0.01");
     console.identify().unwrap();

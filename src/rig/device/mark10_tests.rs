@@ -2,13 +2,13 @@
 
 use super::*;
 use crate::rig::device::Mark10Gauge;
-use crate::rig::testing::{Say, Script, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Say, ScriptedPort, Transcript, VirtualClock};
 
 const T: f64 = 0.2;
 const FORCE: &str = "/?\r\\";
 
 /// One round of status, travel and force.
-fn round<'a>(script: &'a mut Script, status: &str, travel: &str, force: &str) -> &'a mut Script {
+fn round<'a>(script: &'a mut Transcript, status: &str, travel: &str, force: &str) -> &'a mut Transcript {
     script.on("p", status).on("x", travel).on(FORCE, force)
 }
 
@@ -16,14 +16,14 @@ fn text(frame: &[u8]) -> String {
     String::from_utf8(frame.to_vec()).unwrap()
 }
 
-fn line() -> (Talk, Script) {
+fn line() -> (Talk, Transcript) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
-    (Talk::new(Box::new(port.clone()), Box::new(clock), T), Script::new(port, 0.01, text))
+    (Talk::new(Box::new(port.clone()), Box::new(clock), T), Transcript::new(port, 0.01, text))
 }
 
 /// At 1 mm, stopped.
-fn opened() -> (Mark10, Script) {
+fn opened() -> (Mark10, Transcript) {
     let (talk, mut script) = line();
     let mut stand = Mark10::new(talk);
     round(script.on("ilo", "").on("p", "SL"), "SL", "1.00", "100.0 N");

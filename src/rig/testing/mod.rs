@@ -2,7 +2,7 @@
 //! say. In: a script. Out: bytes at their times. No test of a rig sleeps.
 
 mod device;
-mod script;
+mod transcript;
 
 use std::collections::VecDeque;
 use std::io;
@@ -12,7 +12,7 @@ use std::time::Duration;
 use super::port::{Clock, Emergency, Port};
 
 pub use device::FakeDevice;
-pub use script::Script;
+pub use transcript::Transcript;
 
 /// Time that all clones share, s.
 #[derive(Clone, Debug, Default)]

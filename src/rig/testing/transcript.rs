@@ -3,7 +3,7 @@
 use super::{Say, ScriptedPort};
 
 /// Frames as they are to be sent, each with the line that answers it.
-pub struct Script {
+pub struct Transcript {
     pub port: ScriptedPort,
     /// From a frame to its answer, s.
     delay: f64,
@@ -12,7 +12,7 @@ pub struct Script {
     expected: Vec<String>,
 }
 
-impl Script {
+impl Transcript {
     pub const fn new(port: ScriptedPort, delay: f64, written: fn(&[u8]) -> String) -> Self {
         Self { port, delay, written, expected: Vec::new() }
     }
