@@ -157,14 +157,15 @@ impl RealRig {
     /// Whether the force of a reading is none that the dwell before it leads to: further from the median of that dwell than noise, and a
     /// force that changes as fast as settling allows, can bring it. Most readings of one median may have lost a digit on the line.
     pub(super) fn leaps(&self, reading: &Reading) -> bool {
-        let leaps = |((axis, rested), force): ((&Axis, &Option<(f64, f64)>), &f64)| {
-            let (noise, rate) = (axis.rules.noise, self.settle.force_rate);
+        let (now, rate) = (self.clock.now(), self.settle.force_rate);
+        let leaps = |axis: &Axis, rested: Option<(f64, f64)>, force: f64| {
             rested.is_some_and(|(began, before)| {
-                let allowed = LEAP * noise + rate * (self.clock.now() - began);
-                noise > 0.0 && rate > 0.0 && (force - before).abs() > allowed
+                let allowed = LEAP * axis.rules.noise + rate * (now - began);
+                axis.rules.noise > 0.0 && rate > 0.0 && (force - before).abs() > allowed
             })
         };
-        on(Guarding::Leap) && self.axes.iter().zip(&self.rested).zip(&reading.force).any(leaps)
+        let read = self.rested.iter().zip(&reading.force);
+        on(Guarding::Leap) && self.axes.iter().zip(read).any(|(axis, (rested, force))| leaps(axis, *rested, *force))
     }
 
     /// It says that it has arrived, and the axis at this place stands elsewhere.
