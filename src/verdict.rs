@@ -1,11 +1,13 @@
 //! Requirements against the record. In: a [`Plan`] and a [`Record`]. Out: an [`Assessment`], every requirement with
 //! value, limit, margin and, under the guarded rule, guard band. A missed requirement is a verdict, never an error.
 
-use crate::formula::{Formula, FormulaError, Operator, ResultReference, ResultValue, Results};
+mod growing;
+
+use crate::formula::{Formula, FormulaError, Operator, ProcedureId, ResultReference, ResultValue, Results};
 use crate::mechanics::energy::WORTHLESS;
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
-use crate::record::{Beyond, Outcome, ProcedureRecord, Record};
+use crate::record::{Beyond, BlowHistory, Outcome, ProcedureRecord, Record};
 use crate::rig::failpoint::{self, Guarding};
 use crate::uncertainty::{FEW, Known, known};
 
@@ -110,7 +112,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
 fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
     let assess = |condition: &Condition| {
         let outcome = assess_condition(condition, rule, record);
-        unless_doubtful(condition, outcome, record)
+        unless_doubtful(condition, rule, outcome, record)
     };
     let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
@@ -121,14 +123,21 @@ fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Re
 type Read<'a> = (&'a ProcedureRecord, &'static str);
 
 /// What was reckoned and yet decides nothing is inconclusive, and says why.
-fn unless_doubtful(condition: &Condition, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
+fn unless_doubtful(condition: &Condition, rule: DecisionRule, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
     let procedure = |reference: &ResultReference| Some((record.procedures.get(reference.procedure.0)?, reference.name));
     let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
     let unfinished = || {
-        let why = cut_short(&read).or_else(|| unbalanced(&read)).or_else(|| no_peak(&read, &outcome))?;
-        Some(outcome.reason.clone().unwrap_or(why))
+        let no_peak = || {
+            growing::undecided(condition, rule, record, |procedure| {
+                record.procedures.get(procedure.0).map(|procedure| (&procedure.history, procedure.name.as_str()))
+            })
+        };
+        match cut_short(&read).or_else(|| unbalanced(&read)) {
+            Some(why) => Some(outcome.reason.clone().unwrap_or(why)),
+            None => no_peak(),
+        }
     };
     match drifted(&read, record).or_else(unfinished) {
         Some(reason) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(reason), ..outcome },
@@ -164,24 +173,19 @@ fn off(procedure: &ProcedureRecord) -> bool {
     }
 }
 
-/// Results of an impact that would be larger had it gone on.
-const GROWING: [&str; 3] = ["max_displacement", "time_of_max_displacement", "absorbed_energy"];
-
-/// A largest displacement that was still growing as the run ended is no peak: that it keeps below a bound proves nothing, that it
-/// is past one does.
-fn no_peak(read: &[Read<'_>], outcome: &ConditionOutcome) -> Option<String> {
-    let past_it = match outcome.bound {
-        Some(Bound::Compare { comparison: Comparison::Greater | Comparison::GreaterEqual, .. }) => Some(Verdict::Pass),
-        Some(Bound::Compare { comparison: Comparison::Less | Comparison::LessEqual, .. }) => Some(Verdict::Fail),
-        _ => None,
-    };
-    if past_it == Some(outcome.verdict) {
-        return None;
+/// Holds a condition of a row of blows against the results of the blow that is just over, those of the procedure `own`: what a
+/// blow leaves open that was cut before its peak decides nothing.
+pub(crate) fn assess_on_blow(
+    condition: &Condition,
+    rule: DecisionRule,
+    results: &dyn Results,
+    (own, blow): (ProcedureId, &BlowHistory),
+) -> ConditionOutcome {
+    let outcome = assess_condition(condition, rule, results);
+    match growing::undecided_by(condition, rule, results, (own, blow)) {
+        Some(why) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(why), ..outcome },
+        None => outcome,
     }
-    let growing = |(procedure, result): &&Read<'_>| GROWING.contains(result) && procedure.history.still_rising();
-    let (procedure, _) = read.iter().find(growing)?;
-    let name = &procedure.name;
-    Some(format!("the structure was still moving on as {name} ended: its largest displacement is no peak"))
 }
 
 /// What readings entered whose zero drifted farther than the rig allows decides nothing: they were not of what they seemed to be.

@@ -8,7 +8,7 @@ use super::data::DataFile;
 use super::faults::{names as fault, values};
 use super::scope::Scope;
 use crate::diagnostic::Diagnostic;
-use crate::formula::{Formula, ProcedureId};
+use crate::formula::{Formula, ProcedureId, ResultReference};
 use crate::plan::Frame;
 use crate::quantity::Dimension;
 use crate::source::{Sources, Span};
@@ -80,6 +80,8 @@ pub struct Checker<'a> {
     pub explained: Vec<Span>,
     pub known: BTreeMap<Node, Option<Typed>>,
     pub used: BTreeSet<usize>,
+    /// Results of procedures that something reads, and where.
+    pub read: Vec<(ResultReference, Span)>,
     /// The rig of the run, where it is one that moves a specimen.
     pub real_rig: Option<usize>,
     stack: Vec<Node>,
@@ -116,6 +118,7 @@ impl<'a> Checker<'a> {
             explained: Vec::new(),
             known,
             used,
+            read: Vec::new(),
             real_rig: None,
             stack,
             too_deep: false,

@@ -6,7 +6,7 @@ use super::faults::values;
 use super::fields::whole;
 use super::{integrator, mode, specimen, stepping, storey_impact, warnings};
 use crate::diagnostic::Code;
-use crate::formula::Formula;
+use crate::formula::{Formula, Part, ResultReference, ResultValue, Results};
 use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Specimen, Striker, Until, steps_in};
 use crate::schema::Kind;
 
@@ -81,12 +81,21 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Str
         return;
     }
     returns(checker, block, impact.until, striker);
+    beyond_duration(checker, block, time_step_before_the_run(impact, striker), impact.duration.constant());
     let before = checker.faults.len();
     mode::damping_twice(checker, block, impact, specimen);
     integrator::stable(checker, block, impact, striker, specimen);
     let allowed = checker.faults[before..].iter().any(|fault| fault.code == Code::BeyondStability);
-    warnings::impact(checker, block, impact, striker, allowed);
+    warnings::impact(checker, block, impact, striker, specimen, allowed);
     warnings::mechanism(checker, block, impact, specimen);
+}
+
+/// A step that is longer than the run is no step of it.
+pub fn beyond_duration(checker: &mut Checker, block: usize, step: Option<f64>, duration: Option<f64>) {
+    let Some((step, duration)) = step.zip(duration).filter(|(step, duration)| step > duration) else { return };
+    let head = checker.scope.blocks[block].block.head;
+    let at = |field| checker.given(block, field).map_or(head, |(_, entry)| entry.value.span);
+    checker.faults.push(values::step_beyond_duration(at("time_step"), step, at("duration"), duration));
 }
 
 /// A run that waits for a striker to have left for good, which one that falls never has.
@@ -101,6 +110,36 @@ pub fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Stri
 /// Δtc of a blow of this striker, where all that it needs is known before the run.
 pub fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
     impact.critical_time_step(striker, Formula::constant)
+}
+
+/// The same as it is foreseen: a stiffness that an earlier procedure is to measure is taken for the one with which the specimen of
+/// a virtual rig begins. Whether it is a foreseen one, too.
+pub fn critical_foreseen(
+    checker: &Checker,
+    impact: &Impact,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+) -> Option<(f64, bool)> {
+    if let Some(critical) = critical_before_the_run(impact, striker) {
+        return Some((critical, false));
+    }
+    let behaviour = specimen.filter(|_| checker.real_rig.is_none())?.behaviour.as_ref()?;
+    let foreseen = Foreseen { stiffness: behaviour.initial_stiffness() };
+    let known = |formula: &Formula| formula.evaluate(&foreseen, None).ok().map(|estimate| estimate.value);
+    Some((impact.critical_time_step(striker, known)?, true))
+}
+
+/// What ramps and cycles will find of a specimen that is declared.
+struct Foreseen {
+    /// N/m
+    stiffness: f64,
+}
+
+impl Results for Foreseen {
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        let found = matches!(reference.name, "stiffness" | "secant_stiffness") && reference.part == Part::Value;
+        found.then_some(ResultValue::Number { value: Some(self.stiffness), uncertainty: None })
+    }
 }
 
 /// Δt, where it is known before the run.

@@ -20,10 +20,12 @@ mod escalate;
 mod expression;
 mod faults;
 mod fields;
+mod fits;
 mod frame;
 mod golden;
 mod ground;
 mod ground_record;
+mod guarded;
 mod impact;
 mod imports;
 mod inspect;
@@ -197,6 +199,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         {
             let specimen = specimens.get(impact.specimen).and_then(Option::as_ref);
             impact::judge(checker, *block, impact, &escalate.fastest(striker), specimen);
+            arrival::hold(checker, *block, &escalate.slowest(striker), impact.duration.constant());
         }
         if let Some(Procedure { kind: ProcedureKind::StoreyImpact(impact), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(impact.specimen)
@@ -211,6 +214,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             && let Some(Some(striker)) = strikers.get(impact.striker)
         {
             storey_impact::judge(checker, *block, impact, frame, &escalate.fastest(striker));
+            arrival::hold(checker, *block, &escalate.slowest(striker), impact.duration.constant());
         }
         if let Some(Procedure { kind: ProcedureKind::Shake(shaking), .. }) = procedure
             && let Some(Some(Specimen { frame: Some(frame), .. })) = specimens.get(shaking.specimen)
@@ -236,6 +240,9 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         if let Some(report) = &report {
             print::warn(checker, report);
         }
+        fits::hold(checker, &procedures);
+        let rule = plan_block::decision_rule(&particulars);
+        guarded::warn(checker, &procedures, requirements.as_deref().unwrap_or(&[]), rule);
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), &grounds, head);
     }
     let mut settings: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();

@@ -131,7 +131,9 @@ impl<'a> Checker<'a> {
                 let fault = frames::result_of_a_frame(result.name, name.span, declared.block.head);
                 return self.fail(fault);
             }
-            let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
+            let reference = ResultReference { procedure, name: result.name, part: Part::Value };
+            self.read.push((reference, span));
+            let formula = Formula::Result(reference);
             let shape = if result.list { Shape::List } else { Shape::Number };
             let typed = Typed { shape, ..Typed::number(formula, result.dimension, span) };
             return self.reads_allowed(typed, span, place);

@@ -98,6 +98,7 @@ pub fn judge(
             methods::unstable(step_at, stepping.integrator, step, limit)
         });
     }
+    impact::beyond_duration(checker, block, Some(step), duration);
     if let Some(critical) = critical.filter(|critical| step > *critical) {
         checker.faults.push(whole::step_above_critical(step_at, step, critical));
     }

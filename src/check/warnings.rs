@@ -2,8 +2,8 @@
 
 use super::checker::Checker;
 use super::faults::{cyclic, specimens, values, whole as fault};
-use super::impact::{critical_before_the_run, time_step_before_the_run};
-use crate::formula::Formula;
+use super::impact::{critical_foreseen, time_step_before_the_run};
+use crate::formula::{Formula, NoResults};
 use crate::mechanics::frame::Damping;
 use crate::mechanics::portal_limit::mechanism_limit;
 use crate::plan::{
@@ -12,19 +12,29 @@ use crate::plan::{
 };
 use crate::schema::Kind;
 use crate::source::{FileId, Span};
-use crate::uncertainty::{FEW, Source};
+use crate::uncertainty::Source;
 
 /// Warnings of one impact: its step against eq. 7, unless more was said of it, and against what the limit force needs.
-pub fn impact(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker, allowed_beyond_stability: bool) {
+pub fn impact(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+    allowed_beyond_stability: bool,
+) {
     let head = checker.scope.blocks[block].block.head;
     let at = checker.given(block, "time_step").map_or(head, |(_, entry)| entry.value.span);
-    let Some(step) = time_step_before_the_run(impact, striker) else { return };
-    if let Some(critical) = critical_before_the_run(impact, striker)
-        && step > critical
+    let critical = critical_foreseen(checker, impact, striker, specimen);
+    if let Some((critical, foreseen)) = critical
+        && let Ok(step) = impact.stepping.time_step.evaluate(&NoResults, Some(critical))
+        && step.value > critical
         && !allowed_beyond_stability
     {
-        checker.faults.push(fault::step_above_critical(at, step, critical));
+        let fault = if foreseen { fault::step_above_foreseen } else { fault::step_above_critical };
+        checker.faults.push(fault(at, step.value, critical));
     }
+    let Some(step) = time_step_before_the_run(impact, striker) else { return };
     if let (Contact::Limit { force }, Some(mass)) = (&impact.contact, impact.mass.constant())
         && let Some(force) = force.constant()
     {
@@ -67,7 +77,6 @@ pub fn whole_plan(
     peak_forces(checker, procedures, requirements);
     blows_on_blows(checker, procedures, grounds);
     unused_uncertainties(checker, procedures, requirements);
-    few_degrees_of_freedom(checker, procedures, requirements);
     match procedures.last() {
         None => checker.faults.push(fault::nothing_runs(plan)),
         Some((block, _)) if requirements.is_empty() => {
@@ -163,43 +172,19 @@ fn unused_uncertainties(checker: &mut Checker, procedures: &[(usize, Option<Proc
     }
 }
 
-/// What is fitted to a ramp of few points is known to a multiple of its standard error; said where a requirement reads it.
-fn few_degrees_of_freedom(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
-    let mut told: Vec<usize> = Vec::new();
-    for (index, requirement) in requirements.iter().enumerate() {
-        let mut references = Vec::new();
-        requirement.conditions.iter().for_each(|condition| condition.collect_references(&mut references));
-        for reference in references.iter().filter(|reference| FITTED.contains(&reference.name)) {
-            let Some((block, Some(procedure))) = procedures.get(reference.procedure.0) else { continue };
-            let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else { continue };
-            if let Some((points, degrees)) = ramp.degrees_of_freedom().filter(|(_, degrees)| *degrees < usize::from(FEW))
-                && let Some((_, entry)) = checker.given(*block, "displacements")
-                && !told.contains(block)
-            {
-                told.push(*block);
-                let required = checker.scope.requirements[index].condition.span;
-                let at = entry.value.span;
-                checker.faults.push(values::few_degrees_of_freedom(&procedure.name, points, degrees, at, required));
-            }
-        }
-    }
-}
-
-/// Results of a ramp that its fit gives.
-const FITTED: [&str; 6] =
-    ["stiffness", "intercept_force", "yield_force", "yield_displacement", "hardened_stiffness", "hardening"];
-
 fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
-    let rigid = |procedure: &Procedure| match &procedure.kind {
+    let law = |procedure: &Procedure| match &procedure.kind {
         ProcedureKind::Impact(Impact { contact, .. })
         | ProcedureKind::StoreyImpact(StoreyImpact { contact, .. })
         | ProcedureKind::Escalate(Escalate {
             blow: BlowOn::Specimen(Impact { contact, .. }) | BlowOn::Storey(StoreyImpact { contact, .. }),
             ..
-        }) => {
-            matches!(contact, Contact::Rigid)
-        }
-        _ => false,
+        }) => match contact {
+            Contact::Rigid => Some("rigid"),
+            Contact::Restitution { .. } => Some("restitution"),
+            Contact::Limit { .. } | Contact::Hertz { .. } => None,
+        },
+        _ => None,
     };
     let read = |checker: &mut Checker, conditions: &[Condition], span: Span| {
         let mut references = Vec::new();
@@ -210,10 +195,10 @@ fn peak_forces(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)],
             references.iter().filter(|reference| matches!(reference.name, "max_contact_force" | "max_contact_forces"))
         {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
-                && rigid(procedure)
+                && let Some(law) = law(procedure)
             {
                 let head = checker.scope.blocks[*block].block.head;
-                checker.faults.push(fault::peak_force_under_rigid_law(span, head));
+                checker.faults.push(fault::peak_force_follows_the_step(span, head, law));
             }
         }
     };

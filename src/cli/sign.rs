@@ -18,8 +18,8 @@ use crate::output::OutputFile;
 pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failure> {
     let run = &arguments.run;
     keys::refuse_inside(&arguments.key, run)?;
-    let folder = Folder::read(run)?;
-    let rebuilt = Rebuilt::of(&folder);
+    let mut folder = Folder::read(run)?;
+    let rebuilt = Rebuilt::taking(&mut folder);
     refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
     let (Some(report), Some(manifest)) = (&rebuilt.report, folder.bytes(MANIFEST)) else {
         return Err(Failure::file(run, "has no results yet").help("make them with `psd report`"));

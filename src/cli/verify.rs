@@ -15,12 +15,13 @@ use crate::diagnostic::excerpt::one_line;
 
 /// Proves what can be proven of a run folder.
 pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {
-    let folder = Folder::read(&arguments.run)?;
+    let mut folder = Folder::read(&arguments.run)?;
     if !folder.files.contains_key(JOURNAL) {
         return Err(Failure::file(journal_of(&arguments.run), "no such file").help("a run folder is told by its record"));
     }
     let keys = arguments.key.iter().map(|path| keys::public(path)).collect::<Result<Vec<_>, _>>()?;
-    let findings = examine(&folder, &Rebuilt::of(&folder), &keys);
+    let rebuilt = Rebuilt::taking(&mut folder);
+    let findings = examine(&folder, &rebuilt, &keys);
     let mut text = String::new();
     for finding in &findings {
         let word = if finding.sound { "ok".to_owned() } else { settings.paint_bad("WRONG") };

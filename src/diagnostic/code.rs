@@ -134,6 +134,7 @@ codes! {
     E651 NotTogether Error;
     E652 NobodyToFreeIt Error;
     E653 RecordTooLong Error;
+    E655 NeverGiven Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -161,6 +162,7 @@ codes! {
     W726 FewDecades Warning;
     W728 NoEffect Warning;
     W727 GateWithinNoise Warning;
+    W729 NothingToGuard Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -42,4 +42,15 @@ impl ContactLaw {
             Self::Rigid | Self::Limit { .. } | Self::Restitution { .. } => None,
         }
     }
+
+    /// Whether a largest contact force (N) is that of a blow without a duration, an impulse over one step: it grows as 1/Δt, and is no
+    /// property of the blow.
+    #[must_use]
+    pub fn force_follows_the_step(&self, largest: f64) -> bool {
+        match self {
+            Self::Rigid | Self::Restitution { .. } => true,
+            Self::Limit { force } => largest < *force * (1.0 - 1e-9),
+            Self::Hertz { .. } => false,
+        }
+    }
 }

@@ -116,15 +116,16 @@ impl FramePath {
     /// What its storeys may be supposed to do for all the record tells, the likeliest first.
     #[must_use]
     pub fn rules(&self) -> Vec<Rule> {
-        let mut rules = vec![Rule::Shifted];
+        let mut rules = Vec::new();
         if let Bends::Storeys(paths) = &self.bends {
-            for rule in paths.iter().flat_map(RecordedPath::rules) {
-                if !rules.contains(&rule) {
-                    rules.push(rule);
+            // A storey that leaves one rule keeps to it whatever the others are supposed to do.
+            for rule in paths.iter().map(RecordedPath::rules).filter(|rules| rules.len() > 1).flatten() {
+                if !rules.contains(rule) {
+                    rules.push(*rule);
                 }
             }
         }
-        rules
+        if rules.is_empty() { vec![Rule::Shifted] } else { rules }
     }
 
     /// Whether a storey swung through no shear and back after it flowed: what came then rests on more than one supposition.

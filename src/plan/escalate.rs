@@ -31,6 +31,13 @@ impl Escalate {
         }
     }
 
+    /// The striker of the slowest blow, as far as the velocities are known before the run: it is the last to arrive.
+    #[must_use]
+    pub fn slowest(&self, striker: &Striker) -> Striker {
+        let known = self.velocities.iter().filter_map(Formula::constant).reduce(f64::min);
+        Striker { velocity: known.unwrap_or(striker.velocity), ..striker.clone() }
+    }
+
     /// The striker of the fastest blow, as far as the velocities are known before the run: all blows have its time step.
     #[must_use]
     pub fn fastest(&self, striker: &Striker) -> Striker {

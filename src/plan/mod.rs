@@ -339,26 +339,21 @@ pub struct Condition {
 impl Condition {
     /// Adds the source of every number that it states with an uncertainty, each once.
     pub fn collect_stated(&self, into: &mut Vec<Source>) {
-        self.value.collect_stated(into);
-        match &self.test {
-            Test::Compare { limit, .. } => limit.collect_stated(into),
-            Test::Within { target, tolerance, .. } => {
-                target.collect_stated(into);
-                tolerance.collect_stated(into);
-            }
-        }
+        self.formulas().for_each(|formula| formula.collect_stated(into));
     }
 
     /// Adds every result that it reads, each once.
     pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
-        self.value.collect_references(into);
-        match &self.test {
-            Test::Compare { limit, .. } => limit.collect_references(into),
-            Test::Within { target, tolerance, .. } => {
-                target.collect_references(into);
-                tolerance.collect_references(into);
-            }
-        }
+        self.formulas().for_each(|formula| formula.collect_references(into));
+    }
+
+    /// Every formula of it: what is held, and what it is held against.
+    pub fn formulas(&self) -> impl Iterator<Item = &Formula> {
+        let (against, more) = match &self.test {
+            Test::Compare { limit, .. } => (limit, None),
+            Test::Within { target, tolerance, .. } => (target, Some(tolerance)),
+        };
+        [&self.value, against].into_iter().chain(more)
     }
 }
 

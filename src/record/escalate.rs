@@ -14,7 +14,7 @@ pub struct Blow {
     /// Those of an impact, in the schema's order.
     pub results: Vec<NamedResult>,
     pub history: BlowHistory,
-    /// Whether the condition held; None where the blow did not run to its end.
+    /// Whether the condition held; None where the blow did not run to its end, or decided nothing.
     pub held: Option<bool>,
     /// Where the specimen was brought to after it, and what it carries there: the next blow begins there.
     pub rest: Option<Rest>,

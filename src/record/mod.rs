@@ -327,18 +327,6 @@ pub struct ShakeHistory {
 }
 
 impl History {
-    /// Whether what was struck, of a frame the struck floor, still moved on past its largest displacement as the record ends; of a row
-    /// of blows, in any.
-    #[must_use]
-    pub fn still_rising(&self) -> bool {
-        match self {
-            Self::Impact(history) => history.still_rising(),
-            Self::StoreyImpact(history) => history.blow.still_rising(),
-            Self::Escalate(history) => history.blows.iter().any(|blow| blow.impact().still_rising()),
-            _ => false,
-        }
-    }
-
     /// Degrees of freedom of the scatter that a result fitted here is known by; None of what is no fit.
     #[must_use]
     pub fn degrees(&self, result: &str) -> Option<f64> {

@@ -60,6 +60,14 @@ impl<'a> Struck<'a> {
         }
     }
 
+    /// The time step of all blows, and the critical one, s.
+    pub(super) const fn time_steps(&self) -> (f64, f64) {
+        match self {
+            Self::Specimen { setting, .. } => (setting.input.time_step, setting.critical_time_step),
+            Self::Storey { setting, .. } => (setting.frame.time_step, setting.frame.critical_time_step),
+        }
+    }
+
     /// ½ Ms v² of a blow, J.
     pub(super) fn energy(&self, striker_velocity: f64) -> f64 {
         let body = match self {

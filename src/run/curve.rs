@@ -7,7 +7,7 @@ use crate::formula::ResultValue;
 use crate::mechanics::multilinear_fit::{BreakCount, MultilinearFit, fit_multilinear};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
-use crate::record::NamedResult;
+use crate::record::{LineFit, NamedResult};
 
 /// The curve through (m, N), means of so many samples; `what` names the points in a remark.
 pub(super) fn fitted(
@@ -20,6 +20,28 @@ pub(super) fn fitted(
     let fit = fit_multilinear(&x, &r, count).map(|fit| foreseen.multilinear(&fit, (&x, &r), samples).unwrap_or(fit));
     let remarks = remarks(fit.as_ref(), count, points.len(), what);
     (fit, remarks)
+}
+
+/// What a straight line misses of the fit before a remark is made of it, 1 − R².
+const MISSED: f64 = 1e-3;
+
+/// The change of stiffness past a break that a straight line hides, over the first one, before a remark is made of it.
+const HIDDEN: f64 = 0.1;
+
+/// Says of points (m, N) that a straight line does not fit them, for they bend: by BIC, plainly and by much.
+pub(super) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
+    let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 }).filter(|fit| fit.doubtful().is_empty())?;
+    let (place, _) = fit.breaks.first()?;
+    let ((first, _), (last, _)) = (fit.stiffnesses.first()?, fit.stiffnesses.last()?);
+    let hidden = (last - first).abs() > HIDDEN * first.abs();
+    (hidden && 1.0 - line.r_squared > MISSED).then(|| {
+        format!(
+            "the outward steps bend near {}: one straight line fits neither side, and its stiffness is that of none; \
+             `fit = bilinear` or `fit = multilinear` tells both",
+            readable(*place, Dimension::LENGTH)
+        )
+    })
 }
 
 fn remarks(fit: Option<&MultilinearFit>, count: BreakCount, points: usize, what: &str) -> Vec<String> {

@@ -6,13 +6,16 @@ use super::cycle::results;
 use super::cycle_rounding::of_loops;
 use super::inputs::Inputs;
 use super::rounding_doubts::Quanta;
-use super::study::draws_of;
+use super::study::{draws_of, give_entry};
 use crate::formula::ResultValue;
 use crate::mechanics::cyclic::{LoopPoint, loop_of};
 use crate::mechanics::recorded_path::{Distortion, Noise};
 use crate::plan::Calibration;
 use crate::record::{CycleHistory, CycleStep, NamedResult};
 use crate::uncertainty::{Contribution, Source, combined};
+
+/// Results with an entry a cycle.
+const LISTS: [&str; 4] = ["amplitudes", "energies", "damping_ratios", "stiffnesses"];
 
 /// Results that follow from the loops.
 const OF_LOOPS: [&str; 6] =
@@ -33,7 +36,7 @@ pub(super) fn propagate(
     let procedure = inputs.procedure();
     let moved = |distortion| values(&distorted(history, distortion));
     let nominal = values(history);
-    let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); OF_LOOPS.len()];
+    let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); nominal.len()];
     let at: [(Source, f64, Moving); 3] = [
         (Source::ForceScale(0), calibration.force_uncertainty, |by| Distortion { force_scale: 1.0 + by, ..Distortion::NONE }),
         (Source::DisplacementScale(0), calibration.displacement_uncertainty, |by| Distortion {
@@ -54,15 +57,25 @@ pub(super) fn propagate(
         for draw in 0..draws {
             let noise = Some(Noise { force, displacement: 0.0, draw });
             let found = moved(Distortion { noise, ..Distortion::NONE });
-            for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(nominal) {
+            for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(&nominal) {
                 let amount = (found - nominal) / f64::from(draws).sqrt();
                 parts.push(Contribution::new(Source::Readings { procedure, draw }, amount));
             }
         }
     }
-    for (name, amount) in of_loops(history, quanta, samples) {
+    for (name, entry, amount) in of_loops(history, quanta, samples) {
+        let rounding = Contribution::new(Source::Rounding { procedure, result: name, entry }, amount);
         if let Some(index) = OF_LOOPS.iter().position(|of_loop| *of_loop == name) {
-            contributions[index].push(Contribution::new(Source::Rounding { procedure, result: name, entry: 0 }, amount));
+            contributions[index].push(rounding);
+        } else if let Some(list) = LISTS.iter().position(|list| *list == name) {
+            contributions[OF_LOOPS.len() + list * history.cycles.len() + entry].push(rounding);
+        }
+    }
+    let of_cycles = contributions.split_off(OF_LOOPS.len());
+    for (list, of_cycles) in LISTS.into_iter().zip(of_cycles.chunks(history.cycles.len().max(1))) {
+        let Some(result) = told.iter_mut().find(|result| result.name == list) else { continue };
+        for (entry, parts) in of_cycles.iter().enumerate() {
+            give_entry(result, entry, parts.clone());
         }
     }
     for (name, parts) in OF_LOOPS.into_iter().zip(contributions) {
@@ -76,13 +89,15 @@ pub(super) fn propagate(
     }
 }
 
-/// In the order of [`OF_LOOPS`]; NaN of what does not exist.
-fn values(history: &CycleHistory) -> [f64; OF_LOOPS.len()] {
+/// In the order of [`OF_LOOPS`], then of [`LISTS`] with the cycles of each; NaN of what does not exist.
+fn values(history: &CycleHistory) -> Vec<f64> {
     let results = results(history);
-    OF_LOOPS.map(|name| match results.iter().find(|result| result.name == name).map(|result| &result.value) {
-        Some(ResultValue::Number { value: Some(value), .. }) => *value,
-        _ => f64::NAN,
-    })
+    let of = |name: &str| match results.iter().find(|result| result.name == name).map(|result| &result.value) {
+        Some(ResultValue::Number { value: Some(value), .. }) => vec![*value],
+        Some(ResultValue::List(values)) => values.clone(),
+        _ => vec![f64::NAN],
+    };
+    OF_LOOPS.iter().chain(&LISTS).flat_map(|name| of(name)).collect()
 }
 
 /// The record as other readings would have made it.
@@ -108,9 +123,9 @@ fn distorted(history: &CycleHistory, distortion: Distortion) -> CycleHistory {
 
 #[cfg(test)]
 mod tests {
-    use crate::formula::Formula;
+    use crate::formula::{Formula, Function};
     use crate::plan::{Behaviour, Calibration, Cycle, Level, Link, Plan, ProcedureKind, Sides, VirtualLink};
-    use crate::run::testing::{elastic_plan, number, run_unwatched};
+    use crate::run::testing::{elastic_plan, number, result_of, run_unwatched};
     use crate::uncertainty::Source;
 
     const STIFFNESS: f64 = 1000.0;
@@ -170,6 +185,34 @@ mod tests {
                 assert!((found - by_hand).abs() < 1e-4 * 0.01 * value.abs(), "{name}: {found}, by hand {by_hand}");
             }
         }
+    }
+
+    /// One number is told with one uncertainty, whether by a name of its own or as an entry of its list; energies add up source by source.
+    #[test]
+    fn the_lists_are_as_uncertain_as_the_numbers() {
+        let behaviour = Behaviour::Bilinear { stiffness: STIFFNESS, yield_force: 10.0, hardening: 0.1 };
+        let calibration = Calibration {
+            force_uncertainty: 0.01,
+            displacement_uncertainty: 0.003,
+            zero_uncertainty: 0.3,
+            ..Calibration::default()
+        };
+        let link = VirtualLink { noise: 0.1, seed: 4, ..VirtualLink::default() };
+        let record = run_unwatched(&plan(behaviour, link, calibration));
+        let listed = |name: &str| record.procedures[0].result(name).unwrap().entry_uncertainties();
+        let told = |name: &str| number(&record, 0, name).1;
+        assert_eq!(listed("stiffnesses"), [told("stiffness"), told("last_stiffness")]);
+        assert_eq!(listed("damping_ratios")[1], told("equivalent_damping_ratio"));
+        let all = result_of(0, "energies");
+        let sum = Formula::Call(Function::Sum, vec![all]).evaluate(&record, None).unwrap().uncertainty.unwrap();
+        assert!((sum / told("dissipated_energy").unwrap() - 1.0).abs() < 1e-9);
+        let amplitude = listed("amplitudes")[0].unwrap();
+        assert!((amplitude / (0.003 * 0.02) - 1.0).abs() < 1e-9, "{amplitude}");
+        // Rounded too, the numbers are still as uncertain as their entries.
+        let link = VirtualLink { noise: 0.1, resolution: 1e-5, force_resolution: 0.05, seed: 4, ..VirtualLink::default() };
+        let record = run_unwatched(&plan(Behaviour::Elastic { stiffness: STIFFNESS }, link, Calibration::default()));
+        let listed = record.procedures[0].result("stiffnesses").unwrap().entry_uncertainties();
+        assert_eq!(listed, [number(&record, 0, "stiffness").1, number(&record, 0, "last_stiffness").1]);
     }
 
     /// ∫R dX by the trapezoid has the weight (x₊ − x₋)/2 on each R: u = σ/√n·√Σ w², of uniform steps h of ways back and

@@ -28,8 +28,8 @@ impl Slopes {
     }
 }
 
-/// Of the results of the loops by name, those that are uncertain by it.
-pub(super) fn of_loops(history: &CycleHistory, quanta: Quanta, samples: u32) -> Vec<(&'static str, f64)> {
+/// Of the results of the loops, and of each cycle in their lists, those that are uncertain by it: name and entry.
+pub(super) fn of_loops(history: &CycleHistory, quanta: Quanta, samples: u32) -> Vec<(&'static str, usize, f64)> {
     if quanta.force == 0.0 && quanta.displacement == 0.0 {
         return Vec::new();
     }
@@ -53,7 +53,22 @@ pub(super) fn of_loops(history: &CycleHistory, quanta: Quanta, samples: u32) -> 
         ("stiffness", secant(history.cycles.first())),
         ("last_stiffness", secant(history.cycles.last())),
     ];
-    told.into_iter().filter_map(|(name, slopes)| Some((name, uncertain(history, &slopes?, quanta, samples)))).collect()
+    let amplitude = |cycle: &WholeCycle| {
+        let mut slopes = Slopes::none(history);
+        across(history, cycle).iter().for_each(|[_, (_, of_way)]| slopes.add(of_way, 0.5));
+        Some(slopes)
+    };
+    let of_cycle = |(entry, cycle): (usize, &WholeCycle)| {
+        [
+            ("amplitudes", entry, amplitude(cycle)),
+            ("energies", entry, Some(of_energy(history, cycle))),
+            ("damping_ratios", entry, of_damping(history, cycle)),
+            ("stiffnesses", entry, of_stiffness(history, cycle)),
+        ]
+    };
+    let all = told.into_iter().map(|(name, slopes)| (name, 0, slopes));
+    let all = all.chain(history.cycles.iter().enumerate().flat_map(of_cycle));
+    all.filter_map(|(name, entry, slopes)| Some((name, entry, uncertain(history, &slopes?, quanta, samples)))).collect()
 }
 
 /// Steps of a cycle; it begins with the last reading of the one before it.

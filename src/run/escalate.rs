@@ -7,15 +7,16 @@ use super::inputs::Inputs;
 use super::rest_doubts::RestDoubts;
 use super::results::{measured, result};
 use super::session::Session;
+use super::stepping::above_critical;
 use super::stop::Stop;
 use super::unload::{MOST_TARGETS, to_rest};
 use crate::formula::{ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::{Between, Escalate, Plan};
+use crate::plan::{Between, DecisionRule, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
 use crate::uncertainty::{Contribution, Source, combined, share};
-use crate::verdict::{Verdict, assess_condition};
+use crate::verdict::{Verdict, assess_on_blow};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut history = EscalateHistory::default();
@@ -36,6 +37,8 @@ fn run(
     let (mut struck, velocities) = Struck::evaluate(plan, whole, inputs, session)?;
     // As the plan gives them: a square of a root is not always what the root was taken of.
     let energies = plan.energies.as_ref().map(|energies| inputs.list("energies", energies)).transpose()?;
+    let (time_step, critical) = struck.time_steps();
+    above_critical(time_step, critical, session);
     let home = session.guard.commanded().to_vec();
     let doubts = RestDoubts::new(whole, inputs, session);
     let mut done = 0;
@@ -44,25 +47,26 @@ fn run(
         let energy = given.unwrap_or_else(|| struck.energy(velocity));
         let blown = struck.blow((index, velocity), done, session);
         done += blown.steps;
-        let over = blown.stop.is_none();
-        let known = OfBlow { own: plan.own, blow: &blown.results, before: inputs.results() };
-        let held = over.then(|| {
-            plan.condition.iter().all(|part| assess_condition(part, whole.decision_rule, &known).verdict == Verdict::Pass)
-        });
         let Blown { results, history: steps, stop, .. } = blown;
-        history.blows.push(Blow { velocity, energy, results, history: steps, held, rest: None });
+        history.blows.push(Blow { velocity, energy, results, history: steps, held: None, rest: None });
         if let Some(stop) = stop {
             return Err(stop);
         }
         let rest = bring(plan.between, &home, (&struck, &doubts.of_blow(index)), &mut done, session)?;
+        let told = readable(energy, Dimension::ENERGY);
         if let Some(blow) = history.blows.last_mut() {
             blow.rest = Some(rest);
-        }
-        let told = readable(energy, Dimension::ENERGY);
-        if held == Some(false) {
-            let text = format!("blow {} of {told}: the condition no longer holds", index + 1);
-            session.event(EventKind::Remark, text);
-            return Ok(());
+            let (held, reason) = decide(plan, whole.decision_rule, blow, inputs.results());
+            blow.held = held;
+            let ends = match held {
+                Some(true) => None,
+                Some(false) => Some("the condition no longer holds".to_owned()),
+                None => Some(format!("it decides nothing: {reason}")),
+            };
+            if let Some(why) = ends {
+                session.event(EventKind::Remark, format!("blow {} of {told}: {why}", index + 1));
+                return Ok(());
+            }
         }
         if plan.inspect_between && index + 1 < velocities.len() {
             session.inspect(&format!("after blow {} of {told}", index + 1))?;
@@ -70,6 +74,35 @@ fn run(
     }
     session.event(EventKind::Remark, "the condition held after every blow of the list".to_owned());
     Ok(())
+}
+
+/// Whether the condition holds after a blow, decided once the specimen is where the next one begins; else why that is not known.
+fn decide(plan: &Escalate, rule: DecisionRule, blow: &Blow, before: &dyn Results) -> (Option<bool>, String) {
+    let known = OfBlow { own: plan.own, results: as_brought(blow), before };
+    let parts = plan.condition.iter().map(|part| assess_on_blow(part, rule, &known, (plan.own, &blow.history)));
+    let worst = parts.reduce(|worst, next| if next.verdict > worst.verdict { next } else { worst });
+    match worst {
+        Some(part) if part.verdict == Verdict::Inconclusive => (None, part.reason.unwrap_or_default()),
+        Some(part) => (Some(part.verdict == Verdict::Pass), String::new()),
+        None => (Some(true), String::new()),
+    }
+}
+
+/// The results of a blow, with where it rests where the specimen was brought to after it, as the results of the row tell it.
+fn as_brought(blow: &Blow) -> Vec<NamedResult> {
+    let mut results = blow.results.clone();
+    let rests = |result: &mut NamedResult| match (result.name, &blow.rest) {
+        ("residual_displacement", Some(_)) => {
+            let [parts, _] = blow.doubts_of_rest().unwrap_or_default();
+            *result = told(result.name, Dimension::LENGTH, blow.rest_of_struck().map(|(place, _)| place), parts);
+        }
+        ("residual_drift", Some(rest)) => {
+            *result = list("residual_drift", Dimension::LENGTH, rest.drift(), rest.doubts_of_drifts());
+        }
+        _ => {}
+    };
+    results.iter_mut().for_each(rests);
+    results
 }
 
 /// To where the next blow begins.
@@ -115,21 +148,21 @@ pub(super) const fn most_moves(between: Between) -> u64 {
 /// The results of the blow that is just over, by the procedure they will belong to, and those before it.
 struct OfBlow<'a> {
     own: ProcedureId,
-    blow: &'a [NamedResult],
+    results: Vec<NamedResult>,
     before: &'a dyn Results,
 }
 
 impl Results for OfBlow<'_> {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         if reference.procedure == self.own {
-            return self.blow.iter().find(|result| result.name == reference.name).map(|result| result.value.clone());
+            return self.results.iter().find(|result| result.name == reference.name).map(|result| result.value.clone());
         }
         self.before.result(reference)
     }
 
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         if reference.procedure == self.own {
-            let found = self.blow.iter().find(|result| result.name == reference.name);
+            let found = self.results.iter().find(|result| result.name == reference.name);
             return found.map_or_else(Vec::new, |result| result.contributions_of(reference));
         }
         self.before.contributions(reference)
@@ -177,12 +210,14 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let unknown = |name, dimension, of_blow: &str| list(name, dimension, of(blows, of_blow), Vec::new());
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
     let count = |held: Option<bool>| blows.iter().filter(|blow| held.is_none() || blow.held == held).count() as f64;
-    let energy = |name, blow: Option<&Blow>| {
+    let energy = |name, blow: Option<&Blow>, without: Option<f64>| {
         let parts = blow.map_or_else(Vec::new, |blow| contributions(blow, "striker_energy"));
-        told(name, Dimension::ENERGY, blow.map(|blow| blow.energy), parts)
+        told(name, Dimension::ENERGY, blow.map(|blow| blow.energy).or(without), parts)
     };
     let passed = blows.iter().rev().find(|blow| blow.held == Some(true));
     let failed = blows.iter().find(|blow| blow.held == Some(false));
+    // What the first blow breaks has withstood nothing; what it left undecided is not known.
+    let nothing = blows.first().filter(|first| first.held == Some(false)).map(|_| 0.0);
     let some = |values: Vec<f64>| values.into_iter().filter(|value| value.is_finite());
     let place = |blow: &Blow| blow.rest_of_struck().map(|(displacement, _)| displacement);
     let doubts_of_place = |blow: &Blow| blow.doubts_of_rest().map_or_else(Vec::new, |[place, _]| place);
@@ -192,8 +227,8 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
     let mut results = vec![
         result("blows", Dimension::NUMBER, Some(count(None))),
         result("passed", Dimension::NUMBER, Some(count(Some(true)))),
-        energy("last_passed_energy", passed),
-        energy("first_failed_energy", failed),
+        energy("last_passed_energy", passed, nothing),
+        energy("first_failed_energy", failed, None),
         largest(blows, "max_displacement"),
         told("residual_displacement", Dimension::LENGTH, last.and_then(place), last.map_or_else(Vec::new, doubts_of_place)),
         sum(blows, "absorbed_energy", absorbed),

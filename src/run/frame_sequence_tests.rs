@@ -208,13 +208,27 @@ fn blow() -> StoreyImpact {
     }
 }
 
-pub(super) fn rising(velocities: &[f64], limit: f64, between: Between) -> Plan {
+/// Blows that are over before the frame turns back, each followed by the next.
+pub(super) fn rising(velocities: &[f64], between: Between) -> Plan {
+    let steps = Formula::Result(ResultReference { procedure: ProcedureId(0), name: "steps", part: Part::Value });
+    let test = Test::Compare { comparison: Comparison::Greater, limit: Constant(0.0) };
+    let goes_on = Condition { text: String::new(), value: steps, test, dimension: Dimension::NUMBER };
+    row(blow(), velocities, goes_on, between)
+}
+
+/// Blows that go on until the frame has turned back, until a storey drifts too far.
+fn within(velocities: &[f64], limit: f64) -> Plan {
+    let whole = StoreyImpact { duration: Constant(4.0), ..blow() };
+    row(whole, velocities, drifts_below(limit), Between::Unload)
+}
+
+fn row(blow: StoreyImpact, velocities: &[f64], condition: Condition, between: Between) -> Plan {
     let escalate = Escalate {
         own: ProcedureId(0),
-        blow: BlowOn::Storey(blow()),
+        blow: BlowOn::Storey(blow),
         velocities: velocities.iter().copied().map(Constant).collect(),
         energies: None,
-        condition: vec![drifts_below(limit)],
+        condition: vec![condition],
         between,
         inspect_between: false,
     };
@@ -234,7 +248,7 @@ fn blows(record: &Record) -> &EscalateHistory {
 #[test]
 fn a_row_of_blows_on_a_storey_is_the_blows_written_out() {
     let velocities = [0.9, 1.2, 1.5];
-    let row = run_unwatched(&rising(&velocities, 10.0, Between::Unload));
+    let row = run_unwatched(&rising(&velocities, Between::Unload));
     assert_eq!(row.outcome, Outcome::Completed);
     let mut plan = struck_frame();
     let first = plan.strikers[0].clone();
@@ -269,7 +283,7 @@ fn a_row_of_blows_on_a_storey_is_the_blows_written_out() {
 /// u(`residual_drift`): of the last blow's rest, as its own results tell.
 #[test]
 fn what_stays_after_a_row_is_as_uncertain_as_the_zeros_above() {
-    let mut plan = rising(&[0.9, 1.2], 10.0, Between::Unload);
+    let mut plan = rising(&[0.9, 1.2], Between::Unload);
     plan.rig.calibration.zero_uncertainty = 0.05;
     let record = run_unwatched(&plan);
     let result = record.procedures[0].result("residual_drift").unwrap();
@@ -286,18 +300,19 @@ fn what_stays_after_a_row_is_as_uncertain_as_the_zeros_above() {
 #[test]
 fn a_row_on_a_storey_ends_with_the_first_blow_that_fails() {
     let velocities = [0.2, 0.4, 0.6, 0.8];
-    let all = run_unwatched(&rising(&velocities, 10.0, Between::Unload));
+    let all = run_unwatched(&within(&velocities, 10.0));
+    assert!(blows(&all).blows.iter().all(|blow| blow.held == Some(true)), "each has its peak");
     let peaks: Vec<f64> =
         blows(&all).blows.iter().map(|blow| blow.list("max_drift").unwrap().iter().copied().fold(0.0, f64::max)).collect();
     assert!(peaks.len() == 4 && peaks.windows(2).all(|pair| pair[0] < pair[1]), "{peaks:?}");
-    let some = run_unwatched(&rising(&velocities, 0.5 * (peaks[1] + peaks[2]), Between::Unload));
+    let some = run_unwatched(&within(&velocities, 0.5 * (peaks[1] + peaks[2])));
     assert_eq!(blows(&some).blows.iter().map(|blow| blow.held).collect::<Vec<_>>(), [Some(true), Some(true), Some(false)]);
     assert_eq!(number(&some, 0, "blows").0, Some(3.0));
     assert_eq!(number(&some, 0, "first_failed_energy").0, Some(0.5 * 10.0 * 0.6 * 0.6));
     // Home is where the first began; to stay is to begin under the load of the last.
-    let home = run_unwatched(&rising(&velocities, 10.0, Between::Home));
+    let home = run_unwatched(&rising(&velocities, Between::Home));
     assert!(blows(&home).blows.iter().all(|blow| blow.rest.as_ref().unwrap().displacement == [0.0, 0.0]));
-    let stay = run_unwatched(&rising(&velocities, 10.0, Between::Stay));
+    let stay = run_unwatched(&rising(&velocities, Between::Stay));
     let (first, next) = (&blows(&stay).blows[0], &blows(&stay).blows[1]);
     assert_eq!(first.rest.as_ref().unwrap().force, next.storey().unwrap().floors[0].restoring_force);
 }

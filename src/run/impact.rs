@@ -7,7 +7,7 @@ use super::inputs::Inputs;
 use super::propagation::Doubts;
 use super::results::result;
 use super::session::Session;
-use super::stepping::stable;
+use super::stepping::{above_critical, holds_a_step, stable};
 use super::stop::Stop;
 use super::strike::Strike;
 use crate::formula::Estimate;
@@ -20,7 +20,7 @@ use crate::mechanics::structure::Structure;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until, step_count, steps_in};
 use crate::quantity::Dimension;
-use crate::quantity::display::significant;
+use crate::quantity::display::{readable, significant};
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 
@@ -34,6 +34,7 @@ pub(super) fn perform(plan: &Impact, whole: &Plan, inputs: &mut Inputs<'_>, sess
         let history = ImpactHistory { steps: Vec::new(), time_step: 0.0, critical_time_step: 0.0 };
         return Performed { results: results(None, None, &history), history: History::Impact(history), stop };
     };
+    above_critical(setting.input.time_step, setting.critical_time_step, session);
     let doubts = Doubts::new(plan, whole, inputs, noise);
     let Blown { history, results, stop } = blow(plan, &setting, &doubts, 0, session);
     Performed { results, history: History::Impact(history), stop }
@@ -53,7 +54,7 @@ pub(super) fn blow(plan: &Impact, setting: &Setting, doubts: &Doubts<'_>, before
     let summary = (!strike.steps.is_empty()).then(|| strike.summary.finish());
     let worst = strike.watch.worst;
     if let (Some(summary), None) = (&summary, &stop) {
-        remark(summary, plan.until, session);
+        remark(summary, plan.until, &setting.input.law, session);
     }
     let history =
         ImpactHistory { steps: strike.steps, time_step: setting.input.time_step, critical_time_step: setting.critical_time_step };
@@ -101,6 +102,7 @@ impl Setting {
         let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
         let pause = inputs.not_negative("pause", &stepping.pause, Dimension::TIME)?;
         let max_tangent_ratio = inputs.positive("max_tangent_ratio", &stepping.max_tangent_ratio, Dimension::NUMBER)?;
+        holds_a_step(time_step, duration)?;
         if steps_in(duration, time_step) > MOST_STEPS {
             return Err(Stop::BadInput {
                 field: "time_step",
@@ -177,7 +179,7 @@ pub(super) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
 }
 
 /// What a reader of the results must know of how the run ended.
-pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Session<'_>) {
+pub(super) fn remark(summary: &ImpactSummary, until: Until, law: &ContactLaw, session: &mut Session<'_>) {
     if until == Until::StrikerStop && summary.stop_time.is_none() {
         session.remark("the striker did not stop within the duration".to_owned());
     }
@@ -186,6 +188,13 @@ pub(super) fn remark(summary: &ImpactSummary, until: Until, session: &mut Sessio
         session.remark(text.to_owned());
     }
     unbalanced(summary.energy_error, session);
+    if let (ContactLaw::Limit { force }, true) = (law, summary.contacts > 0)
+        && law.force_follows_the_step(summary.max_contact_force)
+    {
+        let limit = readable(*force, Dimension::FORCE);
+        let text = format!("the limit force {limit} was not reached: the largest contact force grows as the time step shrinks");
+        session.event(EventKind::Remark, text);
+    }
     if summary.last_blow_cut {
         let text = "the striker stopped with a contact force in its last step: the last blow is cut";
         session.remark(text.to_owned());

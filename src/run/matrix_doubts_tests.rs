@@ -78,7 +78,7 @@ fn a_matrix_moves_as_a_whole() {
 
 /// An elastic frame of two storeys, struck at three speeds.
 fn row(velocities: &[f64], striker: f64) -> Plan {
-    let mut plan = rising(velocities, 10.0, Between::Unload);
+    let mut plan = rising(velocities, Between::Unload);
     let ProcedureKind::Escalate(row) = &mut plan.procedures[0].kind else { panic!() };
     let BlowOn::Storey(blow) = &mut row.blow else { panic!() };
     blow.contact = Contact::Restitution { coefficient: constant(0.0) };

@@ -68,6 +68,7 @@ mod path_matrix_tests;
 mod propagation;
 #[cfg(test)]
 mod propagation_tests;
+mod ramp_doubts;
 pub mod rehearsal;
 mod request;
 mod rest_doubts;

@@ -87,7 +87,7 @@ fn no_procedure_writes_more_than_it_is_reckoned_to() {
         assert!((1.0..most).contains(&ratio), "{name}: reckoned {ratio:.2} times what was written");
     }
     let velocities = [0.4, 0.8];
-    let ratio_of = |between| ratio(&super::frame_sequence_tests::rising(&velocities, 1.0, between));
+    let ratio_of = |between| ratio(&super::frame_sequence_tests::rising(&velocities, between));
     for (between, most) in [(Between::Home, 8.0), (Between::Unload, 8.0)] {
         let ratio = ratio_of(between);
         assert!((1.0..most).contains(&ratio), "blows on a storey, {between:?}: reckoned {ratio:.2} times what was written");

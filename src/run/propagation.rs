@@ -9,6 +9,7 @@ use super::inputs::Inputs;
 use super::rounding_doubts::Quanta;
 use super::study::{CLOSE, Effort, Study, Taken, Tick, Unknown, give, over_rules};
 use crate::formula::{Formula, ProcedureId, Results};
+use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath, UNSEEN};
 use crate::mechanics::rerun::{OUTCOMES, Outcome, foretold, rerun};
 use crate::mechanics::summary::ImpactSummary;
@@ -83,7 +84,7 @@ impl<'run> Doubts<'run> {
             study.draws.push((source, Job { setting: *setting, distortion }));
         }
         let runs = Bounded::new(again.farthest, again.values.len() + 1);
-        let contributions = over_rules(&rules, tick, &mut |rule, tick| {
+        let contributions = over_rules(rules, tick, &mut |rule, tick| {
             let path = path.clone().supposing(rule);
             let take = |Job { setting, distortion }: &Job| {
                 let found = rerun(&setting.input, self.plan.until, setting.steps, &path, *distortion);
@@ -100,6 +101,7 @@ impl<'run> Doubts<'run> {
             }
         }
         round_times(self.procedure, setting.input.time_step, &mut contributions);
+        no_known_force(setting.input.law, recorded, &mut contributions);
         let names = OUTCOMES.iter().copied().chain(["critical_time_step"]);
         for (name, parts) in names.zip(contributions) {
             if let Some(result) = results.iter_mut().find(|result| result.name == name) {
@@ -228,6 +230,15 @@ pub(super) fn round_times(procedure: ProcedureId, time_step: f64, contributions:
         if let Some(index) = OUTCOMES.iter().position(|outcome| *outcome == name) {
             contributions[index].push(Contribution::new(source, off));
         }
+    }
+}
+
+/// A largest contact force that follows the time step is known to nobody: what inputs do to it is not its uncertainty.
+pub(super) fn no_known_force(law: ContactLaw, recorded: &ImpactSummary, contributions: &mut [Vec<Contribution>]) {
+    if law.force_follows_the_step(recorded.max_contact_force)
+        && let Some(index) = OUTCOMES.iter().position(|outcome| *outcome == "max_contact_force")
+    {
+        contributions[index].clear();
     }
 }
 

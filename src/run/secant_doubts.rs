@@ -20,9 +20,6 @@ pub(super) fn give(
     procedure: ProcedureId,
     results: &mut [NamedResult],
 ) {
-    if quanta.noise == 0.0 && quanta.force == 0.0 && quanta.displacement == 0.0 {
-        return;
-    }
     let samples = asked.samples.max(1);
     let read = |step: &RampStep| (step.displacement, step.restoring_force, samples);
     let start = ramp.start.map(|(place, force)| (place, force, 1));
@@ -37,6 +34,7 @@ pub(super) fn give(
             let (value, amount) = (*value, between(from, to, quanta));
             let source = Source::Secant { procedure, result: name };
             result.contributions = vec![Contribution::new(source, amount)];
+            result.contributions.retain(|part| part.amount > 0.0);
             result.contributions.extend(of_calibration(result, value, calibration));
         }
     }

@@ -38,6 +38,7 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
             };
         }
     };
+    stepping::above_critical(setting.frame.time_step, setting.frame.critical_time_step, session);
     let history = ShakeHistory {
         steps: Vec::new(),
         damping_ratios: setting.frame.properties.damping_ratios(),

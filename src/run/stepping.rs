@@ -11,6 +11,7 @@ use crate::mechanics::frame_properties::FrameProperties;
 use crate::plan::{Frame, MOST_STEPS, ShakeDamping, Stepping, step_count, steps_in};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
+use crate::record::EventKind;
 
 /// Everything the steps of a frame need.
 pub(super) struct FrameSteps {
@@ -50,6 +51,25 @@ pub(super) fn time_step(
     Ok(time_step)
 }
 
+/// Says of steps longer than the critical one (both s) that they are: what `check` could not know, and what a reader of the results must.
+pub(super) fn above_critical(time_step: f64, critical: f64, session: &mut Session<'_>) {
+    if time_step > critical {
+        let (step, critical) = (stated(time_step, Dimension::TIME), stated(critical, Dimension::TIME));
+        let text =
+            format!("the time step {step} is above the critical time step {critical} (W701): peaks between two steps are missed");
+        session.event(EventKind::Remark, text);
+    }
+}
+
+/// A duration that holds one step at least.
+pub(super) fn holds_a_step(time_step: f64, duration: f64) -> Result<(), Stop> {
+    if time_step <= duration {
+        return Ok(());
+    }
+    let wanted = format!("no longer than the run, {}", stated(duration, Dimension::TIME));
+    Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
+}
+
 /// Whether a plan may take a time step, `limit` the longest that is stable (s).
 pub(super) fn stable(plan: &Stepping, time_step: f64, limit: f64) -> Result<(), Stop> {
     if time_step <= limit || plan.allow_unstable {
@@ -69,6 +89,7 @@ impl FrameSteps {
     ) -> Result<Self, Stop> {
         let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
         let max_tangent_ratio = inputs.positive("max_tangent_ratio", &plan.max_tangent_ratio, Dimension::NUMBER)?;
+        holds_a_step(time_step, duration)?;
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
         let floors = properties.matrices.order() as f64;
         if steps_in(duration, time_step) * floors > MOST_STEPS {

@@ -5,19 +5,20 @@
 use super::Performed;
 use super::foreseen::Foreseen;
 use super::inputs::Inputs;
-use super::results::{largest, measured, result};
+use super::ramp_doubts::{self, DIRECT, Readings};
+use super::results::{measured, result};
 use super::samples::{mean, scatter};
 use super::session::{Session, first};
 use super::stop::Stop;
 use super::{curve, hold};
 use crate::mechanics::backbone::fit_bilinear;
-use crate::mechanics::identification::{fit_line, loop_energy};
+use crate::mechanics::identification::fit_line;
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
 use crate::quantity::Dimension;
 use crate::record::{BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory, RampStep};
 
 pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
-    let mut ramp = Ramp { steps: Vec::new(), start: None, loops: Vec::new(), holds: Vec::new(), last_reading: 0.0 };
+    let mut ramp = Ramp { steps: Vec::new(), starts: Vec::new(), holds: Vec::new(), last_reading: 0.0 };
     let stop = ramp.run(plan, inputs, session).err();
     let foreseen = Foreseen::of(whole);
     let fits = ramp.fits(plan, foreseen);
@@ -27,17 +28,20 @@ pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_
     let noise = session.guard.declared_noise().force;
     let noise = foreseen.noise().or((noise > 0.0).then_some(noise));
     let asked = plan.relaxation.map(|asked| asked.model);
-    let told = hold::told(&ramp.holds, ramp.start.unwrap_or_default(), asked, (noise, foreseen.readings()));
+    let start = ramp.starts.first().copied();
+    let told = hold::told(&ramp.holds, start.unwrap_or_default(), asked, (noise, foreseen.readings()));
     for text in told.remarks.into_iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text);
     }
-    let mut results = ramp.results(&fits);
+    let readings = Readings { starts: ramp.starts, steps: ramp.steps };
+    let mut results = results(readings.direct(plan), &fits);
+    ramp_doubts::propagate(&readings, plan, (whole, session.guard.declared_noise()), inputs.procedure(), &mut results);
     results.extend(told.results);
     let Fits { line: fit, bilinear, multilinear, .. } = fits;
     let (multilinear, relaxation, reached) =
         (multilinear.map(Box::new), told.relaxation.map(Box::new), told.reached.map(Box::new));
     let history =
-        RampHistory { start: ramp.start, steps: ramp.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
+        RampHistory { start, steps: readings.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
     Performed { history: History::Ramp(history), results, stop }
 }
 
@@ -51,14 +55,12 @@ struct Fits {
 }
 
 /// A displacement (m) and the force there (N).
-type Point = (f64, f64);
+pub(super) type Point = (f64, f64);
 
 struct Ramp {
     steps: Vec<RampStep>,
-    /// The reading before the first increment.
-    start: Option<Point>,
-    /// ∮ R dX of each repeat that came back to where it began, J.
-    loops: Vec<f64>,
+    /// The reading before the first increment of each repeat.
+    starts: Vec<Point>,
     /// Pauses of the first repeat, where they are watched.
     holds: Vec<Hold>,
     /// Rig time of the last reading before a move, s.
@@ -75,8 +77,7 @@ impl Ramp {
             let start = session.read()?;
             self.last_reading = session.guard.time();
             let asked = plan.relaxation.filter(|_| repeat == 0);
-            self.start.get_or_insert(start);
-            let from = self.steps.len();
+            self.starts.push(start);
             let mut before = None;
             for command in &displacements {
                 before = Some(self.step(*command, false, before, plan.samples, (pause, asked), speed, session)?);
@@ -86,9 +87,6 @@ impl Ramp {
                 for command in way_back {
                     before = Some(self.step(command, true, before, plan.samples, (pause, asked), speed, session)?);
                 }
-                let path = std::iter::once(start).chain(self.steps[from..].iter().map(point));
-                let (x, r): (Vec<f64>, Vec<f64>) = path.unzip();
-                self.loops.push(loop_energy(&x, &r));
             } else {
                 session.go_to(home, speed)?;
             }
@@ -147,7 +145,8 @@ impl Ramp {
             RampFit::Linear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = self.steps.iter().filter(|step| !step.returning).map(point).unzip();
                 let line = fit_line(&x, &r).map(|fit| foreseen.line(fit, &x, plan.samples));
-                Fits { line, ..Fits::default() }
+                let remarks = line.as_ref().and_then(|line| curve::bends(&first().collect::<Vec<Point>>(), line));
+                Fits { line, remarks: remarks.into_iter().collect(), ..Fits::default() }
             }
             RampFit::Bilinear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
@@ -163,55 +162,49 @@ impl Ramp {
             }
         }
     }
-
-    fn results(&self, fits: &Fits) -> Vec<NamedResult> {
-        let Fits { line: fit, bilinear, multilinear, .. } = fits;
-        let (fit, bilinear, multilinear) = (fit.as_ref(), bilinear.as_ref(), multilinear.as_ref());
-        let told = |(value, error): (f64, f64)| (value, Some(error));
-        let stiffness = fit.map(|fit| (fit.slope, fit.slope_error));
-        let stiffness = stiffness.or(bilinear.map(|fit| (fit.stiffness, fit.stiffness_error)));
-        let stiffness = stiffness.or(multilinear.map(|fit| fit.stiffnesses[0])).map(told);
-        let intercept = fit.map(|fit| (fit.intercept, fit.intercept_error));
-        let intercept = intercept.or(bilinear.map(|fit| (fit.intercept, fit.intercept_error)));
-        let intercept = intercept.or(multilinear.map(|fit| fit.intercept)).map(told);
-        let r_squared = fit.map(|fit| fit.r_squared).or(bilinear.map(|fit| fit.r_squared));
-        let r_squared = r_squared.or(multilinear.map(|fit| fit.r_squared));
-        let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(told);
-        let last_outward = self.steps.iter().rev().find(|step| !step.returning);
-        let first_secant = self.start.zip(self.steps.first()).and_then(|(start, step)| secant(start, point(step)));
-        let relaxation = (!self.steps.is_empty()).then(|| mean(self.steps.iter().map(|step| step.relaxation)));
-        let loop_energy = (!self.loops.is_empty()).then(|| mean(self.loops.iter().copied()));
-        let mut results = vec![
-            measured("stiffness", Dimension::STIFFNESS, stiffness),
-            result("secant_stiffness", Dimension::STIFFNESS, first_secant),
-            measured("intercept_force", Dimension::FORCE, intercept),
-            result("r_squared", Dimension::NUMBER, r_squared),
-            result("max_force", Dimension::FORCE, largest(self.steps.iter().map(|step| step.restoring_force))),
-            result("max_displacement", Dimension::LENGTH, largest(self.steps.iter().map(|step| step.displacement))),
-            result("loop_energy", Dimension::ENERGY, loop_energy),
-            result("relaxation", Dimension::FORCE, relaxation),
-            result("tangent_stiffness", Dimension::STIFFNESS, last_outward.and_then(|step| step.tangent_stiffness)),
-        ];
-        if bilinear.is_some() {
-            results.extend([
-                measured("yield_force", Dimension::FORCE, of(|fit| (fit.yield_force, fit.yield_force_error))),
-                measured(
-                    "yield_displacement",
-                    Dimension::LENGTH,
-                    of(|fit| (fit.yield_displacement, fit.yield_displacement_error)),
-                ),
-                measured("hardened_stiffness", Dimension::STIFFNESS, of(|fit| (fit.hardened, fit.hardened_error))),
-                measured("hardening", Dimension::NUMBER, of(|fit| (fit.hardening, fit.hardening_error))),
-            ]);
-        } else {
-            results.extend(curve::yielding(multilinear));
-        }
-        results.extend(curve::lists(multilinear));
-        results
-    }
 }
 
-const fn point(step: &RampStep) -> Point {
+/// In the order of the reference; `direct` is what was read beside the fits.
+fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult> {
+    let Fits { line: fit, bilinear, multilinear, .. } = fits;
+    let (fit, bilinear, multilinear) = (fit.as_ref(), bilinear.as_ref(), multilinear.as_ref());
+    let told = |(value, error): (f64, f64)| (value, Some(error));
+    let stiffness = fit.map(|fit| (fit.slope, fit.slope_error));
+    let stiffness = stiffness.or(bilinear.map(|fit| (fit.stiffness, fit.stiffness_error)));
+    let stiffness = stiffness.or(multilinear.map(|fit| fit.stiffnesses[0])).map(told);
+    let intercept = fit.map(|fit| (fit.intercept, fit.intercept_error));
+    let intercept = intercept.or(bilinear.map(|fit| (fit.intercept, fit.intercept_error)));
+    let intercept = intercept.or(multilinear.map(|fit| fit.intercept)).map(told);
+    let r_squared = fit.map(|fit| fit.r_squared).or(bilinear.map(|fit| fit.r_squared));
+    let r_squared = r_squared.or(multilinear.map(|fit| fit.r_squared));
+    let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(told);
+    let [first_secant, max_force, max_displacement, loop_energy, relaxation, tangent_stiffness] = direct;
+    let mut results = vec![
+        measured("stiffness", Dimension::STIFFNESS, stiffness),
+        result("secant_stiffness", Dimension::STIFFNESS, first_secant),
+        measured("intercept_force", Dimension::FORCE, intercept),
+        result("r_squared", Dimension::NUMBER, r_squared),
+        result("max_force", Dimension::FORCE, max_force),
+        result("max_displacement", Dimension::LENGTH, max_displacement),
+        result("loop_energy", Dimension::ENERGY, loop_energy),
+        result("relaxation", Dimension::FORCE, relaxation),
+        result("tangent_stiffness", Dimension::STIFFNESS, tangent_stiffness),
+    ];
+    if bilinear.is_some() {
+        results.extend([
+            measured("yield_force", Dimension::FORCE, of(|fit| (fit.yield_force, fit.yield_force_error))),
+            measured("yield_displacement", Dimension::LENGTH, of(|fit| (fit.yield_displacement, fit.yield_displacement_error))),
+            measured("hardened_stiffness", Dimension::STIFFNESS, of(|fit| (fit.hardened, fit.hardened_error))),
+            measured("hardening", Dimension::NUMBER, of(|fit| (fit.hardening, fit.hardening_error))),
+        ]);
+    } else {
+        results.extend(curve::yielding(multilinear));
+    }
+    results.extend(curve::lists(multilinear));
+    results
+}
+
+pub(super) const fn point(step: &RampStep) -> Point {
     (step.displacement, step.restoring_force)
 }
 

@@ -4,7 +4,7 @@
 use super::bounded::{Bounded, farthest};
 use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
 use super::impact::law;
-use super::propagation::{LEADS_ELSEWHERE, contact_formulas, round_times, same};
+use super::propagation::{LEADS_ELSEWHERE, contact_formulas, no_known_force, round_times, same};
 use super::stepping;
 use super::stop::Stop;
 use super::storey_impact::Setting;
@@ -85,6 +85,7 @@ pub(super) fn propagate(
     let mut parts = runs.told(parts)?;
     let time_step = setting.frame.time_step;
     round_times(doubts.procedure, time_step, &mut parts);
+    no_known_force(setting.law, recorded, &mut parts);
     // From the beginning of a step to the end of one: two times, each up to Δt off.
     let both = Contribution::new(Source::TimeStep { procedure: doubts.procedure }, time_step / 6.0_f64.sqrt());
     parts[DURATION].push(both);

@@ -29,6 +29,7 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
     let setting = frame.ok_or_else(no_frame).and_then(|frame| Setting::evaluate(plan, frame, striker, inputs, session));
     match setting {
         Ok(setting) => {
+            stepping::above_critical(setting.frame.time_step, setting.frame.critical_time_step, session);
             let doubts = FrameDoubts::of_blow(plan, whole, inputs, session);
             let Blown { history, results, stop } = blow(plan, &setting, &doubts, 0, session);
             Performed { results, history: History::StoreyImpact(history), stop }
@@ -70,7 +71,7 @@ pub(super) fn blow(
     let Striking { history, summary, followed, .. } = striking;
     let summary = (!history.floors.is_empty()).then_some(summary);
     if let (Some(summary), None) = (&summary, &stop) {
-        remark(&summary.blow(), plan.until, session);
+        remark(&summary.blow(), plan.until, &setting.law, session);
     }
     let mut results = results(summary.as_ref(), &followed, &history);
     if let (Some(summary), None) = (&summary, &stop) {

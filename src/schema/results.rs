@@ -13,10 +13,10 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     ResultKind::measured("secant_stiffness", Dimension::STIFFNESS, "force over displacement of the first increment"),
     ResultKind::measured("intercept_force", Dimension::FORCE, "force of the fitted line at no displacement"),
     ResultKind::new("r_squared", Dimension::NUMBER, "coefficient of determination of the fit"),
-    ResultKind::new("max_force", Dimension::FORCE, "largest size of the restoring force"),
-    ResultKind::new("max_displacement", Dimension::LENGTH, "largest size of the measured displacement"),
-    ResultKind::new("loop_energy", Dimension::ENERGY, "energy of the hysteresis loop, with `return = true`"),
-    ResultKind::new("relaxation", Dimension::FORCE, "mean loss of force during a pause"),
+    ResultKind::measured("max_force", Dimension::FORCE, "largest size of the restoring force"),
+    ResultKind::measured("max_displacement", Dimension::LENGTH, "largest size of the measured displacement"),
+    ResultKind::measured("loop_energy", Dimension::ENERGY, "energy of the hysteresis loop, with `return = true`"),
+    ResultKind::measured("relaxation", Dimension::FORCE, "mean loss of force during a pause"),
     ResultKind::measured(
         "tangent_stiffness",
         Dimension::STIFFNESS,
@@ -76,7 +76,7 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::measured(
         "max_contact_force",
         Dimension::FORCE,
-        "largest mean contact force of a step; grows as 1/Δt under `rigid`",
+        "largest mean contact force of a step; grows as 1/Δt under `rigid`, `restitution` and a `limit` that is not reached",
     ),
     ResultKind::measured("impulse", Dimension::IMPULSE, "contact force integrated over the run"),
     ResultKind::count("contacts", "number of blows: contacts that began, also those inside a step"),

@@ -84,9 +84,13 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
     fields: &FIELDS,
     exports: &[],
     results: &[
-        ResultKind::count("blows", "number of blows, the one that failed among them"),
+        ResultKind::count("blows", "number of blows, the one that failed, or that decided nothing, among them"),
         ResultKind::count("passed", "number of blows after which the condition held"),
-        ResultKind::measured("last_passed_energy", Dimension::ENERGY, "energy of the last blow after which it held"),
+        ResultKind::measured(
+            "last_passed_energy",
+            Dimension::ENERGY,
+            "energy of the last blow after which it held; 0 where it did not hold after the first",
+        ),
         ResultKind::measured("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
         ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
         ResultKind::measured("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),

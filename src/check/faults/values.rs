@@ -58,7 +58,7 @@ pub fn few_degrees_of_freedom(ramp: &str, points: usize, degrees: usize, displac
     let text = format!("{points} steps leave the fit of `{ramp}` {freedom}: U is {factor} times its standard error");
     Diagnostic::new(Code::FewDegreesOfFreedom, text)
         .at(displacements, format!("{points} steps tell a scatter badly"))
-        .at(required, "decided by what is fitted to them")
+        .at(required, "what is fitted to them is read here")
         .help(format!("take {} or more", points + usize::from(FEW) - degrees))
 }
 
@@ -259,6 +259,31 @@ pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Dia
         .at(span, "used here")
         .at(procedure, "runs only later")
         .help("procedures run in the order written: move that one up")
+}
+
+/// `read` is what some text reads of a ramp, `lacks` why it never has it, `way_out` what would.
+pub fn never_given(read: &str, span: Span, ramp: (&str, Span), lacks: &str, way_out: &str) -> Diagnostic {
+    Diagnostic::new(Code::NeverGiven, format!("the ramp `{}` never gives `{read}`: {lacks}", ramp.0))
+        .at(span, "read here")
+        .at(ramp.1, "of this ramp")
+        .help(way_out.to_owned())
+}
+
+/// `result` is read where the guarded rule decides, and has never an uncertainty.
+pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
+    Diagnostic::new(Code::NothingToGuard, format!("`{result}` never has an uncertainty: the guarded rule keeps no band for it"))
+        .at(required, "decided as by the simple rule")
+        .help("leave room in the limit itself, or require what is measured")
+}
+
+/// `step` and `duration` in s.
+pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f64) -> Diagnostic {
+    let told = |time| display::stated(time, Dimension::TIME);
+    let message = format!("the time step {} is longer than the run, {}", told(step), told(duration));
+    Diagnostic::new(Code::OutOfRange, message)
+        .at(at, "not one whole step")
+        .at(duration_at, "all the time there is")
+        .help("write `time_step = critical / 20`")
 }
 
 /// What is written and can do nothing here: why, and the way out.

@@ -84,14 +84,26 @@ pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
         .help("write `time_step = critical / 20`")
 }
 
-pub fn peak_force_under_rigid_law(span: Span, impact: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::PeakForceUnderRigidLaw,
-        "the peak contact force under the rigid law grows as 1/Δt: it says more of the time step than of the blow",
-    )
-    .at(span, "this figure follows the time step")
-    .at(impact, "`contact = rigid` holds here")
-    .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
+/// The step against that of a stiffness which is measured only in the run.
+pub fn step_above_foreseen(span: Span, step: f64, critical: f64) -> Diagnostic {
+    let (step, critical) = (time(step), time(critical));
+    let message = format!("the time step {step} is above the critical time step, about {critical} by the declared behaviour");
+    Diagnostic::new(Code::StepAboveCritical, message)
+        .at(span, format!("{step}, critical is about {critical}"))
+        .help("write `time_step = critical / 20`")
+}
+
+/// `law`: one without a duration of its own, so that its force is an impulse over a step.
+pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagnostic {
+    let (of, holds) = match law {
+        "rigid" => ("the rigid law", "`contact = rigid`"),
+        _ => ("`restitution`", "`contact = restitution(…)`"),
+    };
+    let message = format!("the peak contact force under {of} grows as 1/Δt: it says more of the time step than of the blow");
+    Diagnostic::new(Code::PeakForceUnderRigidLaw, message)
+        .at(span, "this figure follows the time step")
+        .at(impact, format!("{holds} holds here"))
+        .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
 }
 
 /// `first`: the longest step at which the limit acts at the first blow; `resolved`: at which the displacement is resolved.

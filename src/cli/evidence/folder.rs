@@ -72,6 +72,11 @@ impl Folder {
         self.files.get(name)?.bytes.as_deref()
     }
 
+    /// The same, no longer held.
+    pub fn take(&mut self, name: &str) -> Option<Vec<u8>> {
+        self.files.get_mut(name)?.bytes.take()
+    }
+
     /// What psd keeps in a run folder whatever becomes of the results: the record, torn ends of it, the results before a
     /// resumption. Names and digests.
     pub fn kept(&self) -> Vec<(String, String)> {
@@ -142,7 +147,8 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
     let file = OpenOptions::new().read(true).custom_flags(flags.cast_signed()).open(path).map_err(said)?;
     let mut file = file.take(LISTED_BYTES);
     if is_read {
-        let mut bytes = Vec::new();
+        // As long as it is: a record of a gigabyte is not to grow by doubling.
+        let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
         file.read_to_end(&mut bytes).map_err(said)?;
         return Ok(Held::of(name, bytes));
     }

@@ -1,6 +1,8 @@
 //! What a record gives when it is played back: record, verdict, every file of the results. In: the journal of a run
 //! folder, and the amendment beside it. Out: the results, and what the playing back itself proves.
 
+use std::borrow::Cow;
+
 use super::amending::{AMENDMENT, AmendmentFile, amended};
 use super::check::Finding;
 use super::folder::Folder;
@@ -79,12 +81,23 @@ pub struct Report {
 impl Rebuilt {
     /// Plays the record of a folder back.
     pub fn of(folder: &Folder) -> Self {
+        Self::read(folder.bytes(JOURNAL).map(Cow::Borrowed), folder)
+    }
+
+    /// The same, and the folder lets go of the bytes of its record: nobody holds them beside what they say.
+    pub fn taking(folder: &mut Folder) -> Self {
+        let bytes = folder.take(JOURNAL);
+        Self::read(bytes.map(Cow::Owned), folder)
+    }
+
+    fn read(journal: Option<Cow<'_, [u8]>>, folder: &Folder) -> Self {
         let nothing = |part, fault: String| Self { findings: vec![Finding::wrong(part, fault)], report: None };
-        let Some(bytes) = folder.bytes(JOURNAL) else { return nothing("record", format!("`{JOURNAL}` is missing")) };
-        let read = match record_file::from_bytes(JOURNAL.as_ref(), bytes) {
+        let Some(bytes) = journal else { return nothing("record", format!("`{JOURNAL}` is missing")) };
+        let read = match record_file::from_bytes(JOURNAL.as_ref(), &bytes) {
             Ok(read) => read,
             Err(failure) => return nothing("record", failure.to_string()),
         };
+        drop(bytes);
         let amendment = match folder.bytes(AMENDMENT).map(AmendmentFile::read).transpose() {
             Ok(amendment) => amendment,
             Err(fault) => return nothing("amendment", fault),

@@ -143,6 +143,10 @@ fn a_sound_folder_is_sound_and_names_its_parts() {
     assert!(findings.iter().all(|finding| finding.sound), "{findings:#?}");
     let parts: Vec<&str> = findings.iter().map(|finding| finding.part).collect();
     assert_eq!(parts, ["record", "targets", "results", "plan", "certificate", "figures", "manifest", "signature", "signature"]);
+    let mut lets_go = signed.folder.clone();
+    let rebuilt = Rebuilt::taking(&mut lets_go);
+    assert_eq!(lets_go.bytes(JOURNAL), None, "its record is held once, as what it says");
+    assert_eq!(examine(&lets_go, &rebuilt, &signed.keys), findings);
     let unsigned = folder(run());
     let findings = examine(&unsigned, &signed.rebuilt, &[]);
     assert!(findings.iter().all(|finding| finding.sound) && findings.last().unwrap().told.contains("unsigned"));

@@ -5,10 +5,7 @@
 
 use super::map::Map;
 use super::under_way::Speed;
-use super::{Distortion, RecordedPath, Rule};
-
-/// A curve whose last slope is less than this share of its first has settled on that.
-const SETTLED: f64 = 0.9;
+use super::{Distortion, RecordedPath, Rule, SETTLED};
 
 /// The way as it is taken again.
 #[derive(Clone, Debug)]
@@ -227,23 +224,38 @@ impl<'a> Again<'a> {
         self.piece = path.branches[next].first_piece;
     }
 
+    /// Turns onto a branch `moved` (m) and `rise` (N) from where the record did, whatever was before.
+    pub(super) fn turn_elsewhere(&mut self, branch: usize, moved: f64, rise: f64) {
+        self.piece = self.path.branches[branch].first_piece;
+        self.maps[branch] = self.moved(branch, moved, rise);
+        self.fading[branch] = self.fade(branch, Map::NONE, rise).filter(|_| self.path.rule == Rule::Anchored);
+    }
+
+    /// Force at a place (m) on the curve that it turned onto, as far as the record of that reaches, N.
+    pub(super) fn foretold(&self, place: f64) -> Option<f64> {
+        let (map, at) = self.stand(place);
+        self.path.recorded_at(self.piece, at).map(|force| map.force(force))
+    }
+
     /// What becomes of the curve of a branch that begins `moved` (m) and `rise` (N) from where it began in the record.
     fn moved(&self, branch: usize, moved: f64, rise: f64) -> Map {
         let path = self.path;
         let piece = path.pieces[path.branches[branch].first_piece];
         let turn = piece.begin;
         let shifted = Map::shifted(moved, rise);
+        // Along a slope, on which it so comes to lie as it did, to where it begins on the new turn.
+        let slid = |slope: f64| {
+            let first = piece.start_tangent;
+            let along = (first * moved - rise) / (first - slope);
+            if slope.abs() < SETTLED * first.abs() { Map::shifted(along, slope * along) } else { shifted }
+        };
         match path.rule {
             Rule::Pivoted => {
                 let stretched = |pivot| Map::about(pivot, [turn.target, turn.force], [turn.target + moved, turn.force + rise]);
                 path.pivot(branch).and_then(stretched).unwrap_or(shifted)
             }
-            Rule::Shifted | Rule::Anchored if path.branches[branch].drifts => {
-                // Along its own last slope, on which it so comes to lie as it did, to where it begins on the new turn.
-                let (first, last) = (piece.start_tangent, piece.end_tangent);
-                let along = (first * moved - rise) / (first - last);
-                if last.abs() < SETTLED * first.abs() { Map::shifted(along, last * along) } else { shifted }
-            }
+            Rule::Shifted | Rule::Anchored if path.branches[branch].drifts => slid(piece.end_tangent),
+            Rule::Flowing => slid(path.softest),
             Rule::Shifted | Rule::Anchored | Rule::Kept => shifted,
         }
     }

@@ -4,18 +4,20 @@
 //!
 //! The record is cut into curves (`pieces`), on which the force is interpolated; beyond what was recorded of one it goes on
 //! along the tangent there. The way taken again goes from curve to curve at its own turns (`again`). What a curve does when
-//! its beginning has moved, the record does not tell: `Rule` says what is supposed. What an actuator under way adds to its
-//! readings is taken off them first (`under_way`). At the recorded targets the recorded readings come back as they were, to the bit.
+//! its beginning has moved, `Rule` says what is supposed, and the record itself refutes some of that (`refuted`). What an
+//! actuator under way adds to its readings is taken off them first (`under_way`). At the recorded targets the recorded
+//! readings come back as they were, to the bit.
 
 mod again;
 mod map;
 mod pieces;
+mod refuted;
 mod under_way;
 
 pub use again::Again;
 pub(super) use under_way::lag;
 
-use self::pieces::{Branch, Piece};
+use self::pieces::{Branch, Cut, Piece};
 use self::under_way::UnderWay;
 use super::tangent::NOISE_MULTIPLE;
 
@@ -30,6 +32,9 @@ pub struct Reading {
     pub force: f64,
 }
 
+/// A curve whose last slope is less than this share of its first has settled on that.
+const SETTLED: f64 = 0.9;
+
 /// What a specimen is supposed to do after it turned elsewhere. Where it goes back over the curve it came from it does so
 /// after every turn, and where it passes the place of an earlier turn it goes on with the curve that was left there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +43,9 @@ pub enum Rule {
     /// side (Iwan's model), however many. One that passed an earlier turn of the record elsewhere than through it, so that no
     /// loop was closed, keeps the line that it settled on.
     Shifted,
+    /// It slides along the line on which the specimen flows, and no loop is ever closed: exact of one element, elastic–plastic
+    /// or of Bouc and Wen's, beside a spring, whose force goes on from what it is and not from how it came to be so.
+    Flowing,
     /// Its curve is stretched about where the one before it began, if it came back softer than it first was: exact of those
     /// that lose stiffness and come back to the origin.
     Pivoted,
@@ -102,6 +110,12 @@ pub struct RecordedPath {
     /// Places no farther apart tell no difference of force, m.
     least: f64,
     rule: Rule,
+    /// What may be supposed, the likeliest first; one at least.
+    rules: Vec<Rule>,
+    /// The record as it is cut where no loop is closed; of `Flowing`, as it is cut where they are.
+    otherwise: Cut,
+    /// Of the line on which it flows, N/m.
+    softest: f64,
     /// Of readings made without a stop: `readings` are those of the specimen at rest.
     under_way: Option<UnderWay>,
 }
@@ -136,8 +150,14 @@ impl RecordedPath {
     fn of(readings: Vec<Reading>, under_way: Option<UnderWay>, stiffness: f64, (force_noise, resolution): (f64, f64)) -> Self {
         let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
         let unsure = under_way.as_ref().map_or(0.0, |under_way| under_way.unsure(stiffness, resolution));
-        let (branches, pieces) = pieces::cut(&readings, (stiffness, force_noise.hypot(unsure), least), under_way.as_ref());
-        Self { readings, branches, pieces, least, rule: Rule::Shifted, under_way }
+        let told = (stiffness, force_noise.hypot(unsure), least);
+        let (branches, pieces) = pieces::cut(&readings, told, under_way.as_ref(), true);
+        let otherwise = pieces::cut(&readings, told, under_way.as_ref(), false);
+        let softest = pieces::softest(&readings, &otherwise, least).unwrap_or(pieces[0].start_tangent);
+        let rules = vec![Rule::Shifted];
+        let mut path = Self { readings, branches, pieces, least, rule: Rule::Shifted, rules, otherwise, softest, under_way };
+        path.rules = refuted::left(&path, path.possible());
+        path
     }
 
     /// The recorded reading of a step; past the end of the record, of its last.
@@ -160,18 +180,45 @@ impl RecordedPath {
 
     /// What the specimen may be supposed to do for all the record tells, the likeliest first.
     #[must_use]
-    pub fn rules(&self) -> Vec<Rule> {
+    pub fn rules(&self) -> &[Rule] {
+        &self.rules
+    }
+
+    /// What it may be supposed to do by the look of its curves.
+    fn possible(&self) -> Vec<Rule> {
         let softer = (1..self.branches.len()).any(|branch| self.pivot(branch).is_some());
         let drifts = self.branches.iter().any(|branch| branch.drifts);
         let swings = self.swings().next().is_some();
-        let possible = [(Rule::Shifted, true), (Rule::Pivoted, softer), (Rule::Anchored, swings), (Rule::Kept, drifts)];
+        let flows =
+            self.softest.abs() < SETTLED * self.pieces[0].start_tangent && self.branches.iter().skip(1).any(|it| !it.retraces);
+        let possible = [
+            (Rule::Shifted, true),
+            (Rule::Flowing, flows),
+            (Rule::Pivoted, softer),
+            (Rule::Anchored, swings),
+            (Rule::Kept, drifts),
+        ];
         possible.into_iter().filter(|(_, possible)| *possible).map(|(rule, _)| rule).collect()
     }
 
-    /// The same record, if the specimen is supposed to keep to a rule.
+    /// The same record, if the specimen is supposed to keep to a rule; to its likeliest where it cannot be that one.
     #[must_use]
     pub fn supposing(self, rule: Rule) -> Self {
+        let rule = if self.rules.contains(&rule) { rule } else { self.rules[0] };
+        self.keeping_to(rule)
+    }
+
+    fn keeping_to(mut self, rule: Rule) -> Self {
+        if (rule == Rule::Flowing) != (self.rule == Rule::Flowing) {
+            std::mem::swap(&mut self.branches, &mut self.otherwise.0);
+            std::mem::swap(&mut self.pieces, &mut self.otherwise.1);
+        }
         Self { rule, ..self }
+    }
+
+    /// Force at a place (m) of the curve of a piece, where the record went there, N.
+    fn recorded_at(&self, piece: usize, place: f64) -> Option<f64> {
+        pieces::within(&self.readings, &self.pieces, &self.branches, piece, place).map(|(_, force)| force)
     }
 
     /// Takes the way again from its beginning.

@@ -58,13 +58,17 @@ pub(super) struct Branch {
     pub gone: Option<[f64; 2]>,
 }
 
-/// Cuts a record; `least` (m) is how long a piece must be to tell a tangent, `stiffness` (N/m) what holds where none does.
-/// Readings made under way turn between two of them.
+/// Branches, and the pieces of their curves.
+pub(super) type Cut = (Vec<Branch>, Vec<Piece>);
+
+/// Cuts a record; `least` (m) is how long a piece must be to tell a tangent, `stiffness` (N/m) what holds where none does. Where
+/// loops do not close, each branch is one curve. Readings made under way turn between two of them.
 pub(super) fn cut(
     readings: &[Reading],
     (stiffness, force_noise, least): (f64, f64, f64),
     under_way: Option<&UnderWay>,
-) -> (Vec<Branch>, Vec<Piece>) {
+    loops_close: bool,
+) -> Cut {
     let mut branches: Vec<Branch> = Vec::new();
     let mut pieces: Vec<Piece> = Vec::new();
     // Branches that ended in a turn whose loop is not closed.
@@ -83,7 +87,9 @@ pub(super) fn cut(
                 turn = Reading { target: place, displacement, force: onto.force + tangent * (place - onto.target) };
                 branches[before].turn = turn;
             }
-            open.push(before);
+            if loops_close {
+                open.push(before);
+            }
         }
         let own = Piece {
             begin: turn,
@@ -203,7 +209,13 @@ fn gone(readings: &[Reading], piece: &Piece) -> Option<[f64; 2]> {
 }
 
 /// Displacement and force at a place on the curve of a piece, where the record went there before.
-fn within(readings: &[Reading], pieces: &[Piece], branches: &[Branch], piece: usize, place: f64) -> Option<(f64, f64)> {
+pub(super) fn within(
+    readings: &[Reading],
+    pieces: &[Piece],
+    branches: &[Branch],
+    piece: usize,
+    place: f64,
+) -> Option<(f64, f64)> {
     let mut piece = piece;
     while (place - pieces[piece].begin.target) * branches[pieces[piece].branch].direction < 0.0 {
         piece = pieces[piece].before?;
@@ -230,14 +242,34 @@ fn tangent<'a>(readings: impl Iterator<Item = &'a Reading>, least: f64) -> Optio
     for reading in readings {
         taken.push((reading.target, reading.force));
         if (reading.target - taken[0].0).abs() > least && taken.len() > 1 {
-            #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
-            let count = taken.len() as f64;
-            let (x, r) = taken.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
-            let (both, own) = taken.iter().fold((0.0, 0.0), |(both, own), point| {
-                (both + (point.0 - x) * (point.1 - r), own + (point.0 - x) * (point.0 - x))
-            });
-            return (own > 0.0).then(|| both / own);
+            return slope(&taken);
         }
     }
     None
+}
+
+/// Of least squares through places (m) and forces (N) there; None of one place.
+fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
+    let count = points.len() as f64;
+    let (x, r) = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
+    let (both, own) = points
+        .iter()
+        .fold((0.0, 0.0), |(both, own), point| (both + (point.0 - x) * (point.1 - r), own + (point.0 - x) * (point.0 - x)));
+    (own > 0.0).then(|| both / own)
+}
+
+/// Slope of the line on which the specimen flows (N/m): the least that a branch has over the last quarter of its way.
+pub(super) fn softest(readings: &[Reading], (branches, pieces): &Cut, least: f64) -> Option<f64> {
+    const QUARTER: f64 = 0.25;
+    let of_end = |branch: &Branch| {
+        let begin = pieces[branch.first_piece].begin.target;
+        let end = readings[branch.end].target;
+        let late = |reading: &&Reading| (end - reading.target) / (end - begin) <= QUARTER;
+        let points = readings[..=branch.end].iter().rev().take_while(late);
+        let points: Vec<(f64, f64)> = points.map(|reading| (reading.target, reading.force)).collect();
+        let enough = points.len() > 2 && QUARTER * (end - begin).abs() > least;
+        enough.then(|| slope(&points)).flatten()
+    };
+    branches.iter().filter(|branch| !branch.retraces).filter_map(of_end).min_by(f64::total_cmp)
 }

@@ -1,7 +1,8 @@
 //! The recorded way taken again, against the specimens that were recorded.
 
 use super::*;
-use crate::mechanics::specimen::{Bilinear, BoucWen, Degrading, Multilinear, RestoringForce};
+use crate::mechanics::specimen::{Bilinear, BoucWen, Degrading, Multilinear, RestoringForce, SpecimenModel};
+use crate::plan::{Behaviour, Pinching};
 
 fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
     let reading = |target: &f64| Reading { target: *target, displacement: target + 1e-4, force: force(*target) };
@@ -129,7 +130,7 @@ fn elements_side_by_side_are_told_wherever_they_are_turned() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
     let cut = 0.5 * 1000.0 * STEP;
     let path = recorded(bilinear(), &way(&LOOPS, STEP));
-    assert_eq!(path.rules(), [Rule::Shifted, Rule::Anchored]);
+    assert_eq!(path.rules(), [Rule::Shifted, Rule::Anchored], "too few curves, and too short");
     let off = worst(&path, bilinear(), &way(&MOVED, STEP));
     assert!(off < 1e-9, "{off} N");
     let multilinear = || Multilinear::new(&[[0.1, 100.0], [0.25, 200.0], [0.7, 300.0]]);
@@ -199,4 +200,66 @@ fn the_record_tells_what_is_open() {
     let smooth = recorded(BoucWen::new(1000.0, 200.0, 0.1, 1.0, 0.5), &way(&LOOPS[..4], STEP));
     assert_eq!(smooth.rules(), [Rule::Shifted, Rule::Kept]);
     assert!(recorded(Bilinear::new(1000.0, 200.0, 0.1), &way(&LOOPS, STEP)).swung_back());
+}
+
+/// Sixty turns forth and back that grow and fade, `more` of them larger, m.
+fn swings(more: f64) -> Vec<f64> {
+    let turn = |turn: u32| {
+        let phase = f64::from(turn);
+        let size = 0.5 * (1.0 + 0.4 * (0.37 * phase).sin()) * (0.15 * phase).min(1.0) + 0.05 * (1.3 * phase).sin();
+        let size = size * (1.0 + more * (0.9 * phase).cos());
+        if turn.is_multiple_of(2) { size } else { -size }
+    };
+    (0..60).map(turn).collect()
+}
+
+/// A record of many curves leaves what is so of the specimen and refutes the rest: elements side by side keep their shapes, and
+/// one that flows forgets where it turned.
+#[test]
+fn the_record_refutes_what_its_own_curves_contradict() {
+    let targets = way(&swings(0.0), STEP);
+    let left = |rules: &[Rule]| rules.iter().copied().filter(|rule| *rule != Rule::Kept).collect::<Vec<Rule>>();
+    let bilinear = recorded(Bilinear::new(1000.0, 200.0, 0.1), &targets);
+    let multilinear = recorded(Multilinear::new(&[[0.1, 100.0], [0.25, 200.0], [0.7, 300.0]]), &targets);
+    for path in [bilinear, multilinear] {
+        assert!(path.possible().contains(&Rule::Anchored) && path.possible().contains(&Rule::Flowing));
+        assert_eq!(left(path.rules()), [Rule::Shifted]);
+    }
+    for (sharpness, beta) in [(1.0, 0.5), (2.0, 0.5), (1.0, 0.7)] {
+        let path = recorded(BoucWen::new(1000.0, 200.0, 0.1, sharpness, beta), &targets);
+        assert!(path.possible().len() > 3);
+        assert_eq!(path.rules(), [Rule::Flowing]);
+    }
+    let elastic = path(|x| 1000.0 * x + 800.0 * x.powi(3), &targets);
+    assert_eq!(elastic.rules(), [Rule::Shifted]);
+}
+
+/// What comes back to a place of its own does not keep the shape that its curve had from another.
+#[test]
+fn a_pinched_record_refutes_curves_that_keep_their_shape() {
+    let pinched = SpecimenModel::new(&Behaviour::Pinching(Pinching {
+        stiffness: 1000.0,
+        yield_force: 200.0,
+        hardening: 0.05,
+        force_factor: 0.4,
+        displacement_factor: 0.5,
+        unloading_exponent: 0.0,
+        capping: None,
+        deterioration: None,
+    }));
+    let path = recorded(pinched, &way(&swings(0.0), STEP));
+    assert!(path.possible().contains(&Rule::Shifted));
+    assert!(path.rules().contains(&Rule::Anchored) && !path.rules().contains(&Rule::Shifted), "{:?}", path.rules());
+}
+
+/// As Bouc's and Wen's element flows, it comes to where it would have come from any turn; in a few per cent of what the shape of its
+/// curve, kept, makes of it.
+#[test]
+fn what_flows_forgets_where_it_turned() {
+    let smooth = || BoucWen::new(1000.0, 200.0, 0.1, 2.0, 0.5);
+    let (record, moved) = (way(&swings(0.0), STEP), way(&swings(0.02), STEP));
+    let path = recorded(smooth(), &record);
+    let kept = worst(&path.clone().keeping_to(Rule::Shifted), smooth(), &moved);
+    let flowing = worst(&path.supposing(Rule::Shifted), smooth(), &moved);
+    assert!(flowing < 0.1 * kept, "{flowing} N, {kept} N");
 }

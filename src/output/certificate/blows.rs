@@ -111,6 +111,7 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
         let held = match blow.held {
             Some(true) => "held",
             Some(false) => "no longer held",
+            None if blow.rest.is_some() => "not decided",
             None => "not complete",
         };
         let known = |list: &str, other: Text| frames::known_entry(procedure, list, index).unwrap_or(other);

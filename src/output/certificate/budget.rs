@@ -1,55 +1,97 @@
-//! The uncertainty budget of an impact: input by input, what it contributes to the uncertainty of the results that the
-//! requirements read. In: a run. Out: a table. Every result has its budget in `summary.json`.
+//! The uncertainty budgets of a procedure: input by input, what it contributes to the uncertainty of the results that the
+//! requirements read. In: a run. Out: tables, and which results are marked †. Every result has its budget in `summary.json`.
 
 use super::super::budget::{Budget, From, Line, budgets};
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, expansion, number};
 use super::{results::percent, words};
-use crate::formula::{ProcedureId, ResultReference, ResultValue};
+use crate::formula::{Formula, ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
 use crate::quantity::display::{minus, significant, typeset, unit};
-use crate::record::ProcedureRecord;
+use crate::record::{History, NamedResult, ProcedureRecord};
 use crate::run::MOST_DRAWS;
-
-/// Told where no requirement reads a result of the procedure.
-const UNASKED: [&str; 3] = ["max_displacement", "absorbed_energy", "max_base_shear"];
 
 /// A share of u² below which lines are told together.
 const SMALL: f64 = 1e-3;
 
+/// Beside what is not sure.
+pub(super) const MARK: &str = " †";
+
+/// What the mark says.
+const MARKED: &str = "† The result does not follow an input smoothly (the differences to either side, or at half the size, \
+                      disagree), or the record leaves open what the specimen would have done with it: the largest change seen stands \
+                      for it, and the uncertainty is an estimate.";
+
 pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let mut budgets = budgets(run, index, procedure);
-    let asked = asked(run, index);
-    budgets.retain(|budget| asked.contains(&budget.result.name) && is_told(budget));
+    let asked = asked(run, index, &procedure.history);
+    budgets.retain(|budget| is_told(budget, &asked));
     if !budgets.is_empty() {
-        body.extend(budgets.iter().map(one));
-        body.push(Block::note(note(run, &budgets)));
+        body.extend(budgets.iter().map(|budget| one(budget, procedure)));
+        body.push(Block::note(note(run, &procedure.history, &budgets)));
     }
 }
 
-/// The results of this procedure that a requirement reads, else those that are always worth it.
-fn asked(run: &Run<'_>, index: usize) -> Vec<&'static str> {
-    let mut references: Vec<ResultReference> = Vec::new();
-    run.plan.requirements.iter().flat_map(|requirement| &requirement.conditions).for_each(|condition| {
-        condition.collect_references(&mut references);
-    });
-    let mine: Vec<&str> =
-        references.iter().filter(|reference| reference.procedure == ProcedureId(index)).map(|reference| reference.name).collect();
-    if mine.is_empty() { UNASKED.to_vec() } else { mine }
+/// What the mark says, of a procedure that has one.
+pub(super) fn marked(procedure: &ProcedureRecord) -> Option<Block> {
+    let any = |result: &NamedResult| match &result.value {
+        ResultValue::Number { .. } => !is_sure(result, 0),
+        ResultValue::List(values) => (0..values.len()).any(|entry| !is_sure(result, entry)),
+    };
+    procedure.results.iter().any(any).then(|| Block::note(MARKED))
 }
 
-/// Of a list, the budget of its largest number stands for all.
-fn is_told(budget: &Budget<'_>) -> bool {
-    let (Some(entry), ResultValue::List(values)) = (budget.entry, &budget.result.value) else { return true };
-    let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    largest.is_some_and(|(place, _)| place == entry)
+/// Whether all that makes much of the uncertainty of a result, or of an entry of a list, is sure.
+pub(super) fn is_sure(result: &NamedResult, entry: usize) -> bool {
+    let mine = || result.contributions.iter().filter(|part| part.entry == entry);
+    let all: f64 = mine().map(|part| part.amount.powi(2)).sum();
+    let unsure: f64 = mine().filter(|part| !part.smooth).map(|part| part.amount.powi(2)).sum();
+    unsure <= SMALL * all
 }
 
-fn one(budget: &Budget<'_>) -> Block {
-    let which = budget.entry.map_or_else(String::new, |entry| match budget.result.name {
-        "periods" => format!(", mode {}", entry + 1),
-        _ => format!(", storey {}", entry + 1),
-    });
+/// The results of this procedure that a requirement reads, and which entry of a list where it names one; where it reads none
+/// of a procedure that was integrated, those that are always worth it.
+fn asked(run: &Run<'_>, index: usize, history: &History) -> Vec<(&'static str, Option<usize>)> {
+    let mut read: Vec<(ResultReference, Option<usize>)> = Vec::new();
+    let conditions = run.plan.requirements.iter().flat_map(|requirement| &requirement.conditions);
+    conditions.flat_map(|condition| condition.formulas()).for_each(|formula| collect(formula, None, &mut read));
+    let mine: Vec<(&str, Option<usize>)> = read
+        .into_iter()
+        .filter(|(reference, _)| reference.procedure == ProcedureId(index))
+        .map(|(reference, entry)| (reference.name, entry))
+        .collect();
+    if !mine.is_empty() {
+        return mine;
+    }
+    match history {
+        History::Impact(_) => vec![("max_displacement", None), ("absorbed_energy", None)],
+        History::Shake(_) | History::StoreyImpact(_) => vec![("max_drift", None), ("max_base_shear", None)],
+        _ => Vec::new(),
+    }
+}
+
+/// Every result that a formula reads, with the entry that it takes of it.
+fn collect(formula: &Formula, entry: Option<usize>, into: &mut Vec<(ResultReference, Option<usize>)>) {
+    match formula {
+        Formula::Constant(_) | Formula::Stated(_) | Formula::CriticalTimeStep => {}
+        Formula::Result(reference) => into.push((*reference, entry)),
+        Formula::Index(inner, place) => collect(inner, Some(*place), into),
+        Formula::Negate(inner) => collect(inner, entry, into),
+        Formula::Binary(_, left, right) => [left, right].into_iter().for_each(|side| collect(side, entry, into)),
+        Formula::List(parts) | Formula::Call(_, parts) => parts.iter().for_each(|part| collect(part, None, into)),
+    }
+}
+
+/// Of a list of which no entry is named, the budget of its largest number stands for all.
+fn is_told(budget: &Budget<'_>, asked: &[(&'static str, Option<usize>)]) -> bool {
+    let mut asked = asked.iter().filter(|(name, _)| *name == budget.result.name).map(|(_, entry)| *entry);
+    let (Some(entry), ResultValue::List(values)) = (budget.entry, &budget.result.value) else { return asked.next().is_some() };
+    let largest = values.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map(|(place, _)| place);
+    asked.any(|named| named.or(largest) == Some(entry))
+}
+
+fn one(budget: &Budget<'_>, procedure: &ProcedureRecord) -> Block {
+    let which = budget.entry.map_or_else(String::new, |entry| format!(", {} {}", entries_of(budget, procedure), entry + 1));
     let columns = vec![
         Column::words(format!("Uncertainty budget of {}{which}", words(budget.result.name)), 3),
         Column::words("Input ± u", 2),
@@ -57,10 +99,23 @@ fn one(budget: &Budget<'_>) -> Block {
         Column::numbers("Contribution"),
         Column::numbers("Of u²"),
     ];
-    Block::Table(Table { columns, rows: rows(budget) })
+    Block::Table(Table { columns, rows: rows(budget, procedure) })
 }
 
-fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
+/// What the entries of a list are.
+fn entries_of(budget: &Budget<'_>, procedure: &ProcedureRecord) -> &'static str {
+    match (&procedure.history, budget.result.name) {
+        (_, "periods") => "mode",
+        (_, name) if name.contains("drift") || name.starts_with("storey") => "storey",
+        (_, "residual_shear") => "storey",
+        (_, "floor_displacement") | (History::Shake(_), _) => "floor",
+        (History::Escalate(_), _) => "blow",
+        (History::Cycle(_), _) => "cycle",
+        _ => "number",
+    }
+}
+
+fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord) -> Vec<Vec<Text>> {
     let Budget { result, value, uncertainty, known, lines, .. } = budget;
     let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
     let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
@@ -69,7 +124,9 @@ fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
         .map(|line| {
             let sensitivity = line.sensitivity.map_or_else(|| "—".to_owned(), |each| sensitivity(each, result.dimension, line));
             let share = percent(budget.share(line));
-            vec![named(line), input(line).into(), sensitivity.into(), amount(line.contribution.abs()), share.into()]
+            let own = line.from == From::Result && line.input == own(budget, procedure);
+            let name = if own { "scatter of its own readings".into() } else { named(line) };
+            vec![name, input(line).into(), sensitivity.into(), amount(line.contribution.abs()), share.into()]
         })
         .collect();
     if !small.is_empty() {
@@ -90,6 +147,12 @@ fn rows(budget: &Budget<'_>) -> Vec<Vec<Text>> {
     rows
 }
 
+/// How the budget calls what the result's own fit leaves open.
+fn own(budget: &Budget<'_>, procedure: &ProcedureRecord) -> String {
+    let entry = budget.entry.map_or_else(String::new, |entry| format!("[{entry}]"));
+    format!("{}.{}{entry}", procedure.name, budget.result.name)
+}
+
 /// What the plan has a name for is set as it is written there.
 fn named(line: &Line) -> Text {
     let name = match line.from {
@@ -100,7 +163,7 @@ fn named(line: &Line) -> Text {
         Some(draws) => name.soft(format!(" · sampled, {draws} draws")),
         None => name,
     };
-    if line.smooth { name } else { name.and(" †") }
+    if line.smooth { name } else { name.and(MARK) }
 }
 
 fn input(line: &Line) -> String {
@@ -122,19 +185,36 @@ fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
     if unit.is_empty() { change } else { format!("{change} per {}", typeset(&unit)) }
 }
 
-fn note(run: &Run<'_>, budgets: &[Budget<'_>]) -> String {
+/// How the contributions of a procedure were found.
+fn how(history: &History) -> &'static str {
+    match history {
+        History::Ramp(_) | History::Sweep(_) => {
+            "what its own readings scatter is the covariance of the fit, a calibration goes with the powers of force and displacement in the \
+             result, and rounding is told beside the scatter where it leaves more open"
+        }
+        History::Cycle(_) => {
+            "each input in turn was moved by its standard uncertainty, and the loops were reckoned again from their readings"
+        }
+        History::Move(_) | History::FrameUnload(_) | History::Inspect => {
+            "told in closed form of where the specimen carries no load, R + K(x₀ − x) = 0 with the stiffness that it showed on the way there"
+        }
+        History::Impact(_) | History::StoreyImpact(_) | History::Shake(_) | History::Escalate(_) => {
+            "each input in turn was moved by ± its standard uncertainty and the run integrated again along its own recorded \
+             force–displacement path; half the difference of the results is the contribution, the root sum of squares is u (JCGM 100:2008). \
+             The scheme of integration, the contact law and the slowness of the test are not among the inputs"
+        }
+    }
+}
+
+fn note(run: &Run<'_>, history: &History, budgets: &[Budget<'_>]) -> String {
     let told: Vec<&Line> =
         budgets.iter().flat_map(|budget| budget.lines.iter().filter(|line| budget.share(line) >= SMALL)).collect();
     let more = budgets.iter().any(|budget| expansion::is_more(budget.known));
     let factor = if more { "k by Student's t" } else { "k = 2" };
-    let mut text = format!(
-        "Linearised, {factor}: each input in turn was moved by ± its standard uncertainty and the run integrated again along \
-         its own recorded force–displacement path; half the difference of the results is the contribution, the root sum of squares is u \
-         (JCGM 100:2008). The scheme of integration, the contact law and the slowness of the test are not among the inputs."
-    );
+    let mut text = format!("Linearised, {factor}: {}.", how(history));
     let undeclared = run.plan.rig.undeclared(run.plan.degrees_of_freedom());
     if !undeclared.is_empty() {
-        text += " Nor is what the plan does not declare: ";
+        text += " Not counted, for the plan does not declare it: ";
         text += &undeclared.join(", ");
         text += ".";
     }
@@ -156,8 +236,8 @@ fn note(run: &Run<'_>, budgets: &[Budget<'_>]) -> String {
         text += ".";
     }
     if told.iter().any(|line| !line.smooth) {
-        text += " † The result does not follow this input smoothly: the differences to either side, or at half the size, disagree; \
-                 the largest change stands for it.";
+        text += " ";
+        text += MARKED;
     }
     text
 }

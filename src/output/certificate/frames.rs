@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, behaviour, number};
-use super::{described, followed, method, results};
+use super::{budget, described, followed, method, results};
 use crate::formula::ResultValue;
 use crate::mechanics::frame::{SymmetricBand, storeys_of};
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
@@ -186,12 +186,16 @@ pub(super) fn storey_table<S: Floors>(
     let whole = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     let drift = procedure.result("max_drift").map_or(&[][..], entries);
     let cell = |name: &str, storey: usize| procedure.result(name).map_or_else(|| "—".into(), |result| entry(result, storey));
+    let with_u = |title: &str, name: &str| {
+        let known = procedure.result(name).is_some_and(|result| !result.contributions.is_empty());
+        Column::numbers(if known { format!("{title} (± u)") } else { title.to_owned() })
+    };
     let columns = vec![
         Column::words("Storey", 1),
-        Column::numbers("Largest displacement of its floor"),
-        Column::numbers("Largest drift"),
+        with_u("Largest displacement of its floor", displacement),
+        with_u("Largest drift", "max_drift"),
         Column::numbers("Of its height"),
-        Column::numbers("Drift at the end"),
+        with_u("Drift at the end", "residual_drift"),
         Column::numbers("Largest shear"),
     ];
     let height = |storey: usize| frame.and_then(|frame| frame.storeys.get(storey)).and_then(|storey| storey.height);
@@ -217,12 +221,14 @@ fn entries(result: &NamedResult) -> &[f64] {
     }
 }
 
-/// A number of a list with its standard uncertainty where it has one, else in the unit of the largest.
+/// A number of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the
+/// largest.
 pub(super) fn entry(result: &NamedResult, place: usize) -> Text {
     let values = entries(result);
     let Some(value) = values.get(place) else { return "—".into() };
     if let Some(Some(u)) = result.entry_uncertainties().get(place) {
-        return number::with_uncertainty(*value, Some(*u), result.dimension).into();
+        let mark = if budget::is_sure(result, place) { "" } else { budget::MARK };
+        return (number::with_uncertainty(*value, Some(*u), result.dimension) + mark).into();
     }
     let whole = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     number::text_beside(*value, whole, result.dimension).into()

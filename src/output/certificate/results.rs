@@ -45,7 +45,6 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::Impact(history) => {
                 force_note(run, index, procedure, history, body);
                 method::note(run, index, history, body);
-                budget::table(run, index, procedure, body);
                 energy_balance(history, body);
                 contact_log::table(history, body);
             }
@@ -56,6 +55,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::FrameUnload(steps) => frames::unloaded(run, index, procedure, steps, body),
             History::Move(_) | History::Inspect => {}
         }
+        budget::table(run, index, procedure, body);
     }
 }
 
@@ -95,6 +95,7 @@ fn results(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut 
         });
         body.push(Block::note(named.and(".")));
     }
+    body.extend(budget::marked(procedure));
 }
 
 fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
@@ -149,7 +150,9 @@ fn row(result: &NamedResult, known: Option<Known>) -> Vec<Text> {
             [texts.join(", ").into(), dash(), dash(), dash()]
         }
     };
-    vec![words(result.name).into(), value, standard, expanded, unit, Text::new().code(result.name)]
+    let sure = !matches!(result.value, ResultValue::Number { .. }) || budget::is_sure(result, 0);
+    let name = Text::from(words(result.name)).and(if sure { "" } else { budget::MARK });
+    vec![name, value, standard, expanded, unit, Text::new().code(result.name)]
 }
 
 /// The line of least squares with the standard error of both its numbers, and how far the readings lie from it.

@@ -50,11 +50,11 @@ pub enum Say {
 #[derive(Clone, Debug)]
 pub struct ScriptedPort {
     clock: VirtualClock,
-    shared: Arc<Mutex<Script>>,
+    shared: Arc<Mutex<Said>>,
 }
 
 #[derive(Debug, Default)]
-struct Script {
+struct Said {
     /// Bytes and the moment they come, s; None: hung up.
     coming: VecDeque<(f64, Option<Vec<u8>>)>,
     /// What to say to the n-th frame.
