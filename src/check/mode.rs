@@ -26,8 +26,9 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     Some(Mode::Continuous { time_scale })
 }
 
-/// The dialect of a real rig that follows no path. What is no dialect is another fault.
-fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str> {
+/// The dialect of a real rig that follows no path, and gives no displacement and force of one instant: any but `native`. What is no
+/// dialect is another fault.
+pub fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str> {
     let (_, written) = checker.given(rig, "link").or_else(|| checker.given(rig, "actuator"))?;
     let ExprKind::Call { arguments, .. } = &written.value.kind else { return None };
     let is_dialect = |(place, argument): &(usize, &Argument)| match &argument.name {

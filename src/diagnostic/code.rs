@@ -134,6 +134,7 @@ codes! {
     E651 NotTogether Error;
     E652 NobodyToFreeIt Error;
     E653 RecordTooLong Error;
+    E654 ReadApart Error;
     E655 NeverGiven Error;
     // 7: what runs but is unwise
     W701 StepAboveCritical Warning;

@@ -17,6 +17,7 @@ mod killed;
 mod lost;
 mod named;
 mod needs;
+mod opensees;
 mod person;
 mod resumed;
 mod served;

@@ -15,7 +15,7 @@ pub struct Served {
     pub stage: Stage,
     program: Child,
     stdout: BufReader<ChildStdout>,
-    address: String,
+    pub address: String,
 }
 
 impl Served {

@@ -55,6 +55,14 @@ pub fn continuous_on_a_real_rig(dialect: &str, span: Span) -> Diagnostic {
         .help("write `mode = step_and_pause`; or use a rig that speaks `native`, which has `GLIDE`, or a virtual rig")
 }
 
+pub fn read_apart(sweep: Span, link: Span, told: String) -> Diagnostic {
+    let message = "a damping sweep reads on the way, and this rig reads displacement and force one after the other";
+    Diagnostic::new(Code::ReadApart, message)
+        .at(sweep, "the way between the two would be taken for damping")
+        .at(link, told)
+        .help("give the damping instead, as in `damping = 6 N*s/m`; or use one device that speaks `native`, for both")
+}
+
 pub fn stops_on_the_way(field: &str, span: Span, mode: Span) -> Diagnostic {
     Diagnostic::new(Code::StopsOnTheWay, format!("`{field}` stops the actuator, and `continuous` never does"))
         .at(span, "would stop it")

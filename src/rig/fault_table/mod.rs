@@ -4,6 +4,7 @@
 //!
 //! | Row | Fault | Shown by |
 //! |---|---|---|
+//! | 1 | killed at every word to the rig | `words::killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_twice` |
 //! | 6 | a disk too small for the run | `room::no_rig_writes_more_than_was_reckoned` |
 //! | 10 | no reply | `line::a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held` |
 //! | 11 | parts of replies, two in one read | `line::a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply`, `line::a_reply_cut_anywhere_is_never_a_shorter_number` |
@@ -31,6 +32,7 @@
 //! | 32 | very many steps, faults by chance | `long::very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing` |
 
 mod axes;
+mod beam;
 mod control_points;
 mod cut_off;
 mod device;
@@ -49,3 +51,4 @@ mod stage;
 mod targets;
 mod two_axes;
 mod unnumbered;
+mod words;

@@ -10,6 +10,7 @@ use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered, recover};
 use crate::record::{EventKind, History, Outcome, Record};
 use crate::rig::failpoint::{Guarding, without};
+use crate::rig::port::Port;
 use crate::rig::real::RealRig;
 use crate::rig::{Rig as _, RigFault, Tally, Wish, device};
 use crate::run::tape::{self, Played};
@@ -17,7 +18,7 @@ pub(super) use crate::run::testing::header;
 use crate::run::testing::{elastic_plan, ramp};
 use crate::run::{Observer, Unwatched};
 use crate::simulator::testing::SharedText;
-use crate::simulator::{InProcess, Log, Script, of_plan};
+use crate::simulator::{InProcess, Log, Script, SimulatedPort, of_plan};
 
 /// Of the specimen, N/m.
 pub(super) const STIFFNESS: f64 = 1e5;
@@ -123,9 +124,18 @@ pub(super) fn stand(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess
 
 /// The plan's rig on a stand.
 pub(super) fn open(plan: &Plan, stand: &InProcess) -> Result<RealRig, RigFault> {
+    open_through(plan, stand, &|port| Box::new(port))
+}
+
+/// The same, with every line `through` something.
+pub(super) fn open_through(
+    plan: &Plan,
+    stand: &InProcess,
+    through: &dyn Fn(SimulatedPort) -> Box<dyn Port>,
+) -> Result<RealRig, RigFault> {
     let link = plan.rig.link.as_real().unwrap();
     let attach = |link: &DeviceLink, line: usize| {
-        device::open(link, Box::new(stand.port(line)), Box::new(stand.clock()), Wish::default(), plan.rig.settle.timeout)
+        device::open(link, through(stand.port(line)), Box::new(stand.clock()), Wish::default(), plan.rig.settle.timeout)
     };
     let (actuators, cells) = (link.actuators(), link.load_cells());
     let first_cell = actuators.len();

@@ -1,0 +1,68 @@
+//! A real OpenSees drives a real rig: its `genericClient` against `psd rig serve` on a stand-in behind a pseudo-terminal. In: the
+//! script beside this file, and an OpenSees for Python. Out: the motion that its integrator has in closed form.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::served::Served;
+use crate::stage::{Stage, wait};
+
+/// What the script integrates: kg, m/s, s; and the specimen of the stage, N/m.
+const MASS: f64 = 20.0;
+const VELOCITY: f64 = 0.07;
+const TIME_STEP: f64 = 1e-3;
+const STEPS: usize = 30;
+const STIFFNESS: f64 = 1e5;
+
+/// A Python that has OpenSees: that of `.ci/run`, else the machine's own. Not a program of the system, so that nothing is wrong
+/// with a machine that has none.
+fn python() -> Option<PathBuf> {
+    let of_ci = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/opensees/bin/python3");
+    let can = |python: &PathBuf| {
+        let mut import = Command::new(python);
+        let import =
+            import.args(["-c", "import openseespy.opensees"]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        import.status().is_ok_and(|status| status.success())
+    };
+    let found = [of_ci, PathBuf::from("python3")].into_iter().find(can);
+    if found.is_none() {
+        println!("SKIPPED: no Python here has OpenSees");
+    }
+    found
+}
+
+/// NewmarkExplicit with γ = ½ is the central difference: u(n) = A·sin(n·ω̄·Δt) with sin(ω̄·Δt/2) = ω·Δt/2, and A such that the first
+/// step goes V·Δt, for at rest nothing pulls. A force is told with three decimals of a newton: the n-th place may be off by the
+/// acceleration of half of that over the time so far.
+#[test]
+fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
+    let Some(python) = python() else { return };
+    let mut served = Served::start_on(Stage::new(), "generic-client", &["--once"]);
+    let port = served.address.rsplit(':').next().unwrap().to_owned();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/system/opensees.py");
+    let ended = wait(Command::new(python).arg(script).arg(port));
+    assert_eq!(ended.code, Some(0), "{}", ended.told);
+    let way: Vec<f64> = serde_json::from_str(ended.told.lines().find(|line| line.starts_with('[')).unwrap()).unwrap();
+    assert_eq!(way.len(), STEPS);
+    let angle = 2.0 * ((STIFFNESS / MASS).sqrt() * TIME_STEP / 2.0).asin();
+    let amplitude = VELOCITY * TIME_STEP / angle.sin();
+    let mut time = 0.0;
+    for (step, found) in (1_u32..).zip(&way) {
+        time += TIME_STEP;
+        let expected = amplitude * (f64::from(step) * angle).sin();
+        let allowed = 0.5e-3 / MASS * time * time + 1e-9;
+        assert!((found - expected).abs() <= allowed, "step {step}: {found} is not within {allowed} of {expected}");
+    }
+    let largest = way.iter().copied().fold(0.0, f64::max);
+    assert!((largest / ((MASS / STIFFNESS).sqrt() * VELOCITY) - 1.0).abs() < 2e-3, "√(M/K)·V: {largest}");
+    let (code, printed) = served.ended();
+    assert_eq!(code, Some(0), "{printed}");
+    assert!(printed.starts_with("session: closed by the client\n"), "{printed}");
+    served.held();
+    // What OpenSees asked for is what the rig was sent to.
+    let table = std::fs::read_to_string(served.stage.path("run").join("tables/served.csv")).unwrap();
+    let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let column = header.iter().position(|name| name.starts_with("command")).unwrap();
+    let commands: Vec<f64> = table.lines().skip(1).map(|row| row.split(',').nth(column).unwrap().parse().unwrap()).collect();
+    assert!(way.iter().all(|place| commands.iter().any(|command| (command - place).abs() <= 1e-9)), "{commands:?}");
+}
