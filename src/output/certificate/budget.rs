@@ -54,7 +54,7 @@ pub(super) fn is_sure(result: &NamedResult, entry: usize) -> bool {
 fn asked(run: &Run<'_>, index: usize, history: &History) -> Vec<(&'static str, Option<usize>)> {
     let mut read: Vec<(ResultReference, Option<usize>)> = Vec::new();
     let conditions = run.plan.requirements.iter().flat_map(|requirement| &requirement.conditions);
-    conditions.flat_map(|condition| condition.formulas()).for_each(|formula| collect(formula, None, &mut read));
+    conditions.flat_map(crate::plan::Condition::formulas).for_each(|formula| collect(formula, None, &mut read));
     let mine: Vec<(&str, Option<usize>)> = read
         .into_iter()
         .filter(|(reference, _)| reference.procedure == ProcedureId(index))

@@ -13,7 +13,7 @@ mod validity;
 mod way;
 
 use crate::mechanics::path::Path;
-use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
+use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
 
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
@@ -45,6 +45,8 @@ pub struct RealRig {
     proposed: Option<Proposed>,
     /// Where it has settled, m; None while it is on its way, and where nobody waited for it to settle.
     settled: Option<Vec<f64>>,
+    /// Of each axis when the dwell in which it settled began, s, and the median force of it, N.
+    rested: Vec<Option<(f64, f64)>>,
     /// Mean speed of the last move as it was seen, m/s.
     seen_speed: Option<f64>,
     reread: u64,
@@ -72,6 +74,10 @@ struct Axis {
     outside: bool,
     /// Between the farthest places of the last path, m; 0 where a move came after it.
     span: f64,
+    /// Between where it set off and where it was sent, with what a ram may overshoot, m; None where it follows a path.
+    way: Option<Interval>,
+    /// The last reading on the way was off it.
+    off: bool,
 }
 
 /// A move that was offered and not yet sent.
@@ -247,12 +253,22 @@ impl Rig for RealRig {
 
     /// Says so, and where that finds no ear sends what needs no answer.
     fn hold(&mut self) {
+<<<<<<< HEAD
         // Whether it was heard is told at the end of the run.
         let _ = self.tell_to_hold();
     }
 
     fn halt(&mut self) -> Option<Halted> {
         Some(self.held_for_good())
+=======
+        self.wish.heed();
+        (self.proposed, self.settled) = (None, None);
+        self.axes.iter_mut().for_each(|axis| axis.way = None);
+        if self.deaf || self.actuator.hold().is_err() {
+            self.deaf = true;
+            safety::hold_everything();
+        }
+>>>>>>> wave7
     }
 
     fn own_speed(&self) -> Option<f64> {
@@ -290,5 +306,7 @@ mod disturbed_tests;
 mod halt_tests;
 #[cfg(test)]
 mod speed_tests;
+#[cfg(test)]
+mod straying_tests;
 #[cfg(test)]
 mod tests;

@@ -36,6 +36,7 @@ impl RealRig {
             heard: began,
             proposed: None,
             settled: None,
+            rested: Vec::new(),
             seen_speed: None,
             reread: 0,
             untrusted: None,
@@ -48,6 +49,8 @@ impl RealRig {
         rig.count_axes()?;
         rig.narrow()?;
         rig.heard = rig.clock.now();
+        // One device was not looked at while another was met.
+        let _ = rig.wish.take_absence();
         if rig.poll()?.moving == Some(true) {
             rig.hold();
             return Err(RigFault::Device("it was moving before it was told to: held".to_owned()));
@@ -138,6 +141,8 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
         judge: Judge::of_axis(named_axis(place, count)),
         outside: false,
         span: 0.0,
+        way: None,
+        off: false,
     };
     (0..count).map(axis).collect()
 }
