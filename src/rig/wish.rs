@@ -15,12 +15,9 @@ const HEEDED: u8 = 3;
 pub struct Wish {
     what: Arc<AtomicU8>,
     letting_go: Arc<AtomicBool>,
-<<<<<<< HEAD
     unasked: Arc<AtomicBool>,
-=======
     /// The bits of the longest time, s, that a line was not looked at.
     absence: Arc<AtomicU64>,
->>>>>>> wave7
 }
 
 impl Wish {
@@ -37,7 +34,6 @@ impl Wish {
         self.letting_go.load(Ordering::SeqCst)
     }
 
-<<<<<<< HEAD
     /// Whoever wants the end is no person at the keys: nothing is to be asked any more.
     pub fn ask_nobody(&self) {
         self.unasked.store(true, Ordering::SeqCst);
@@ -47,7 +43,8 @@ impl Wish {
     #[must_use]
     pub fn may_ask(&self) -> bool {
         !self.unasked.load(Ordering::SeqCst)
-=======
+    }
+
     /// A line was not looked at for this long, s: nobody sent, and nobody waited for an answer.
     pub fn was_away(&self, seconds: f64) {
         // Of numbers that are not negative the greater has the greater bits.
@@ -58,7 +55,6 @@ impl Wish {
     #[must_use]
     pub fn take_absence(&self) -> f64 {
         f64::from_bits(self.absence.swap(0, Ordering::SeqCst))
->>>>>>> wave7
     }
 
     /// The run is to end when the step under way is done.

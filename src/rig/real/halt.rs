@@ -17,6 +17,7 @@ impl RealRig {
     pub(super) fn tell_to_hold(&mut self) -> Result<(), String> {
         self.wish.heed();
         (self.proposed, self.settled) = (None, None);
+        self.axes.iter_mut().for_each(|axis| axis.way = None);
         if !self.deaf {
             let mut heard = self.actuator.hold();
             if heard == Err(DeviceFault::Interrupted) {
@@ -72,6 +73,7 @@ impl RealRig {
     fn reading_at_rest(&mut self) -> Found {
         // However long it was silent before: what counts is that it answers now.
         self.heard = self.clock.now();
+        let _ = self.wish.take_absence();
         let mut read = self.poll();
         if matches!(read, Err(RigFault::Interrupted)) {
             self.wish.heed();

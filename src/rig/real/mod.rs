@@ -253,22 +253,12 @@ impl Rig for RealRig {
 
     /// Says so, and where that finds no ear sends what needs no answer.
     fn hold(&mut self) {
-<<<<<<< HEAD
         // Whether it was heard is told at the end of the run.
         let _ = self.tell_to_hold();
     }
 
     fn halt(&mut self) -> Option<Halted> {
         Some(self.held_for_good())
-=======
-        self.wish.heed();
-        (self.proposed, self.settled) = (None, None);
-        self.axes.iter_mut().for_each(|axis| axis.way = None);
-        if self.deaf || self.actuator.hold().is_err() {
-            self.deaf = true;
-            safety::hold_everything();
-        }
->>>>>>> wave7
     }
 
     fn own_speed(&self) -> Option<f64> {
