@@ -11,6 +11,8 @@ pub enum Guarding {
     Tracking,
     WireNumber,
     Following,
+    /// An axis that goes elsewhere than the way it was sent.
+    Straying,
     Settling,
     Invalid,
     /// What a device says of itself: emergency stop, watchdog, no reference.
@@ -18,6 +20,8 @@ pub enum Guarding {
     Saturation,
     Frozen,
     Median,
+    /// A force that nothing leads to from the dwell before it.
+    Leap,
     Reboot,
     /// Whether a rig that cannot say it was switched off since.
     PowerUp,

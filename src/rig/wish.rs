@@ -2,7 +2,7 @@
 //! wish, for whoever waits on a rig. It knows no rig and does nothing itself.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 
 const NOTHING: u8 = 0;
 const STOP_AFTER_STEP: u8 = 1;
@@ -15,6 +15,9 @@ const HEEDED: u8 = 3;
 pub struct Wish {
     what: Arc<AtomicU8>,
     letting_go: Arc<AtomicBool>,
+    unasked: Arc<AtomicBool>,
+    /// The bits of the longest time, s, that a line was not looked at.
+    absence: Arc<AtomicU64>,
 }
 
 impl Wish {
@@ -29,6 +32,29 @@ impl Wish {
     #[must_use]
     pub fn lets_go(&self) -> bool {
         self.letting_go.load(Ordering::SeqCst)
+    }
+
+    /// Whoever wants the end is no person at the keys: nothing is to be asked any more.
+    pub fn ask_nobody(&self) {
+        self.unasked.store(true, Ordering::SeqCst);
+    }
+
+    /// Whether a person may be asked at the end.
+    #[must_use]
+    pub fn may_ask(&self) -> bool {
+        !self.unasked.load(Ordering::SeqCst)
+    }
+
+    /// A line was not looked at for this long, s: nobody sent, and nobody waited for an answer.
+    pub fn was_away(&self, seconds: f64) {
+        // Of numbers that are not negative the greater has the greater bits.
+        self.absence.fetch_max(seconds.max(0.0).to_bits(), Ordering::SeqCst);
+    }
+
+    /// The longest time, s, that a line was not looked at since this was asked last.
+    #[must_use]
+    pub fn take_absence(&self) -> f64 {
+        f64::from_bits(self.absence.swap(0, Ordering::SeqCst))
     }
 
     /// The run is to end when the step under way is done.
@@ -87,6 +113,9 @@ mod tests {
         assert!(!clone.wants_hold() && clone.wants_end());
         clone.cell().store(Wish::HOLD, Ordering::SeqCst);
         assert!(wish.wants_hold(), "a second wish is a new one");
+        assert!(wish.may_ask());
+        clone.ask_nobody();
+        assert!(!wish.may_ask());
         assert!(!wish.lets_go() && Wish::default().letting_go(true).clone().lets_go());
     }
 }

@@ -241,7 +241,13 @@ impl Device for GrblDevice {
                             new run); it stays where it is, and forgets what was interrupted";
                 return Err(DeviceFault::Unfit(help.to_owned()));
             }
-            _ => return Err(DeviceFault::Unfit("it is moving already".to_owned())),
+            state if state.is_moving() => {
+                // Nobody watches it: whoever sent it off is gone, or another program has the line.
+                self.talk.send(grbl::HOLD)?;
+                self.until(|state| !state.is_moving())?;
+                return Err(DeviceFault::Unfit("it was moving before it was told to: held".to_owned()));
+            }
+            state => return Err(DeviceFault::Unfit(format!("it is in the state {state:?}, and not ready to be moved"))),
         }
         let mut who = None;
         let keep = |word: &Word, line: &[u8]| {

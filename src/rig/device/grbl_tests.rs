@@ -79,8 +79,7 @@ fn every_wrong_setting_is_named_with_the_line_that_mends_it() {
 
 #[test]
 fn a_frame_that_is_not_at_rest_and_free_is_unfit() {
-    for (state, expected) in
-        [("Alarm", "$H"), ("Hold:0", "`--let-go`"), ("Jog", "moving"), ("Sleep", "asleep"), ("Door:1", "door"), ("Check", "$C")]
+    for (state, expected) in [("Alarm", "$H"), ("Hold:0", "`--let-go`"), ("Sleep", "asleep"), ("Door:1", "door"), ("Check", "$C")]
     {
         let (mut device, port) = device();
         for _ in 0..3 {
@@ -90,6 +89,21 @@ fn a_frame_that_is_not_at_rest_and_free_is_unfit() {
         assert!(reason.contains(expected), "{reason}");
         assert!(sent(&port).iter().all(|bytes| bytes == "?"), "nothing but questions was sent");
     }
+}
+
+#[test]
+fn a_frame_that_is_found_moving_is_held() {
+    let (mut device, port) = device();
+    for state in ["Jog", "Jog", "Jog"] {
+        status(&port, state, 0.0);
+    }
+    port.reply(&[]);
+    for state in ["Hold:1", "Idle", "Idle"] {
+        status(&port, state, 0.0);
+    }
+    let reason = reason(device.identify());
+    assert!(reason.ends_with("held"), "{reason}");
+    assert_eq!(sent(&port).iter().filter(|bytes| *bytes == "!").count(), 1);
 }
 
 #[test]

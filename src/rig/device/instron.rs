@@ -61,9 +61,15 @@ impl Instron {
         if first != 0.0 {
             return Ok(first);
         }
-        self.talk.tally_mut().reread += 1;
         self.wait_for_poll()?;
-        self.number(question, raw)
+        let second = self.number(question, raw)?;
+        self.count_glitch(second != 0.0);
+        Ok(second)
+    }
+
+    /// To look twice is routine; it mended a reading only where the second look saw something else.
+    const fn count_glitch(&mut self, glitch: bool) {
+        self.talk.tally_mut().reread += glitch as u64;
     }
 
     fn feedback(&mut self, channel: Channel, raw: &mut Vec<Vec<u8>>) -> Result<f64, DeviceFault> {
@@ -86,9 +92,9 @@ impl Instron {
     fn ask_movement(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Movement, DeviceFault> {
         let mut movement = self.ask_movement_once(raw)?;
         if movement == Movement::Stopped && self.movement != Movement::Stopped {
-            self.talk.tally_mut().reread += 1;
             self.wait_for_poll()?;
             movement = self.ask_movement_once(raw)?;
+            self.count_glitch(movement != Movement::Stopped);
         }
         self.movement = movement;
         Ok(movement)

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::DeviceFault;
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::port::{Clock, Emergency, Port};
-use crate::rig::{Tally, Wish};
+use crate::rig::{Tally, Wish, safety};
 
 /// Longest line with its ending, and all that is kept of what comes, bytes.
 pub const LONGEST_LINE: usize = 512;
@@ -29,6 +29,8 @@ pub struct Talk {
     waiting: Vec<u8>,
     /// In the middle of a line that is too long.
     overlong: bool,
+    /// When somebody last looked after the line, s by the clock; None: nobody did yet.
+    looked: Option<f64>,
     tally: Tally,
 }
 
@@ -59,7 +61,7 @@ impl Talk {
     #[must_use]
     pub fn new(port: Box<dyn Port>, clock: Box<dyn Clock>, reply_timeout: f64) -> Self {
         let (wish, waiting, tally) = (Wish::default(), Vec::with_capacity(LONGEST_LINE), Tally::default());
-        Self { port, clock, reply_timeout, wish, waiting, overlong: false, tally }
+        Self { port, clock, reply_timeout, wish, waiting, overlong: false, looked: None, tally }
     }
 
     /// Waits end when this wish is to hold.
@@ -114,11 +116,23 @@ impl Talk {
         self.port.emergency().map_err(|error| lost(&error))
     }
 
+    /// Somebody looks after the line. The time since the last look is told: one that waits for an answer looks every [`SLICE`], and a
+    /// program that was stopped meanwhile does not. Gives the moment, s by the clock.
+    fn look(&mut self) -> f64 {
+        let now = self.clock.now();
+        if let Some(before) = self.looked.replace(now) {
+            self.wish.was_away(now - before);
+        }
+        safety::beat();
+        now
+    }
+
     /// Sends all the bytes.
     ///
     /// # Errors
     /// The line is gone, or the other side takes nothing.
     pub fn send(&mut self, bytes: &[u8]) -> Result<(), DeviceFault> {
+        self.look();
         self.port.write(bytes, Duration::from_secs_f64(self.reply_timeout)).map_err(|error| match error.kind() {
             ErrorKind::TimedOut | ErrorKind::WouldBlock => {
                 DeviceFault::Lost { reason: format!("it took nothing for {} s", self.reply_timeout) }
@@ -137,7 +151,7 @@ impl Talk {
             if self.interrupted() {
                 return Err(DeviceFault::Interrupted);
             }
-            let left = until - self.clock.now();
+            let left = until - self.look();
             if left.is_nan() || left < SHORTEST {
                 return Ok(());
             }
@@ -292,7 +306,7 @@ impl Talk {
             if self.interrupted() {
                 return Err(Missed::Interrupted);
             }
-            let left = deadline - self.clock.now();
+            let left = deadline - self.look();
             if left.is_nan() || left < SHORTEST {
                 return Err(Missed::TimedOut);
             }

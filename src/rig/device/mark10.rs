@@ -51,15 +51,35 @@ impl Mark10 {
         }
     }
 
+    /// Asks anew where the answer was garbled: outside of a reading nobody else does.
+    fn patiently<T>(&mut self, mut ask: impl FnMut(&mut Self) -> Result<T, DeviceFault>) -> Result<T, DeviceFault> {
+        for _ in 1..TRIES {
+            match ask(self) {
+                Err(DeviceFault::NoReading { .. }) => self.talk.tally_mut().reread += 1,
+                said => return said,
+            }
+        }
+        ask(self)
+    }
+
+    fn status(&mut self) -> Result<Status, DeviceFault> {
+        self.patiently(Self::ask_status).map(|(status, _)| status)
+    }
+
+    /// Outside of limit mode nothing stops the stand at its target. It leaves that mode where it is switched on anew or by hand.
+    fn in_limit_mode(&mut self, status: Status) -> Result<(), DeviceFault> {
+        if status.limit_mode {
+            return Ok(());
+        }
+        self.stop()?;
+        Err(DeviceFault::Rebooted { was: "limit mode".to_owned(), is: "another mode, in which no target stops it".to_owned() })
+    }
+
     /// Sends the settings until the limit is read back as it was sent. Nothing moves yet.
     fn set_limit(&mut self, settings: &[Vec<u8>], side: Side, limit: f64) -> Result<(), DeviceFault> {
-        let question = match side {
-            Side::Lower => mark10::ASK_LOWER_LIMIT,
-            Side::Upper => mark10::ASK_UPPER_LIMIT,
-        };
         for _ in 0..TRIES {
             self.talk.send(&settings.concat())?;
-            match self.ask_travel(question) {
+            match self.ask_travel(ask_limit(side)) {
                 Ok((heard, _)) if (heard - limit).abs() <= THERE => return Ok(()),
                 Ok(_) | Err(DeviceFault::NoReading { .. }) => self.talk.tally_mut().resent += 1,
                 Err(fault) => return Err(fault),
@@ -71,7 +91,7 @@ impl Mark10 {
     fn stop(&mut self) -> Result<(), DeviceFault> {
         for _ in 0..TRIES {
             self.talk.send(mark10::STOP)?;
-            if !self.ask_status()?.0.moving {
+            if !self.status()?.moving {
                 self.going = None;
                 return Ok(());
             }
@@ -84,10 +104,10 @@ impl Mark10 {
 impl Device for Mark10 {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.talk.send(mark10::READY)?;
-        if !self.ask_status()?.0.limit_mode {
+        if !self.status()?.limit_mode {
             return Err(DeviceFault::Unfit("the stand does not go into limit mode: does it have PC control?".to_owned()));
         }
-        self.sample()?;
+        self.patiently(Self::sample)?;
         Ok(stand_introduced())
     }
 
@@ -111,14 +131,21 @@ impl Device for Mark10 {
         let side = if limit.starts_with(b"g") { Side::Lower } else { Side::Upper };
         self.set_limit(&[speed.clone(), limit.clone()], side, going.targets[0])?;
         let Some(direction) = direction.first() else { return Ok(()) };
-        if !self.ask_status()?.0.limit_mode {
-            return Err(DeviceFault::Unfit("the stand left limit mode: nothing would stop it at its target".to_owned()));
-        }
+        let status = self.status()?;
+        self.in_limit_mode(status)?;
+        let there = |travel: f64| (travel - going.targets[0]).abs() <= THERE;
         self.going = Some((side, going.targets[0]));
         for _ in 0..TRIES {
             self.talk.send(direction)?;
-            if self.ask_status()?.0.moving || (self.ask_travel(mark10::ASK_TRAVEL)?.0 - going.targets[0]).abs() <= THERE {
+            let status = self.status()?;
+            self.in_limit_mode(status)?;
+            if status.moving || there(self.patiently(|stand| stand.ask_travel(mark10::ASK_TRAVEL))?.0) {
                 return Ok(());
+            }
+            // Not sent off again before its limit is known to stand.
+            if !there(self.patiently(|stand| stand.ask_travel(ask_limit(side)))?.0) {
+                self.stop()?;
+                return Err(DeviceFault::Refused { reason: "its travel limit is not the one that was read back".to_owned() });
             }
             self.talk.tally_mut().resent += 1;
         }
@@ -127,6 +154,7 @@ impl Device for Mark10 {
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         let (status, said_status) = self.ask_status()?;
+        self.in_limit_mode(status)?;
         let (travel, said_travel) = self.ask_travel(mark10::ASK_TRAVEL)?;
         self.last = Some(travel);
         let past = self.going.is_some_and(|(side, target)| match side {
@@ -174,6 +202,13 @@ fn settings(target: f64, speed: f64, side: Side) -> Option<Move> {
     let (speed_setting, speed) = mark10::speed(speed)?;
     let (limit_setting, target) = mark10::limit(side, target)?;
     Some(Move { frames: vec![speed_setting, limit_setting], targets: vec![target], speed, id: None })
+}
+
+const fn ask_limit(side: Side) -> &'static [u8] {
+    match side {
+        Side::Lower => mark10::ASK_LOWER_LIMIT,
+        Side::Upper => mark10::ASK_UPPER_LIMIT,
+    }
 }
 
 const fn direction(side: Side) -> &'static [u8] {

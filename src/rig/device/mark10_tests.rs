@@ -50,7 +50,7 @@ fn a_target_is_a_limit_that_is_read_back_before_the_stand_sets_off() {
     // A letter is lost on the way: the old limit is heard, and it is set again.
     script.on("e0600.0h002.50", "").on("v", "300.00").on("e0600.0h002.50", "").on("v", "2.50");
     // The first `u` is not heard either.
-    script.on("p", "SL").on("u", "").on("p", "SL").on("x", "1.00").on("u", "").on("p", "UL");
+    script.on("p", "SL").on("u", "").on("p", "SL").on("x", "1.00").on("v", "2.50").on("u", "").on("p", "UL");
     stand.start(&going).unwrap();
     script.done();
     let down = stand.encode(&[-0.001], 0.01).unwrap();
@@ -70,8 +70,8 @@ fn it_never_sets_off_with_another_limit_or_outside_limit_mode() {
         script.on("e0600.0h002.00", "").on("v", "20.00");
     }
     assert!(matches!(stand.start(&going), Err(DeviceFault::Refused { .. })));
-    script.on("e0600.0h002.00", "").on("v", "2.00").on("p", "SM");
-    assert!(matches!(stand.start(&going), Err(DeviceFault::Unfit(_))));
+    script.on("e0600.0h002.00", "").on("v", "2.00").on("p", "SM").on("s", "").on("p", "SM");
+    assert!(matches!(stand.start(&going), Err(DeviceFault::Rebooted { .. })));
     script.done();
     let (talk, mut script) = line();
     script.on("ilo", "").on("p", "SM");
@@ -87,6 +87,41 @@ fn a_stand_past_its_limit_is_stopped() {
     script.on("p", "UL").on("x", "2.10").on("s", "").on("p", "SL");
     assert!(matches!(stand.sample(), Err(DeviceFault::Unfit(_))));
     script.done();
+}
+
+/// It was switched off and on between the last look and the letter that sends it: nothing stops it at a target any more.
+#[test]
+fn a_stand_that_left_limit_mode_is_stopped_and_never_sent_off_again() {
+    let left = |fault: DeviceFault| assert!(matches!(fault, DeviceFault::Rebooted { .. }), "{fault}");
+    let (mut stand, mut script) = opened();
+    let going = stand.encode(&[0.002], 0.01).unwrap();
+    script.on("e0600.0h002.00", "").on("v", "2.00").on("p", "SL").on("u", "").on("p", "SM").on("s", "").on("p", "SM");
+    left(stand.start(&going).unwrap_err());
+    script.done();
+    for status in ["UM", "SM", "UC"] {
+        let (mut stand, mut script) = opened();
+        script.on("e0600.0h002.00", "").on("v", "2.00").on("p", "SL").on("u", "").on("p", "UL");
+        stand.start(&going).unwrap();
+        script.on("p", status).on("s", "").on("p", "SM");
+        left(stand.sample().unwrap_err());
+        script.done();
+    }
+    // Its limits were forgotten, and its mode was not.
+    let (mut stand, mut script) = opened();
+    script.on("e0600.0h002.00", "").on("v", "2.00").on("p", "SL").on("u", "").on("p", "SL").on("x", "0.00").on("v", "300.00");
+    script.on("s", "").on("p", "SL");
+    assert!(matches!(stand.start(&going), Err(DeviceFault::Refused { .. })));
+    script.done();
+}
+
+#[test]
+fn a_garbled_answer_outside_of_a_reading_is_asked_for_again() {
+    let (mut stand, mut script) = opened();
+    let going = stand.encode(&[0.002], 0.01).unwrap();
+    script.on("e0600.0h002.00", "").on("v", "2.00").on("p", "L").on("p", "SL").on("u", "").on("p", "D").on("p", "UL");
+    stand.start(&going).unwrap();
+    script.done();
+    assert_eq!(stand.tally().reread, 2);
 }
 
 #[test]

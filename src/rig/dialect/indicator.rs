@@ -6,6 +6,8 @@ use super::number;
 /// Asks for one line, where the indicator does not send by itself.
 pub const READ: &[u8] = b"READ\r\n";
 
+/// Of every value, its sign and blanks before it included.
+const PLACES: usize = 8;
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
 
@@ -52,6 +54,10 @@ pub fn weight(line: &[u8]) -> Result<Weight, &'static str> {
         return Err("neither gross nor net");
     }
     let newtons = newtons_per(trimmed(unit)).ok_or("not in kg, g, t, lb, N or kN")?;
+    // A line from which a digit was lost is as long as no weight is.
+    if value.len() != PLACES && !status.is_out_of_range() {
+        return Err("its value has not the 8 places of a weight");
+    }
     let force = number::fixed(without_blanks_before(value)).map(|value| value * newtons);
     if force.is_none() && !status.is_out_of_range() {
         return Err("its value is no number");
@@ -112,7 +118,7 @@ mod tests {
         assert_eq!(status(b"US,GS,+0001234,kg"), Status::Unstable);
         assert_eq!(weight(b"OL,GS,--------,kg"), Ok(Weight { status: Status::Overload, force: None }));
         assert_eq!(weight(b"UL,GS,        ,kg"), Ok(Weight { status: Status::Underload, force: None }));
-        assert!(status(b"OL,GS,+0001234,kg").is_out_of_range() && !status(b"ST,GS,1,kg").is_out_of_range());
+        assert!(status(b"OL,GS,+0001234,kg").is_out_of_range() && !status(b"ST,GS,       1,kg").is_out_of_range());
     }
 
     #[test]
@@ -122,7 +128,9 @@ mod tests {
             "ST,GS,1",
             "ST,GS,1,kg,",
             "ST,GS,1,5,kg",
-            "ST,GS,nan,kg",
+            "ST,GS,     nan,kg",
+            "ST,GS,+003.49,kg",
+            "ST,GS,+00001234,kg",
             "ST,GS,OVL,kg",
             "ST,GS,,kg",
             "ST,GS,+ 12,kg",

@@ -2,6 +2,7 @@
 //! judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
+mod halt;
 mod heard;
 mod motion;
 mod open;
@@ -12,13 +13,14 @@ mod validity;
 mod way;
 
 use crate::mechanics::path::Path;
-use crate::plan::{Calibration, Limits, ReadingRules, RealLink, Settle};
+use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
 
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
-use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig, RigFault, Tally, Wish};
 pub use heard::ReadBack;
+pub use open::commands_only;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -43,6 +45,8 @@ pub struct RealRig {
     proposed: Option<Proposed>,
     /// Where it has settled, m; None while it is on its way, and where nobody waited for it to settle.
     settled: Option<Vec<f64>>,
+    /// Of each axis when the dwell in which it settled began, s, and the median force of it, N.
+    rested: Vec<Option<(f64, f64)>>,
     /// Mean speed of the last move as it was seen, m/s.
     seen_speed: Option<f64>,
     reread: u64,
@@ -50,6 +54,10 @@ pub struct RealRig {
     untrusted: Option<String>,
     /// The words that hold it found no ear: only those that need no answer are left.
     deaf: bool,
+    /// Why they found none.
+    unheard: String,
+    /// Where readings are shown as they come.
+    live: Live,
 }
 
 /// One actuator with its load cell.
@@ -66,6 +74,10 @@ struct Axis {
     outside: bool,
     /// Between the farthest places of the last path, m; 0 where a move came after it.
     span: f64,
+    /// Between where it set off and where it was sent, with what a ram may overshoot, m; None where it follows a path.
+    way: Option<Interval>,
+    /// The last reading on the way was off it.
+    off: bool,
 }
 
 /// A move that was offered and not yet sent.
@@ -83,6 +95,12 @@ impl RealRig {
     #[must_use]
     pub const fn trusted(&self) -> bool {
         self.untrusted.is_none()
+    }
+
+    /// Where its readings are to be seen as they come, on the way too.
+    #[must_use]
+    pub fn live(&self) -> Live {
+        self.live.clone()
     }
 
     /// Whether its displacement is what was commanded and nothing measures it.
@@ -235,12 +253,12 @@ impl Rig for RealRig {
 
     /// Says so, and where that finds no ear sends what needs no answer.
     fn hold(&mut self) {
-        self.wish.heed();
-        (self.proposed, self.settled) = (None, None);
-        if self.deaf || self.actuator.hold().is_err() {
-            self.deaf = true;
-            safety::hold_everything();
-        }
+        // Whether it was heard is told at the end of the run.
+        let _ = self.tell_to_hold();
+    }
+
+    fn halt(&mut self) -> Option<Halted> {
+        Some(self.held_for_good())
     }
 
     fn own_speed(&self) -> Option<f64> {
@@ -275,6 +293,10 @@ impl Rig for RealRig {
 #[cfg(test)]
 mod disturbed_tests;
 #[cfg(test)]
+mod halt_tests;
+#[cfg(test)]
 mod speed_tests;
+#[cfg(test)]
+mod straying_tests;
 #[cfg(test)]
 mod tests;

@@ -3,10 +3,19 @@
 
 use super::poll::Point;
 use super::settle::Settling;
-use super::{Part, Proposed, RealRig};
+use super::{Axis, Part, Proposed, RealRig};
+use crate::plan::Interval;
+use crate::quantity::{Dimension, display};
 use crate::rig::device::SLICE;
 use crate::rig::failpoint::{Guarding, on};
-use crate::rig::{LimitedQuantity, RigFault, named_axis};
+use crate::rig::{LimitedQuantity, Reading, RigFault, named_axis, who};
+
+/// How far off its way an axis may be before it is held: so many settle bands, and this share of the farthest way. A servo passes
+/// its target by less, and the axis of a neighbour that moves is moved by less.
+const BESIDE_BANDS: f64 = 2.0;
+const BESIDE_WAY: f64 = 0.25;
+/// Standard deviations of the noise between two readings of the same force that no chance brings.
+const LEAP: f64 = 6.0;
 
 impl RealRig {
     /// Sends the offered move and waits until settled.
@@ -42,7 +51,10 @@ impl RealRig {
             }
             let readings = settling.iter_mut().zip(point.displacement.iter().zip(&point.force));
             let met: Vec<bool> = readings.map(|(axis, (x, force))| axis.met(now, *x, *force, steady)).collect();
-            let Some(unmet) = met.iter().position(|met| !met) else { return Ok(rested.unwrap_or(now)) };
+            let Some(unmet) = met.iter().position(|met| !met) else {
+                self.rested = settling.iter().map(Settling::rested).collect();
+                return Ok(rested.unwrap_or(now));
+            };
             if now - rested.unwrap_or(arrival) > self.settle.timeout {
                 return match (rested, astray) {
                     (Some(_), Some(axis)) if on(Guarding::Following) => Err(self.following(axis, &point, targets)),
@@ -80,7 +92,26 @@ impl RealRig {
                 RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high, axis: named_axis(place, count) }
             }));
         }
-        found.map_or(Ok(()), Err)
+        found.map_or_else(|| self.stays_on_its_way(point), Err)
+    }
+
+    /// An axis that goes where nobody sent it is held before it is there: a target may have been heard wrong, a limit forgotten.
+    /// One reading alone may be a spike.
+    fn stays_on_its_way(&mut self, point: &Point) -> Result<(), RigFault> {
+        let count = self.axes.len();
+        for (place, axis) in self.axes.iter_mut().enumerate() {
+            let at = point.displacement[place];
+            let Some(way) = axis.way.filter(|way| !way.contains(at)) else {
+                axis.off = false;
+                continue;
+            };
+            if std::mem::replace(&mut axis.off, true) && on(Guarding::Straying) {
+                let shown = |place| display::plain(place, Dimension::LENGTH, 6);
+                let (who, at, low, high) = (who(named_axis(place, count)), shown(at), shown(way.low), shown(way.high));
+                return Err(RigFault::Device(format!("{who} went off its way: it is at {at}, not within {low} .. {high}")));
+            }
+        }
+        Ok(())
     }
 
     /// Waits without asking anything.
@@ -109,6 +140,11 @@ impl RealRig {
         }
         self.look_up()?;
         let farthest = targets.iter().zip(&from).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+        let beside = BESIDE_BANDS * self.settle.band + BESIDE_WAY * farthest;
+        for (axis, (to, from)) in self.axes.iter_mut().zip(targets.iter().zip(&from)) {
+            let way = Interval { low: to.min(*from) - beside, high: to.max(*from) + beside };
+            (axis.way, axis.off) = (Some(way), false);
+        }
         Ok((targets, farthest / going.speed))
     }
 
@@ -116,6 +152,20 @@ impl RealRig {
     pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Disturbed> {
         let astray = first_astray(&Settling::of(self.settle, targets), point);
         (astray.is_some() || point.moving == Some(true) || point.unsettled).then_some(Disturbed { astray })
+    }
+
+    /// Whether the force of a reading is none that the dwell before it leads to: further from the median of that dwell than noise, and a
+    /// force that changes as fast as settling allows, can bring it. Most readings of one median may have lost a digit on the line.
+    pub(super) fn leaps(&self, reading: &Reading) -> bool {
+        let (now, rate) = (self.clock.now(), self.settle.force_rate);
+        let leaps = |axis: &Axis, rested: Option<(f64, f64)>, force: f64| {
+            rested.is_some_and(|(began, before)| {
+                let allowed = LEAP * axis.rules.noise + rate * (now - began);
+                axis.rules.noise > 0.0 && rate > 0.0 && (force - before).abs() > allowed
+            })
+        };
+        let read = self.rested.iter().zip(&reading.force);
+        on(Guarding::Leap) && self.axes.iter().zip(read).any(|(axis, (rested, force))| leaps(axis, *rested, *force))
     }
 
     /// It says that it has arrived, and the axis at this place stands elsewhere.

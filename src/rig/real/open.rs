@@ -6,7 +6,7 @@ use super::{Axis, Part, RealRig, degrees_of_freedom};
 use crate::plan::{Behind, DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
 use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::port::Clock;
-use crate::rig::{Identity, Rig as _, RigFault, Wish, named_axis};
+use crate::rig::{Identity, Live, Rig as _, RigFault, Wish, named_axis};
 
 impl RealRig {
     /// Asks both devices who they are, tells them the limits, and reads once.
@@ -36,16 +36,21 @@ impl RealRig {
             heard: began,
             proposed: None,
             settled: None,
+            rested: Vec::new(),
             seen_speed: None,
             reread: 0,
             untrusted: None,
             deaf: false,
+            unheard: String::new(),
+            live: Live::default(),
             link,
         };
         rig.meet()?;
         rig.count_axes()?;
         rig.narrow()?;
         rig.heard = rig.clock.now();
+        // One device was not looked at while another was met.
+        let _ = rig.wish.take_absence();
         if rig.poll()?.moving == Some(true) {
             rig.hold();
             return Err(RigFault::Device("it was moving before it was told to: held".to_owned()));
@@ -136,12 +141,15 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
         judge: Judge::of_axis(named_axis(place, count)),
         outside: false,
         span: 0.0,
+        way: None,
+        off: false,
     };
     (0..count).map(axis).collect()
 }
 
 /// Whether nothing measures where the actuator is.
-pub(super) const fn commands_only(link: &RealLink) -> bool {
+#[must_use]
+pub const fn commands_only(link: &RealLink) -> bool {
     matches!(link.actuator.dialect, Dialect::Grbl)
 }
 

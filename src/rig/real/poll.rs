@@ -35,13 +35,17 @@ impl RealRig {
         let mut raw = Vec::new();
         let mut left = REREADS;
         loop {
+            self.come_back()?;
             let asked = self.ask(&mut raw);
             if let Err(Unusable::Fault(fault)) = asked {
                 return Err(fault);
             }
             self.look_up()?;
             match asked {
-                Ok(point) => return Ok(Point { raw, ..point }),
+                Ok(point) => {
+                    self.live.show(&point.displacement, &point.force);
+                    return Ok(Point { raw, ..point });
+                }
                 Err(Unusable::AskAgain(_)) if left > 0 => {
                     left -= 1;
                     self.reread += 1;
@@ -58,9 +62,11 @@ impl RealRig {
         let targets = self.settled.clone().filter(|_| on(Guarding::Settling) && on(Guarding::Following));
         loop {
             let (points, disturbed) = self.readings_at(targets.as_deref())?;
-            let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some()) else {
-                return Ok(self.reading_of(points, began));
+            let reading = self.reading_of(points, began);
+            let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some() || self.leaps(&reading)) else {
+                return Ok(reading);
             };
+            self.reread += u64::from(disturbed.is_none());
             let now = self.clock.now();
             if now - began > self.settle.timeout {
                 return Err(self.unsettled(disturbed.and_then(|disturbed| disturbed.astray)));
@@ -113,12 +119,24 @@ impl RealRig {
         (1.0 / self.link.readings.rate).min(self.link.watchdog / 4.0)
     }
 
-    /// The devices were heard, or should have been. Longer ago than the watchdog, and the rig holds by itself by now:
-    /// what it does is not what the program thinks.
-    pub(super) fn look_up(&mut self) -> Result<(), RigFault> {
+    /// The devices are asked again after whatever else was done.
+    fn come_back(&mut self) -> Result<(), RigFault> {
         let now = self.clock.now();
         let away = now - std::mem::replace(&mut self.heard, now);
+        self.not_away(away)
+    }
+
+    /// The devices were heard, or asked again and again: what counts is how long nobody looked after a line meanwhile.
+    pub(super) fn look_up(&mut self) -> Result<(), RigFault> {
+        self.heard = self.clock.now();
         safety::beat();
+        let away = self.wish.take_absence();
+        self.not_away(away)?;
+        if self.wish.wants_hold() { Err(RigFault::Interrupted) } else { Ok(()) }
+    }
+
+    /// Away for longer than the watchdog, s, and the rig holds by itself by now: what it does is not what the program thinks.
+    fn not_away(&self, away: f64) -> Result<(), RigFault> {
         if on(Guarding::Away) && (away.is_nan() || away > self.link.watchdog) {
             return Err(RigFault::Device(format!(
                 "the program was away for {away:.1} s: nothing went between it and the rig for longer than the watchdog's \
@@ -126,7 +144,7 @@ impl RealRig {
                 self.link.watchdog
             )));
         }
-        if self.wish.wants_hold() { Err(RigFault::Interrupted) } else { Ok(()) }
+        Ok(())
     }
 
     fn ask(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Point, Unusable> {

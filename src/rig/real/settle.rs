@@ -3,6 +3,7 @@
 
 use std::collections::VecDeque;
 
+use super::poll::representative;
 use crate::plan::Settle;
 
 /// Readings of the last dwell, all in position.
@@ -28,6 +29,12 @@ impl Settling {
     /// Whether `displacement` (m) is in position. A zero band asks for nothing.
     pub(super) fn in_position(&self, displacement: f64) -> bool {
         self.settle.band == 0.0 || (displacement - self.target).abs() <= self.settle.band
+    }
+
+    /// When the dwell began, s, and the median force of it, N; None before any reading of it.
+    pub(super) fn rested(&self) -> Option<(f64, f64)> {
+        let began = self.window.front()?.0;
+        Some((began, representative(self.window.iter().map(|(_, force)| *force).collect())))
     }
 
     /// One more reading at `time` (s); `steady`: the device is at rest and says nothing against its reading. Gives

@@ -13,6 +13,7 @@ impl RealRig {
     /// was on the line is left out.
     pub(super) fn follow(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         self.proposed = None;
+        self.axes.iter_mut().for_each(|axis| axis.way = None);
         if let Some(reason) = &self.untrusted {
             return Err(RigFault::Device(format!("not moved any more: {reason}")));
         }
