@@ -88,7 +88,7 @@ fn held(heard: bool) -> (Recorded, Vec<u8>) {
 #[test]
 fn what_became_of_the_rig_plays_back() {
     for (heard, kind, told) in [
-        (true, EventKind::Held, "held at 0.2400 mm, 72.00 mN"),
+        (true, EventKind::Held, "held at 0.2400 mm, 0.07200 N"),
         (false, EventKind::NotHeld, "NOT CONFIRMED HELD (the line is gone): it may still be moving; use the emergency stop"),
     ] {
         let (recorded, bytes) = held(heard);
