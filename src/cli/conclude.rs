@@ -1,6 +1,7 @@
 //! The end of a run: verdict, results, manifest. In: what was recorded. Out: the files of the run folder. The record lies
 //! there already, whole, whatever becomes of the results.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use super::evidence::Folder;
@@ -10,9 +11,11 @@ use super::output::tell;
 use super::rehearse;
 use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
+use crate::diagnostic::excerpt::escape;
 use crate::output::{self, Listed, OutputError, Provenance, Run, Shelf};
 use crate::plan::Plan;
-use crate::record::Record;
+use crate::record::{EventKind, Outcome, Record};
+use crate::run::UNLOADING;
 use crate::run::driven::DrivenStep;
 use crate::run::tape::Recorded;
 use crate::verdict::{self, Assessment};
@@ -29,6 +32,7 @@ pub fn conclude(
     let provenance = &as_recorded(folder, plan, provenance);
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
     tell(&output::console::verdict_text(&run, settings.color));
+    tell(&how_it_stands(folder, plan, &recorded.record, settings));
     let kept = Folder::digests(folder)?.kept();
     write_made(folder, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
     let exit = Exit::from(assessment.verdict);
@@ -43,6 +47,24 @@ pub fn conclude(
             Ok(exit.max(Exit::Fault))
         }
     }
+}
+
+/// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.
+fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings) -> String {
+    if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed {
+        return String::new();
+    }
+    let last = record.events.iter().rev().find(|event| matches!(event.kind, EventKind::Held | EventKind::NotHeld));
+    let mut text = last.map_or_else(String::new, |event| match event.kind {
+        EventKind::NotHeld => format!("  {}\n", settings.paint_error(&escape(&event.text))),
+        _ => format!("  the rig: {}\n", escape(&event.text)),
+    });
+    let unloaded = record.events.iter().any(|event| event.kind == EventKind::Hold && event.text == UNLOADING);
+    if !record.procedures.is_empty() && !unloaded {
+        let folder = folder.display();
+        let _ = writeln!(text, "  to go on: psd resume {folder} --operator \"your name\" --reason \"why it stopped\"");
+    }
+    text
 }
 
 /// Puts every file that a run gives on a shelf; not the manifest, which also lists what lies beside them. A rig that a client

@@ -87,6 +87,8 @@ pub enum Failure {
     Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
     #[error("the run cannot go on: {0}")]
     Refused(#[from] crate::run::tape::Refusal),
+    #[error("not resumed, and nothing moved: {reason}")]
+    NotReleased { reason: String },
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
     Signals(std::io::Error),
 }
@@ -141,6 +143,7 @@ impl Failure {
                 RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted => Exit::Stopped,
                 RigFault::Device(_) | RigFault::Following { .. } => Exit::Fault,
             },
+            Self::NotReleased { .. } => Exit::Stopped,
             Self::File { .. }
             | Self::Output(_)
             | Self::Stdout(_)

@@ -25,6 +25,7 @@ mod provenance;
 mod real_rig;
 mod record_file;
 mod rehearse;
+mod release;
 mod report;
 mod resume;
 mod rig;

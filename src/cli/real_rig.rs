@@ -57,6 +57,7 @@ pub fn open(plan: &Plan, attendance: &Attendance, wish: &Wish, settings: Setting
     let connected = connect(&plan.rig, &plan.limits, wish)?;
     let simulated = connected.rig.identity().simulated;
     let watcher = Watcher::new(settings, attendance, plan, simulated, signals);
+    watcher.watch(connected.rig.live());
     Ok(Opened { connected, watcher })
 }
 

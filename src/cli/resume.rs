@@ -10,10 +10,11 @@ use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::{give, tell};
 use super::provenance::{BUILD, TOOLCHAIN};
+use super::real_rig::Opened;
 use super::record_file::{self, ReadRecord, journal_of};
 use super::settings::Settings;
 use super::watch::Attendance;
-use super::{plan_file, provenance, real_rig, room};
+use super::{plan_file, provenance, real_rig, release, room};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
@@ -56,7 +57,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
     let wish = Wish::default().letting_go(arguments.let_go);
     let mut opened = real_rig::open(&plan, &attendance, &wish, settings)?;
-    let resumption = settle(arguments, &plan, &link, &read.played, &mut opened.connected.rig)?;
+    let resumption = settle(arguments, &plan, &link, &read.played, &mut opened)?;
 
     // From here on the run goes on: until now the record has not changed.
     let torn = storage.truncate_to(read.recovered.whole)?;
@@ -159,14 +160,15 @@ fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
     changed.map(|name| format!("{name}: {} became {}", told(of(recorded, name)), told(of(now, name)))).collect()
 }
 
-/// Asks the rig, without moving it, what became of the last target.
+/// Asks the rig, without moving it, what became of the last target; and a person, whether it may move.
 fn settle(
     arguments: &ResumeArguments,
     plan: &Plan,
     link: &RealLink,
     played: &Played,
-    rig: &mut dyn Rig,
+    opened: &mut Opened,
 ) -> Result<ResumeBody, Failure> {
+    let (rig, watcher) = (&mut opened.connected.rig, &mut opened.watcher);
     let recorded = played.last_rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
     let assured = assured(arguments);
     tape::same_rig(&recorded.identity, &rig.identity(), &assured)?;
@@ -174,8 +176,10 @@ fn settle(
     let found = rig.read()?;
     let bands = Bands::of(&plan.rig, link);
     let decision = tape::decide(played, &RigBody::of(rig), &found, &bands, arguments.accept_relaxation)?;
+    let released = release::ask(plan, link, &found, &decision, rig, watcher)?;
     let resumption = decision.resumption(&arguments.operator, &arguments.reason, &found, played.time);
-    Ok(ResumeBody { assured, wall: real_rig::wall_clock()(), ..resumption })
+    let released = Some(released);
+    Ok(ResumeBody { assured, released, wall: real_rig::wall_clock()(), ..resumption })
 }
 
 /// What the person who resumes the run takes upon themselves.

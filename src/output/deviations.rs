@@ -30,6 +30,8 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
         let what = match event.kind {
             EventKind::LimitBreach => "Limit reached",
             EventKind::Hold => "Hold",
+            EventKind::Held => "After the stop",
+            EventKind::NotHeld => "The rig",
             EventKind::Fault => "Rig fault",
             EventKind::Mended => "Mended on the lines of the rig",
             EventKind::Resume => "Interruption",

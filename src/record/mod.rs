@@ -76,6 +76,10 @@ pub enum EventKind {
     Inspection,
     LimitBreach,
     Hold,
+    /// Where the rig holds after an early end.
+    Held,
+    /// Nobody knows whether it does.
+    NotHeld,
     Fault,
     /// What went wrong on the lines of the rig and was mended: frames sent again, replies ignored, readings taken again.
     Mended,
@@ -96,6 +100,8 @@ impl EventKind {
             Self::Inspection => "inspection",
             Self::LimitBreach => "limit breach",
             Self::Hold => "hold",
+            Self::Held => "held",
+            Self::NotHeld => "not confirmed held",
             Self::Fault => "fault",
             Self::Mended => "mended",
             Self::Remark => "remark",

@@ -20,7 +20,7 @@ pub struct Guard<'rig> {
     /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
     pub(super) settled: bool,
     /// Checked, and not yet carried out: targets, m, and the speed that the bytes say, m/s.
-    proposed: Option<(Vec<f64>, f64)>,
+    pub(super) proposed: Option<(Vec<f64>, f64)>,
     /// Of the last way, m/s.
     pub(super) speed: Option<f64>,
     /// Rig time when the rig last answered, s.

@@ -10,9 +10,12 @@ pub mod failpoint;
 mod fault_table;
 mod guard;
 mod guard_glide;
+mod guard_halt;
 mod guard_speed;
 mod guard_way;
+mod halted;
 mod holds;
+mod live;
 mod load_cell;
 mod one_or_several;
 pub mod port;
@@ -33,7 +36,9 @@ use crate::quantity::{Dimension, display};
 
 pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
+pub use halted::{Halted, place_and_force};
 pub use holds::Held;
+pub use live::{Felt, Live};
 pub use virtual_frame::VirtualFrame;
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
 pub use wish::Wish;
@@ -317,6 +322,13 @@ pub trait Rig {
 
     /// Stops all motion and keeps the load.
     fn hold(&mut self);
+
+    /// The last hold of a run that ends early, and what became of it: whether the rig was seen at rest, and where. None of a rig of
+    /// which nothing moves.
+    fn halt(&mut self) -> Option<Halted> {
+        self.hold();
+        None
+    }
 
     /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent
     /// stiffness.

@@ -15,6 +15,7 @@ const HEEDED: u8 = 3;
 pub struct Wish {
     what: Arc<AtomicU8>,
     letting_go: Arc<AtomicBool>,
+    unasked: Arc<AtomicBool>,
     /// The bits of the longest time, s, that a line was not looked at.
     absence: Arc<AtomicU64>,
 }
@@ -31,6 +32,17 @@ impl Wish {
     #[must_use]
     pub fn lets_go(&self) -> bool {
         self.letting_go.load(Ordering::SeqCst)
+    }
+
+    /// Whoever wants the end is no person at the keys: nothing is to be asked any more.
+    pub fn ask_nobody(&self) {
+        self.unasked.store(true, Ordering::SeqCst);
+    }
+
+    /// Whether a person may be asked at the end.
+    #[must_use]
+    pub fn may_ask(&self) -> bool {
+        !self.unasked.load(Ordering::SeqCst)
     }
 
     /// A line was not looked at for this long, s: nobody sent, and nobody waited for an answer.
@@ -101,6 +113,9 @@ mod tests {
         assert!(!clone.wants_hold() && clone.wants_end());
         clone.cell().store(Wish::HOLD, Ordering::SeqCst);
         assert!(wish.wants_hold(), "a second wish is a new one");
+        assert!(wish.may_ask());
+        clone.ask_nobody();
+        assert!(!wish.may_ask());
         assert!(!wish.lets_go() && Wish::default().letting_go(true).clone().lets_go());
     }
 }

@@ -25,6 +25,7 @@ mod degrees_tests;
 pub mod driven;
 #[cfg(test)]
 mod driven_tests;
+mod ending;
 mod escalate;
 #[cfg(test)]
 mod escalate_tests;
@@ -120,7 +121,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::formula::ProcedureId;
 use crate::mechanics::monitor::Tracking;
-use crate::plan::{DriftCheck, Plan, Procedure, ProcedureKind, SafeState, ZeroAfter};
+use crate::plan::{DriftCheck, Plan, Procedure, ProcedureKind, ZeroAfter};
 use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
 use inputs::Inputs;
@@ -142,6 +143,11 @@ pub trait Observer {
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
+    /// A person stopped the run, or stands at the specimen, and the plan's safe state is to unload: whether that may be. None: nobody
+    /// is asked, and the rig stays held. Asked again while it is [`Inspection::Wait`].
+    fn may_unload(&mut self, _question: &str) -> Option<Inspection> {
+        None
+    }
     /// What a person wants between two steps. Asked until it is [`Next::GoOn`].
     fn next(&mut self) -> Next {
         Next::GoOn
@@ -291,7 +297,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     }
     for procedure in &plan.procedures {
         if let Err(stop) = session.stop_if_requested() {
-            record.outcome = ended_by(&stop, plan, &mut session);
+            record.outcome = session.end_as_declared(&stop, plan);
             break;
         }
         session.enter(procedure, plan);
@@ -309,7 +315,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
             history,
         });
         if let Some(stop) = stop {
-            record.outcome = ended_by(&stop, plan, &mut session);
+            record.outcome = session.end_as_declared(&stop, plan);
             break;
         }
         session.leave();
@@ -325,16 +331,6 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
     }
     record.events = session.finish();
     record
-}
-
-/// Holds the rig, and takes the load off where that is its safe state and it is still to be trusted.
-fn ended_by(stop: &Stop, plan: &Plan, session: &mut Session<'_>) -> Outcome {
-    session.end(stop);
-    let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
-    if unload && stop.leaves_the_rig_sound() {
-        session.unload();
-    }
-    stop.outcome()
 }
 
 /// What a real rig does once it has proved itself.

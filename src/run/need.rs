@@ -37,7 +37,7 @@ const UNLOADING: f64 = 50.0;
 #[must_use]
 pub fn of(plan: &Plan) -> Need {
     let reckoner = Reckoner { plan, assumed: Assumed(plan), way: way(plan) };
-    let mut all = Counts { targets: 2.0 * reckoner.way, readings: 8.0, ..Counts::default() };
+    let mut all = Counts { targets: 2.0 * reckoner.way, readings: 10.0, ..Counts::default() };
     if plan.rig.drift.is_some() {
         // Before the test and after it, and the way back.
         all = all.plus(Counts { targets: reckoner.way, readings: 2.0 * f64::from(zero::READINGS), ..Counts::default() });

@@ -4,7 +4,7 @@
 use super::escalate::most_moves;
 use super::stop::Stop;
 use super::study::Unknown;
-use super::{AxisReport, Inspection, Next, Observer, StepReport, UNLOADING};
+use super::{AxisReport, Inspection, Next, Observer, StepReport};
 use crate::plan::{BlowOn, Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
@@ -15,7 +15,7 @@ const BREATH: f64 = 0.01;
 
 pub(super) struct Session<'run> {
     pub(super) guard: Guard<'run>,
-    observer: &'run mut dyn Observer,
+    pub(super) observer: &'run mut dyn Observer,
     events: Vec<Event>,
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
@@ -23,7 +23,9 @@ pub(super) struct Session<'run> {
     /// What a reader was told of a blow of this procedure, and after how many more of its blows it was so again.
     remarks: Vec<(String, usize)>,
     /// Where the rig was found, m.
-    home: Vec<f64>,
+    pub(super) home: Vec<f64>,
+    /// A person was asked to look, or has paused the run: somebody may stand at the specimen.
+    pub(super) attended: bool,
     /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
     /// rig, and has a watchdog as any.
     reckoned: bool,
@@ -51,7 +53,17 @@ impl<'run> Session<'run> {
         match guard {
             Ok(guard) => {
                 let home = guard.commanded().to_vec();
-                Ok(Self { guard, observer, events: Vec::new(), procedure: None, step: None, remarks: Vec::new(), home, reckoned })
+                Ok(Self {
+                    guard,
+                    observer,
+                    events: Vec::new(),
+                    procedure: None,
+                    step: None,
+                    remarks: Vec::new(),
+                    home,
+                    attended: false,
+                    reckoned,
+                })
             }
             Err(fault) => {
                 let stop = Stop::Rig(fault);
@@ -93,23 +105,6 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Records why the run ends here, with the rig held.
-    pub(super) fn end(&mut self, stop: &Stop) {
-        self.guard.hold();
-        self.event(stop.event_kind(), stop.to_string());
-        self.leave();
-    }
-
-    /// Takes the load off after a stop, inside the same limits; what stands in the way is one more event.
-    pub(super) fn unload(&mut self) {
-        self.event(EventKind::Hold, UNLOADING.to_owned());
-        let home = self.home.clone();
-        let unloaded = self.go_to_all(&home, None).and_then(|()| Ok(self.guard.read()?));
-        if let Err(stop) = unloaded {
-            self.event(stop.event_kind(), format!("not unloaded: {stop}"));
-        }
-    }
-
     pub(super) fn event(&mut self, kind: EventKind, text: String) {
         let event = Event { time: self.guard.time(), procedure: self.procedure.clone(), step: self.step, kind, text };
         self.observer.event(&event);
@@ -144,8 +139,14 @@ impl<'run> Session<'run> {
         loop {
             self.stop_if_requested()?;
             match self.observer.next() {
-                Next::GoOn => return Ok(()),
-                Next::Wait => self.breathe()?,
+                Next::GoOn => {
+                    self.attended = false;
+                    return Ok(());
+                }
+                Next::Wait => {
+                    self.attended = true;
+                    self.breathe()?;
+                }
                 Next::Record(text) => self.event(EventKind::Note, text),
             }
         }
@@ -153,13 +154,16 @@ impl<'run> Session<'run> {
 
     /// Lets a person look at the specimen; what was said, and by whom, is an event.
     pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+        self.attended = true;
         self.look_at_a_hold()?;
         loop {
             match self.observer.inspect(note) {
                 Inspection::GoOn { note: said, by } => {
                     let said = said.map_or_else(String::new, |said| format!(": {said}"));
                     self.event(EventKind::Inspection, format!("{note}{said}{}", signed(by.as_deref())));
-                    return self.look_at_a_hold();
+                    self.look_at_a_hold()?;
+                    self.attended = false;
+                    return Ok(());
                 }
                 Inspection::Stop { reason, by } => {
                     self.guard.hold();
@@ -215,7 +219,7 @@ impl<'run> Session<'run> {
     }
 
     /// A moment of a person's time. A real rig spends it where it is, and is heard from.
-    fn breathe(&mut self) -> Result<(), Stop> {
+    pub(super) fn breathe(&mut self) -> Result<(), Stop> {
         if !self.reckoned {
             self.guard.pause(BREATH)?;
         }
@@ -283,7 +287,7 @@ impl<'run> Session<'run> {
     }
 }
 
-fn signed(by: Option<&str>) -> String {
+pub(super) fn signed(by: Option<&str>) -> String {
     by.map_or_else(String::new, |name| format!(" ({name})"))
 }
 

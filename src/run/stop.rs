@@ -54,6 +54,11 @@ impl Stop {
         )
     }
 
+    /// Whether it was a person who ended the run.
+    pub(super) const fn is_a_persons(&self) -> bool {
+        matches!(self, Self::Person { .. } | Self::Rig(RigFault::Interrupted))
+    }
+
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,

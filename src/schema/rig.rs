@@ -136,7 +136,7 @@ pub(super) const RIG: BlockKind = BlockKind {
             "safe_state",
             &[
                 Variant::word("hold", "stops and keeps the load"),
-                Variant::word("unload", "holds, then goes back to where the run began, if rig and readings are still trusted"),
+                Variant::word("unload", "holds; after a limit it goes back to where the run began, and where a person ended the run or stands by only when asked and told yes"),
             ],
             "what it does when a run ends early",
         )

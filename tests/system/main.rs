@@ -26,3 +26,4 @@ mod signed;
 mod stage;
 mod terminal;
 mod twice;
+mod unasked;

@@ -136,12 +136,14 @@ fn a_rig_that_is_not_there_leaves_the_record_as_it_was() {
 #[test]
 fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
     let stage = Stage::of(|plan| plan.replace("safe_state = hold", "safe_state = unload"), "");
-    let run = start(&mut stage.run_with(&["--yes"]));
+    let mut terminal = Terminal::start(&mut stage.run_with(&[]));
+    terminal.answer("go on?", "y\n");
     stage.after_moves(6);
-    signal(&run, Signal::INT);
-    let ran = finish(run);
-    assert_eq!(ran.code, Some(4), "{}", ran.told);
-    assert!(ran.told.contains("unloading to where the run began"), "{}", ran.told);
+    signal(&terminal.child, Signal::INT);
+    terminal.answer("unload?", "y\n");
+    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
+    assert!(told.contains("unloading to where the run began"), "{told}");
     let moves = stage.moves();
     assert!(moves.len() > 6 && moves.last().unwrap().ends_with(" to 0"), "{moves:?}");
     assert!(stage.proven().contains("INCOMPLETE"));

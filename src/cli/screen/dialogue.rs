@@ -19,6 +19,10 @@ pub struct Dialogue {
     /// Who answers, once it is known.
     pub operator: Option<String>,
     pub paused: bool,
+    /// The run waits, and the rig rests.
+    pub waiting: bool,
+    /// What is asked is whether the rig is to unload: the run has ended.
+    pub unload: bool,
     pub help: bool,
     /// What the run asks a person to look at.
     pub question: Option<String>,
@@ -77,7 +81,8 @@ impl Dialogue {
             interrupt(wish);
             return;
         }
-        if std::mem::take(&mut self.help) {
+        // The help closes with any key; one that it names as a way to stop also does that.
+        if std::mem::take(&mut self.help) && !matches!(key, Key::Character('h' | 'H' | 'q' | 'Q')) {
             return;
         }
         match &self.typing {
@@ -112,8 +117,9 @@ impl Dialogue {
         match key {
             Key::Character('y' | 'Y') => self.line(What::Remark { yes: true }),
             Key::Character('n' | 'N') => self.line(What::Remark { yes: false }),
-            Key::Character('q') => wish.stop_after_step(),
-            Key::Character('h') => wish.hold_now(),
+            Key::Character('q' | 'Q') if self.unload => self.no_answer(),
+            Key::Character('q' | 'Q') => wish.stop_after_step(),
+            Key::Character('h' | 'H') => wish.hold_now(),
             Key::End => self.no_answer(),
             _ => {}
         }
@@ -183,6 +189,8 @@ impl Dialogue {
         self.question = None;
         self.answer = Some(if yes {
             Inspection::GoOn { note: remark, by }
+        } else if self.unload {
+            Inspection::Stop { reason: remark.map_or_else(|| "no".to_owned(), |remark| format!("no: {remark}")), by }
         } else {
             let reason = "stopped by a person at an inspection";
             Inspection::Stop { reason: remark.map_or_else(|| reason.to_owned(), |remark| format!("{reason}: {remark}")), by }
@@ -218,19 +226,28 @@ impl Dialogue {
         Inspection::Wait
     }
 
+    /// A person stopped the run: asks whether the rig is to take the load off. None: nobody answers, and it stays held.
+    pub fn ask_to_unload(&mut self, question: &str) -> Option<Inspection> {
+        if !std::mem::replace(&mut self.unload, true) {
+            (self.question, self.answer, self.typing) = (None, None, None);
+        }
+        match self.ask(question) {
+            Inspection::Stop { by: None, .. } => None,
+            answer => Some(answer),
+        }
+    }
+
     /// What a person wants between two steps.
     pub fn next(&mut self) -> Next {
         if let Some(said) = self.said.pop_front() {
             return Next::Record(said);
         }
-        if !self.paused || self.lost {
-            return Next::GoOn;
+        self.waiting = self.paused && !self.lost && self.single == 0;
+        if self.waiting {
+            return Next::Wait;
         }
-        if self.single > 0 {
-            self.single -= 1;
-            return Next::GoOn;
-        }
-        Next::Wait
+        self.single = self.single.saturating_sub(1);
+        Next::GoOn
     }
 
     /// The terminal is gone: the run stops, and nothing is answered.
@@ -311,6 +328,52 @@ mod tests {
         type_in(&mut dialogue, "p");
         assert_eq!(dialogue.next(), Next::Record("went on by a person".to_owned()));
         assert_eq!(dialogue.next(), Next::GoOn);
+    }
+
+    #[test]
+    fn the_help_lets_the_keys_through_that_it_names_for_stopping() {
+        for (key, held) in [('h', true), ('H', true), ('q', false), ('p', false)] {
+            let wish = Wish::default();
+            let mut dialogue = Dialogue::new(None);
+            dialogue.press(Key::Character('?'), &wish);
+            dialogue.press(Key::Character(key), &wish);
+            assert_eq!((wish.wants_hold(), wish.wants_end()), (held, key != 'p'), "{key}");
+            assert!(!dialogue.help && !dialogue.paused, "any other key only closes it");
+        }
+    }
+
+    #[test]
+    fn a_pause_is_one_when_the_step_has_ended() {
+        let mut dialogue = Dialogue::new(Some("A".to_owned()));
+        type_in(&mut dialogue, "p");
+        assert!(dialogue.paused && !dialogue.waiting, "the rig still moves");
+        assert!(matches!(dialogue.next(), Next::Record(_)));
+        assert_eq!((dialogue.next(), dialogue.waiting), (Next::Wait, true));
+        type_in(&mut dialogue, "s");
+        assert_eq!((dialogue.next(), dialogue.waiting), (Next::GoOn, false), "one step moves");
+    }
+
+    #[test]
+    fn only_a_yes_with_a_name_unloads() {
+        let answered = |typed: &str| {
+            let mut dialogue = Dialogue::new(Some("A".to_owned()));
+            assert_eq!(dialogue.ask("look"), Inspection::Wait);
+            type_in(&mut dialogue, "n\n");
+            assert!(matches!(dialogue.ask("look"), Inspection::Stop { .. }));
+            assert_eq!(dialogue.ask_to_unload("unload?"), Some(Inspection::Wait));
+            type_in(&mut dialogue, typed);
+            dialogue.ask_to_unload("unload?")
+        };
+        assert!(matches!(answered("y\n"), Some(Inspection::GoOn { by: Some(_), .. })));
+        let no = Inspection::Stop { reason: "no: cracked".to_owned(), by: Some("A".to_owned()) };
+        assert_eq!(answered("ncracked\n"), Some(no));
+        for undecided in ["", "\n", "y", "x"] {
+            assert_eq!(answered(undecided), Some(Inspection::Wait), "{undecided:?}");
+        }
+        assert_eq!((answered("q"), answered("\u{4}"), answered("y\u{4}")), (None, None, None));
+        let mut dialogue = Dialogue::new(None);
+        dialogue.lose(&Wish::default());
+        assert_eq!(dialogue.ask_to_unload("unload?"), None, "nobody there");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use crate::plan::Plan;
 use crate::record::Event;
-use crate::rig::Wish;
+use crate::rig::{Live, Wish};
 use crate::run::{Inspection, Next, Observer, StepReport};
 use dialogue::Dialogue;
 use draw::View;
@@ -47,6 +47,8 @@ struct Shared {
 struct State {
     model: Model,
     dialogue: Dialogue,
+    /// Where the rig shows what it reads, on the way too.
+    live: Option<Live>,
     /// The screen is wanted, however short the run.
     wanted: bool,
     /// The run is over.
@@ -74,11 +76,16 @@ impl Screen {
     }
 
     fn start(model: Model, dialogue: Dialogue, wanted: bool, wish: Wish, color: bool) -> Self {
-        let state = State { model, dialogue, wanted, over: false, closed: false };
+        let state = State { model, dialogue, live: None, wanted, over: false, closed: false };
         let shared = Arc::new(Shared { state: Mutex::new(state), changed: Condvar::new() });
         let (theirs, their_wish) = (Arc::clone(&shared), wish.clone());
         std::thread::spawn(move || show(&theirs, &their_wish, color));
         Self { shared, wish, finished: false }
+    }
+
+    /// The numbers are those of this rig as it reads them.
+    pub fn watch(&self, live: Live) {
+        self.shared.lock().live = Some(live);
     }
 
     /// Gives the terminal back.
@@ -125,6 +132,16 @@ impl Observer for Screen {
         let answer = state.dialogue.ask(note);
         if answer == Inspection::Wait {
             // An answer, or the time for the rig to be heard from.
+            drop(self.shared.changed.wait_timeout(state, FRAME));
+        }
+        answer
+    }
+
+    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
+        let mut state = self.shared.lock();
+        self.shared.changed.notify_all();
+        let answer = state.dialogue.ask_to_unload(question);
+        if answer == Some(Inspection::Wait) {
             drop(self.shared.changed.wait_timeout(state, FRAME));
         }
         answer
@@ -188,7 +205,8 @@ fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(),
             if state.over {
                 return Ok(());
             }
-            (state.model.clone(), state.dialogue.clone())
+            let live = state.live.as_ref().and_then(Live::newest);
+            (Model { live, ..state.model.clone() }, state.dialogue.clone())
         };
         page.draw(&View { model: &model, dialogue: &dialogue, wish, elapsed: began.elapsed().as_secs(), color })?;
         // Keys are heard at once, and the next picture is drawn when its time has come.

@@ -4,10 +4,12 @@
 use std::collections::VecDeque;
 
 use super::curve::Curve;
-use crate::plan::{Interval, Limits, Plan};
+use crate::plan::{Interval, Limits, Plan, SafeState};
 use crate::quantity::Dimension;
-use crate::record::Event;
-use crate::run::StepReport;
+use crate::record::{Event, EventKind};
+use crate::rig::Felt;
+use crate::rig::real::commands_only;
+use crate::run::{StepReport, UNLOADING};
 
 /// Events kept for the screen.
 const MOST_EVENTS: usize = 32;
@@ -37,6 +39,22 @@ pub struct Model {
     pub events: VecDeque<Event>,
     /// What stands in place of a running procedure: `monitor`.
     pub by_hand: Option<&'static str>,
+    /// Nothing measures where the actuator is.
+    pub open_loop: bool,
+    /// Its safe state is to unload.
+    pub unloads: bool,
+    /// What was read last, also while nothing moves and on the way: m, N, one entry an axis.
+    pub live: Option<Felt>,
+    /// The run has ended early: what became of the rig.
+    pub ended: Option<Ended>,
+}
+
+/// What a rig does whose run has ended early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    Held,
+    NotHeld,
+    Unloading,
 }
 
 /// A procedure and how far it can go.
@@ -87,6 +105,10 @@ impl Model {
             increment: None,
             events: VecDeque::new(),
             by_hand: None,
+            open_loop: plan.rig.link.as_real().is_some_and(commands_only),
+            unloads: plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload),
+            live: None,
+            ended: None,
         }
     }
 
@@ -118,20 +140,34 @@ impl Model {
 
     /// Axes that the last step moved.
     pub fn axes(&self) -> usize {
-        self.last.as_ref().map_or(1, |last| 1 + last.others.len())
+        self.felt().len().max(1)
     }
 
     pub fn event(&mut self, event: &Event) {
         if self.events.len() == MOST_EVENTS {
             self.events.pop_front();
         }
+        match event.kind {
+            EventKind::Held => self.ended = Some(Ended::Held),
+            EventKind::NotHeld => self.ended = Some(Ended::NotHeld),
+            EventKind::Hold if event.text == UNLOADING => self.ended = Some(Ended::Unloading),
+            _ => {}
+        }
         self.events.push_back(event.clone());
+    }
+
+    /// Displacement (m) and force (N) of every axis: as read last, else at the end of the last step.
+    pub fn felt(&self) -> Vec<(f64, f64)> {
+        match &self.live {
+            Some(live) => live.displacement.iter().copied().zip(live.force.iter().copied()).collect(),
+            None => self.last.iter().flat_map(StepReport::axes).map(|(_, displacement, force)| (displacement, force)).collect(),
+        }
     }
 
     /// |command − displacement| of the last step, m; none while the rig is read on the way.
     pub fn tracking_error(&self) -> Option<f64> {
         let on_the_way = self.procedure.as_ref().is_some_and(|running| running.keyword == "damping sweep");
-        if on_the_way || self.by_hand.is_some() {
+        if on_the_way || self.by_hand.is_some() || self.open_loop {
             return None;
         }
         let errors = self.last.iter().flat_map(StepReport::axes).map(|(command, displacement, _)| (command - displacement).abs());
@@ -143,8 +179,9 @@ impl Model {
         let Limits { displacement, force, speed, increment, tracking_error, energy_error, tracking_energy_error, nrms_error } =
             self.limits;
         // Of several axes the one with the largest size.
-        let of = |value: fn((f64, f64, f64)) -> f64| {
-            let values = self.last.iter().flat_map(StepReport::axes).map(value);
+        let of = |value: fn((f64, f64)) -> f64| {
+            let felt = self.felt();
+            let values = felt.into_iter().map(value);
             values.reduce(|largest, value| if value.abs() > largest.abs() { value } else { largest })
         };
         let last = self.last.as_ref();
@@ -155,8 +192,8 @@ impl Model {
         let row = |name, dimension, limit, size, value| LimitRow { name, dimension, limit, size, kept: false, value };
         let went = last.and_then(|last| last.speed);
         [
-            row("displacement", Dimension::LENGTH, displacement, false, of(|(_, displacement, _)| displacement)),
-            row("force", Dimension::FORCE, force, false, of(|(.., force)| force)),
+            row("displacement", Dimension::LENGTH, displacement, false, of(|(displacement, _)| displacement)),
+            row("force", Dimension::FORCE, force, false, of(|(_, force)| force)),
             LimitRow { kept: true, ..row("speed", Dimension::VELOCITY, sizes(speed), true, went) },
             row("increment", Dimension::LENGTH, sizes(increment), true, self.increment),
             row("tracking error", Dimension::LENGTH, sizes(tracking_error), true, self.tracking_error()),
@@ -173,7 +210,6 @@ impl Model {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use crate::record::EventKind;
     use crate::run::testing::empty_plan;
 
     pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {

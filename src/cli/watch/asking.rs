@@ -19,6 +19,8 @@ pub struct Person {
     /// The lines typed, once anything has been asked.
     lines: Option<Receiver<String>>,
     state: State,
+    /// What is asked is whether to unload.
+    unload: bool,
 }
 
 #[derive(Default)]
@@ -35,7 +37,8 @@ impl Person {
     /// Asks, or looks for an answer to what was asked. A name once given is kept.
     pub fn ask(&mut self, note: &str, operator: &mut Option<String>) -> Inspection {
         if matches!(self.state, State::Silent) {
-            tell(&format!("\n  inspect: {}\n", escape(note)));
+            let what = if self.unload { "" } else { "inspect: " };
+            tell(&format!("\n  {what}{}\n", escape(note)));
             self.question();
         }
         let lines = self.lines.get_or_insert_with(typed_lines);
@@ -49,8 +52,24 @@ impl Person {
         }
     }
 
+    /// Asks whether a rig that a person stopped is to unload. The run has ended: the end of the input is no answer at all.
+    pub fn ask_to_unload(&mut self, question: &str, operator: &mut Option<String>) -> Option<Inspection> {
+        if !std::mem::replace(&mut self.unload, true) {
+            self.state = State::Silent;
+        }
+        match self.ask(question, operator) {
+            Inspection::Stop { by: None, .. } => None,
+            Inspection::Stop { by, .. } => Some(Inspection::Stop { reason: "no".to_owned(), by }),
+            answer => Some(answer),
+        }
+    }
+
     fn question(&mut self) {
-        tell("  go on? [y, y and a note for the record, or n to stop here] ");
+        tell(if self.unload {
+            "  unload? [y and it MOVES, n and it stays held] "
+        } else {
+            "  go on? [y, y and a note for the record, or n to stop here] "
+        });
         self.state = State::Asked;
     }
 
@@ -144,7 +163,7 @@ mod tests {
             send.send((*line).to_owned()).unwrap();
         }
         drop(send);
-        let mut person = Person { lines: Some(receive), state: State::default() };
+        let mut person = Person { lines: Some(receive), ..Person::default() };
         let mut operator = operator.map(str::to_owned);
         loop {
             match person.ask("look", &mut operator) {

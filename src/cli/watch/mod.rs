@@ -9,7 +9,7 @@ use super::screen::{self, Screen};
 use super::settings::Settings;
 use crate::plan::Plan;
 use crate::record::Event;
-use crate::rig::Wish;
+use crate::rig::{Live, Wish};
 use crate::run::{Inspection, Next, Observer, StepReport};
 use asking::Person;
 pub use asking::{next_line, typed_lines};
@@ -22,6 +22,8 @@ pub struct Watcher {
     asking: Asking,
     operator: Option<String>,
     wish: Wish,
+    /// Whether the end was wanted already when it was first asked whether to unload.
+    wanted_end: Option<bool>,
     _signals: Signals,
 }
 
@@ -93,7 +95,17 @@ impl Watcher {
             (false, false, true, _) => Asking::NobodyNeeded,
             (false, false, false, _) => Asking::Nobody,
         };
-        Self { face, asking, operator, wish, _signals: signals }
+        if !matches!(face, Face::Screen(_)) {
+            signals.told_in_lines(settings.stderr_terminal);
+        }
+        Self { face, asking, operator, wish, wanted_end: None, _signals: signals }
+    }
+
+    /// Shows the numbers of this rig as it reads them, where there is a screen.
+    pub fn watch(&self, live: Live) {
+        if let Face::Screen(screen) = &self.face {
+            screen.watch(live);
+        }
     }
 
     /// Takes screen and bar off the terminal.
@@ -151,6 +163,24 @@ impl Observer for Watcher {
                     bar.clear();
                 }
                 person.ask(note, &mut self.operator)
+            }
+        }
+    }
+
+    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
+        let wanted_end = *self.wanted_end.get_or_insert(self.wish.wants_end());
+        // Ctrl-C at this question is no yes.
+        if !self.wish.may_ask() || !wanted_end && self.wish.wants_end() {
+            return None;
+        }
+        match &mut self.asking {
+            Asking::Yes | Asking::NobodyNeeded | Asking::Nobody => None,
+            Asking::Screen => self.face().may_unload(question),
+            Asking::Person(person) => {
+                if let Face::Bar(bar) = &mut self.face {
+                    bar.clear();
+                }
+                person.ask_to_unload(question, &mut self.operator)
             }
         }
     }

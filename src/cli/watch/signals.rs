@@ -1,11 +1,13 @@
 //! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the second holds the
-//! rig now; by hand, where there are no steps, the first holds it. The signal of a file that is too large is caught too, and does nothing.
+//! rig now; by hand, where there are no steps, the first holds it. Where there is no screen that shows it, a line says so at once. The signal of a file that is too large is caught too, and does nothing.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator;
 
+use crate::cli::output::tell;
 use crate::rig::Wish;
 
 /// Signals are caught as long as this lives. Afterwards they do nothing: what a run leaves is still being written. One for all
@@ -13,6 +15,7 @@ use crate::rig::Wish;
 pub struct Signals {
     handle: iterator::Handle,
     wish: Wish,
+    told: Arc<AtomicU8>,
 }
 
 impl Signals {
@@ -29,18 +32,46 @@ impl Signals {
         let mut signals = iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
         let handle = signals.handle();
         let (wish, theirs) = (wish.clone(), wish.clone());
+        let told = Arc::new(AtomicU8::new(SILENT));
+        let tells = Arc::clone(&told);
         std::thread::spawn(move || {
-            for _ in signals.forever() {
+            for signal in signals.forever() {
+                if signal != SIGINT {
+                    theirs.ask_nobody();
+                }
                 become_wish(&theirs);
+                match tells.load(Ordering::SeqCst) {
+                    SILENT => {}
+                    ON_A_TERMINAL => tell(&format!("{CLEARED}  {}\n", said(&theirs))),
+                    _ => tell(&format!("  {}\n", said(&theirs))),
+                }
             }
         });
-        Ok(Self { handle, wish })
+        Ok(Self { handle, wish, told })
+    }
+
+    /// From here on each is answered by a line: there is no screen that would show it.
+    pub fn told_in_lines(&self, terminal: bool) {
+        self.told.store(if terminal { ON_A_TERMINAL } else { IN_A_PIPE }, Ordering::SeqCst);
     }
 
     /// What they become.
     pub const fn wish(&self) -> &Wish {
         &self.wish
     }
+}
+
+/// Whether and where signals are answered by a line.
+const SILENT: u8 = 0;
+const IN_A_PIPE: u8 = 1;
+const ON_A_TERMINAL: u8 = 2;
+
+/// Takes what stands in the line off it: a bar, or the terminal's own `^C`.
+const CLEARED: &str = "\r\u{1b}[K";
+
+/// What a signal comes to, for who sent it.
+fn said(wish: &Wish) -> &'static str {
+    if wish.wants_hold() { "holding now" } else { "stopping at the end of this step; Ctrl-C once more: hold now" }
 }
 
 /// From here on a file that may not grow any further is a write that fails, and holds the rig, not the program's end.
@@ -72,7 +103,9 @@ mod tests {
         let wish = Wish::default();
         interrupt(&wish);
         assert!(wish.wants_end() && !wish.wants_hold());
+        assert_eq!(said(&wish), "stopping at the end of this step; Ctrl-C once more: hold now");
         interrupt(&wish);
+        assert_eq!(said(&wish), "holding now");
         assert!(wish.wants_hold());
     }
 }

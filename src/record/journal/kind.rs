@@ -25,6 +25,8 @@ pub enum EntryKind {
     Operator,
     Event,
     Fault,
+    /// What became of the rig when it was told to hold for good, and where it stood then.
+    Held,
     /// What was mended on the lines of the rig by the end of the run, where anything was.
     Tally,
     /// A torn tail was put aside.
@@ -38,7 +40,7 @@ pub enum EntryKind {
 }
 
 impl EntryKind {
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Header,
         Self::Plan,
         Self::Rig,
@@ -49,6 +51,7 @@ impl EntryKind {
         Self::Operator,
         Self::Event,
         Self::Fault,
+        Self::Held,
         Self::Tally,
         Self::Recover,
         Self::Amend,
@@ -70,6 +73,7 @@ impl EntryKind {
             Self::Operator => "OPERATOR",
             Self::Event => "EVENT",
             Self::Fault => "FAULT",
+            Self::Held => "HELD",
             Self::Tally => "TALLY",
             Self::Recover => "RECOVER",
             Self::Amend => "AMEND",

@@ -79,8 +79,7 @@ fn every_wrong_setting_is_named_with_the_line_that_mends_it() {
 
 #[test]
 fn a_frame_that_is_not_at_rest_and_free_is_unfit() {
-    for (state, expected) in
-        [("Alarm", "$H"), ("Hold:0", "`--let-go`"), ("Sleep", "asleep"), ("Door:1", "door"), ("Check", "$C")]
+    for (state, expected) in [("Alarm", "$H"), ("Hold:0", "`--let-go`"), ("Sleep", "asleep"), ("Door:1", "door"), ("Check", "$C")]
     {
         let (mut device, port) = device();
         for _ in 0..3 {

@@ -149,7 +149,7 @@ pub struct Flags {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DeviceFault {
     /// The same frame was sent again and again, and nothing usable came.
-    #[error("no usable answer within {seconds} s")]
+    #[error("no usable answer within {} s", (.seconds * 100.0).round() / 100.0)]
     Silent { seconds: f64 },
     #[error("the line is gone: {reason}")]
     Lost { reason: String },

@@ -2,6 +2,7 @@
 //! judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
+mod halt;
 mod heard;
 mod motion;
 mod open;
@@ -17,8 +18,9 @@ use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle}
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
 use super::port::Clock;
-use super::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally, Wish, safety};
+use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig, RigFault, Tally, Wish};
 pub use heard::ReadBack;
+pub use open::commands_only;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -52,6 +54,10 @@ pub struct RealRig {
     untrusted: Option<String>,
     /// The words that hold it found no ear: only those that need no answer are left.
     deaf: bool,
+    /// Why they found none.
+    unheard: String,
+    /// Where readings are shown as they come.
+    live: Live,
 }
 
 /// One actuator with its load cell.
@@ -89,6 +95,12 @@ impl RealRig {
     #[must_use]
     pub const fn trusted(&self) -> bool {
         self.untrusted.is_none()
+    }
+
+    /// Where its readings are to be seen as they come, on the way too.
+    #[must_use]
+    pub fn live(&self) -> Live {
+        self.live.clone()
     }
 
     /// Whether its displacement is what was commanded and nothing measures it.
@@ -241,13 +253,12 @@ impl Rig for RealRig {
 
     /// Says so, and where that finds no ear sends what needs no answer.
     fn hold(&mut self) {
-        self.wish.heed();
-        (self.proposed, self.settled) = (None, None);
-        self.axes.iter_mut().for_each(|axis| axis.way = None);
-        if self.deaf || self.actuator.hold().is_err() {
-            self.deaf = true;
-            safety::hold_everything();
-        }
+        // Whether it was heard is told at the end of the run.
+        let _ = self.tell_to_hold();
+    }
+
+    fn halt(&mut self) -> Option<Halted> {
+        Some(self.held_for_good())
     }
 
     fn own_speed(&self) -> Option<f64> {
@@ -281,6 +292,8 @@ impl Rig for RealRig {
 
 #[cfg(test)]
 mod disturbed_tests;
+#[cfg(test)]
+mod halt_tests;
 #[cfg(test)]
 mod speed_tests;
 #[cfg(test)]

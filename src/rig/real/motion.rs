@@ -4,10 +4,10 @@
 use super::poll::Point;
 use super::settle::Settling;
 use super::{Axis, Part, Proposed, RealRig};
-use crate::rig::device::SLICE;
-use crate::rig::failpoint::{Guarding, on};
 use crate::plan::Interval;
 use crate::quantity::{Dimension, display};
+use crate::rig::device::SLICE;
+use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{LimitedQuantity, Reading, RigFault, named_axis, who};
 
 /// How far off its way an axis may be before it is held: so many settle bands, and this share of the farthest way. A servo passes

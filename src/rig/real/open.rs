@@ -6,7 +6,7 @@ use super::{Axis, Part, RealRig, degrees_of_freedom};
 use crate::plan::{Behind, DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
 use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::port::Clock;
-use crate::rig::{Identity, Rig as _, RigFault, Wish, named_axis};
+use crate::rig::{Identity, Live, Rig as _, RigFault, Wish, named_axis};
 
 impl RealRig {
     /// Asks both devices who they are, tells them the limits, and reads once.
@@ -41,6 +41,8 @@ impl RealRig {
             reread: 0,
             untrusted: None,
             deaf: false,
+            unheard: String::new(),
+            live: Live::default(),
             link,
         };
         rig.meet()?;
@@ -146,7 +148,8 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
 }
 
 /// Whether nothing measures where the actuator is.
-pub(super) const fn commands_only(link: &RealLink) -> bool {
+#[must_use]
+pub const fn commands_only(link: &RealLink) -> bool {
     matches!(link.actuator.dialect, Dialect::Grbl)
 }
 

@@ -42,7 +42,10 @@ impl RealRig {
             }
             self.look_up()?;
             match asked {
-                Ok(point) => return Ok(Point { raw, ..point }),
+                Ok(point) => {
+                    self.live.show(&point.displacement, &point.force);
+                    return Ok(Point { raw, ..point });
+                }
                 Err(Unusable::AskAgain(_)) if left > 0 => {
                     left -= 1;
                     self.reread += 1;

@@ -41,7 +41,13 @@ fn an_overshoot_and_a_single_spike_are_no_straying() {
     let mut stand = stand();
     stand.device.alter(|number, sample| {
         // A fifth too far in some readings, ten times in one.
-        let factor = if number == 20 { 10.0 } else if (30..45).contains(&number) { 1.2 } else { 1.0 };
+        let factor = if number == 20 {
+            10.0
+        } else if (30..45).contains(&number) {
+            1.2
+        } else {
+            1.0
+        };
         sample.displacement = sample.displacement.map(|at| at * factor);
         Ok(())
     });

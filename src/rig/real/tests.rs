@@ -37,7 +37,7 @@ pub(super) struct Stand {
     pub(super) rig: RealRig,
     pub(super) device: FakeDevice,
     clock: VirtualClock,
-    wish: Wish,
+    pub(super) wish: Wish,
 }
 
 fn opened(plan: &RigPlan, prepare: impl FnOnce(&FakeDevice)) -> Result<Stand, RigFault> {

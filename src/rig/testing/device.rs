@@ -37,6 +37,8 @@ pub struct Inside {
     /// Targets it was sent to, m.
     pub started: Vec<f64>,
     pub holds: u32,
+    /// It does not hear that it is to hold.
+    pub deaf: bool,
     pub narrowed: Option<Limits>,
     pub last_move: Option<LastMove>,
     /// s
@@ -70,6 +72,7 @@ impl FakeDevice {
             samples: 0,
             started: Vec::new(),
             holds: 0,
+            deaf: false,
             narrowed: None,
             last_move: None,
             time: clock.now(),
@@ -144,6 +147,9 @@ impl Device for FakeDevice {
     fn hold(&mut self) -> Result<(), DeviceFault> {
         let mut inside = self.inside();
         inside.holds += 1;
+        if inside.deaf {
+            return Err(DeviceFault::Silent { seconds: 2.805_577_968_000_001_5 });
+        }
         inside.target = inside.position;
         Ok(())
     }

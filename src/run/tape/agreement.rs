@@ -8,8 +8,8 @@ use serde::de::DeserializeOwned;
 
 use super::bytes::Bytes;
 use super::entry::{
-    AmendBody, EndBody, FaultBody, Header, IntentBody, OperatorEntry, PlanBody, RecoverBody, ResumeBody, RigBody, SampleBody,
-    StepBody, StrokeBody,
+    AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody, RecoverBody, ResumeBody, RigBody,
+    SampleBody, StepBody, StrokeBody,
 };
 use super::played::{Played, body};
 use crate::plan::Plan;
@@ -58,6 +58,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
         EntryKind::Operator => written::<OperatorEntry>(line, &[]),
         EntryKind::Event => written::<Event>(line, &[]),
         EntryKind::Fault => written::<FaultBody>(line, &[]),
+        EntryKind::Held => written::<HeldBody>(line, &[]),
         EntryKind::Tally => written::<Tally>(line, &[]),
         EntryKind::Recover => written::<RecoverBody>(line, &[]),
         EntryKind::Amend => written::<AmendBody>(line, &[]),

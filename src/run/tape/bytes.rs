@@ -1,7 +1,7 @@
-//! The bytes on record, and the numbers beside them. In: RIG, INTENT and SAMPLE records, in order. Out: why the bytes do not
+//! The bytes on record, and the numbers beside them. In: RIG, INTENT, SAMPLE and HELD records, in order. Out: why the bytes do not
 //! say what the record makes of them: every dialect is read back, bit for bit. A virtual rig has no bytes.
 
-use super::entry::{IntentBody, RigBody, SampleBody, unescaped};
+use super::entry::{HeldBody, IntentBody, RigBody, SampleBody, unescaped};
 use super::played::body;
 use crate::plan::{Dialect, Plan, RealLink};
 use crate::record::journal::{EntryKind, Line};
@@ -29,6 +29,7 @@ impl<'a> Bytes<'a> {
             EntryKind::Rig => self.introduced(&body(line).map_err(unread)?),
             EntryKind::Intent => self.sent(&body(line).map_err(unread)?),
             EntryKind::Sample => self.heard(&body(line).map_err(unread)?),
+            EntryKind::Held => self.stood(&body(line).map_err(unread)?),
             EntryKind::Stroke => {
                 self.on_the_way = false;
                 Ok(())
@@ -85,5 +86,13 @@ impl<'a> Bytes<'a> {
         let replies = replies.ok_or_else(|| "the bytes that came are not written as psd writes them".to_owned())?;
         let samples = usize::try_from(link.readings.samples.max(1)).unwrap_or(usize::MAX);
         read_back.says(&replies, samples, self.on_the_way, &sample.x, &sample.r)
+    }
+    /// Where it was held: one reading.
+    fn stood(&mut self, held: &HeldBody) -> Result<(), String> {
+        let Some((_, read_back)) = &mut self.real else { return Err("a virtual rig is not held".to_owned()) };
+        let Some((displacement, force)) = &held.found else { return Ok(()) };
+        let replies: Option<Vec<Vec<u8>>> = held.raw.iter().map(|raw| unescaped(raw)).collect();
+        let replies = replies.ok_or_else(|| "the bytes that came are not written as psd writes them".to_owned())?;
+        read_back.says(&replies, 1, true, displacement, force)
     }
 }

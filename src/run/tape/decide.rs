@@ -1,7 +1,7 @@
 //! Where a cut-off run stands, before it may go on. In: its record, and what the rig says now without having moved. Out:
 //! from which record on it is done again, or why it must not be. A target is sent again only if it never arrived.
 
-use super::entry::{Assurance, Doubt, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
+use super::entry::{Assurance, Doubt, HeldBody, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
 use super::played::{Mismatch, Played, Unplayable, body};
 use crate::mechanics::path::Path;
 use crate::plan::{RealLink, RigPlan};
@@ -49,6 +49,10 @@ pub struct Decision {
     pub doubt: Doubt,
     /// The last reading that counts: m, N.
     pub recorded: Option<(Vec<f64>, Vec<f64>)>,
+    /// Where the rig was held when the run had stopped, where that was read: m, N.
+    pub held: Option<(Vec<f64>, Vec<f64>)>,
+    /// What is sent before anything of the plan is: targets, m, and the speed of the axis with the farthest way, m/s.
+    pub sends: Option<(Vec<f64>, f64)>,
 }
 
 impl Decision {
@@ -63,6 +67,8 @@ impl Decision {
             assured: Vec::new(),
             found: (found.displacement.clone(), found.force.clone()),
             recorded: self.recorded,
+            held: self.held,
+            released: None,
             t: time,
             wall: None,
         }
@@ -206,7 +212,13 @@ pub fn decide(
     let place = Place { positions: &found.displacement, bands: &bands.displacement };
     let recorded = last_reading(&lines)?;
     let last_intent = lines.iter().rposition(|line| line.kind == EntryKind::Intent);
-    let decision = |from, doubt| Decision { from, doubt, recorded: recorded.clone() };
+    let held = last_held(played, last.seq)?;
+    let decision = |from, doubt| Decision { from, doubt, recorded: recorded.clone(), held: held.clone(), sends: None };
+    if let Some((held_at, _)) = &held {
+        // Whatever moved it since, nobody recorded: the specimen's history is another one now.
+        place.expect(held_at)?;
+        relaxed(held.as_ref(), found, bands, accept_relaxation)?;
+    }
 
     let Some(at) = last_intent else {
         // Nothing was ever sent: only readings at rest.
@@ -255,7 +267,15 @@ pub fn decide(
         _ if place.is(&target) => Doubt::Executed,
         _ => place.on_the_way(&before, &target)?,
     };
-    Ok(decision(last.seq + 1, doubt))
+    let sends = matches!(doubt, Doubt::NotExecuted | Doubt::HeldOnTheWay).then_some((target, intent.rate));
+    Ok(Decision { sends, ..decision(last.seq + 1, doubt) })
+}
+
+/// Where the rig was held for good behind the record of this number.
+fn last_held(played: &Played, last: u64) -> Result<Option<Measured>, Unplayable> {
+    let held = played.lines.iter().rev().take_while(|line| line.seq > last).find(|line| line.kind == EntryKind::Held);
+    let held: Option<HeldBody> = held.map(body).transpose()?;
+    Ok(held.filter(|held| held.doubt.is_none()).and_then(|held| held.found))
 }
 
 /// The records without what only says that the run stopped: those are said anew, or no more.
@@ -263,7 +283,7 @@ pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
     let mut lines: Vec<Line> = played.lines.iter().cloned().collect();
     while let Some(last) = lines.last() {
         match last.kind {
-            EntryKind::Fault => {}
+            EntryKind::Fault | EntryKind::Held => {}
             EntryKind::Event => {
                 let event: Event = body(last)?;
                 if event.kind == EventKind::Hold && event.text == UNLOADING {
@@ -273,6 +293,7 @@ pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
             EntryKind::Operator => match body(last)? {
                 OperatorBody::AskedToStop
                 | OperatorBody::AskedToStopInspecting
+                | OperatorBody::AnsweredToUnload { .. }
                 | OperatorBody::Answered { answer: Inspection::Stop { .. }, .. } => {}
                 OperatorBody::Answered { .. } | OperatorBody::Noted { .. } | OperatorBody::Asked { .. } => break,
             },

@@ -200,6 +200,11 @@ pub enum OperatorBody {
     AskedToStop,
     /// Ctrl-C or its like, instead of an answer at an inspection: the record alone tells the two apart.
     AskedToStopInspecting,
+    /// Asked whether the rig is to take the load off after a person had stopped the run.
+    AnsweredToUnload {
+        question: String,
+        answer: Inspection,
+    },
     /// Not a person, but the client that drives the rig.
     Asked {
         request: Request,
@@ -222,6 +227,24 @@ pub struct FaultBody {
     pub t: f64,
     pub call: Call,
     pub fault: RigFault,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall: Option<String>,
+}
+
+/// HELD: what became of the rig when it was told to hold for good. Records of older versions have none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HeldBody {
+    /// Rig time, s.
+    pub t: f64,
+    /// Why nobody knows whether it holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
+    /// Where it stood, m, and what it felt, N; none where it could not be read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub found: Option<(Vec<f64>, Vec<f64>)>,
+    /// The replies it was made of, escaped.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub raw: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }
@@ -263,6 +286,12 @@ pub struct ResumeBody {
     pub found: (Vec<f64>, Vec<f64>),
     /// As recorded last: m, N.
     pub recorded: Option<(Vec<f64>, Vec<f64>)>,
+    /// Where it held when the run had stopped, where that was read: m, N.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held: Option<(Vec<f64>, Vec<f64>)>,
+    /// Who let it move again, and with which words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub released: Option<String>,
     /// Rig time at which the record goes on, s.
     pub t: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -13,6 +13,8 @@ mod bytes;
 mod decide;
 mod entry;
 #[cfg(test)]
+mod held_tests;
+#[cfg(test)]
 mod measured;
 mod observer;
 mod older;

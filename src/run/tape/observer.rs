@@ -8,7 +8,7 @@ use super::entry::{AxisBody, OperatorBody, OperatorEntry, StepBody};
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
-use crate::run::{AxisReport, Inspection, Next, Observer, Request, StepReport};
+use crate::run::{AxisReport, Inspection, Next, Observer, Request, StepReport, UNLOADING};
 
 /// Who watches a run, with every word on record.
 pub struct TapedObserver<'run> {
@@ -164,6 +164,34 @@ impl Observer for TapedObserver<'_> {
             self.append_said(OperatorBody::Noted { text: text.clone() });
         }
         next
+    }
+
+    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
+        let playing = self.state.borrow().playing();
+        if playing {
+            let mut state = self.state.borrow_mut();
+            return match state.next_kind() {
+                Some(EntryKind::Fault) if state.front_is_pause_fault() => Some(Inspection::Wait),
+                Some(EntryKind::Operator) => match state.peek(EntryKind::Operator, question) {
+                    Ok(OperatorBody::AnsweredToUnload { question: asked, answer }) if asked == question => {
+                        state.consume();
+                        Some(answer)
+                    }
+                    _ => None,
+                },
+                // Older versions unloaded without a word.
+                Some(EntryKind::Event) => match state.peek::<Event>(EntryKind::Event, UNLOADING) {
+                    Ok(event) if event.text == UNLOADING => Some(Inspection::go_on()),
+                    _ => None,
+                },
+                _ => None,
+            };
+        }
+        let answer = self.state.borrow().goes_on().then(|| self.inner.may_unload(question)).flatten()?;
+        if answer != Inspection::Wait {
+            self.append_said(OperatorBody::AnsweredToUnload { question: question.to_owned(), answer: answer.clone() });
+        }
+        Some(answer)
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use super::entry::{AmendBody, Doubt, Header, PlanBody, ResumeBody, RigBody};
 use crate::record::journal::{EntryKind, Line, Recovered};
 use crate::record::{Event, EventKind};
-use crate::rig::Tally;
+use crate::rig::{Tally, place_and_force};
 
 /// What a journal says of its run.
 #[derive(Clone, Debug)]
@@ -124,7 +124,8 @@ impl Played {
             | EntryKind::Step
             | EntryKind::Operator
             | EntryKind::Event
-            | EntryKind::Fault => {
+            | EntryKind::Fault
+            | EntryKind::Held => {
                 self.doubt = None;
                 self.lines.push_back(line.clone());
             }
@@ -143,7 +144,8 @@ fn told(resume: &ResumeBody) -> String {
         Doubt::None => "no target was in doubt",
         Doubt::Executed => "the last target had been carried out, its reading is late",
         Doubt::NotExecuted => "the last target had not arrived and was sent",
-        Doubt::HeldOnTheWay => "the last target had been held on the way and was sent anew",
+        Doubt::HeldOnTheWay if resume.held.is_some() => "the last target had been held on the way and was sent anew",
+        Doubt::HeldOnTheWay => "the last target had not been reached and was sent anew",
         Doubt::RestOfTheWay { .. } => "a way had been cut off and was gone on with from where the rig stood",
         Doubt::Stroke { .. } => "a way had been cut off, and the rig was brought back to where it begins",
     };
@@ -154,10 +156,15 @@ fn told(resume: &ResumeBody) -> String {
         }
         _ => String::new(),
     };
+    let released = resume.released.as_ref().map_or_else(String::new, |by| format!("; released by {by}"));
+    let stood = match resume.doubt {
+        Doubt::HeldOnTheWay => format!(", from {}", place_and_force(&resume.found.0, &resume.found.1)),
+        _ => String::new(),
+    };
     let when = resume.wall.as_ref().map_or_else(String::new, |wall| format!(" at {wall}"));
     let assured = resume.assured.iter().map(|assured| assured.told());
     let said: Vec<&str> = std::iter::once(resume.reason.as_str()).chain(assured).collect();
-    format!("resumed{when} by {}: {}; {target}{relaxed}", resume.by, said.join("; "))
+    format!("resumed{when} by {}: {}; {target}{stood}{relaxed}{released}", resume.by, said.join("; "))
 }
 
 /// A record's body, typed.

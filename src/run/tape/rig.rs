@@ -4,13 +4,13 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use super::entry::{Call, Doubt, FaultBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped};
+use super::entry::{Call, Doubt, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped};
 use super::state::{State, ended};
 use super::way::Way;
 use crate::mechanics::path::Path;
 use crate::record::journal::EntryKind;
 use crate::rig::failpoint::{self, Guarding};
-use crate::rig::{DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally};
+use crate::rig::{DeclaredNoise, EachReading, Halted, Identity, LastMove, Offer, Reading, Rig, RigFault, Tally};
 
 /// A rig whose every answer is on record.
 pub struct TapedRig<'rig> {
@@ -112,6 +112,19 @@ impl<'rig> TapedRig<'rig> {
         let sample: SampleBody = state.peek(EntryKind::Sample, "a reading")?;
         state.consume();
         Ok(Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() })
+    }
+
+    /// What the guard would not have is on record too, so that the run can be played back to here.
+    fn forget_proposal(&mut self) {
+        let Some((targets, speed, offer)) = self.pending.take() else { return };
+        let playing = self.state.borrow().playing();
+        if playing {
+            if self.played_intent(&targets, speed, None).is_ok() {
+                self.state.borrow_mut().consume();
+            }
+        } else {
+            let _ = self.record_intent(&mut intent(&targets, speed, &offer, None));
+        }
     }
 
     /// The readings of a stroke, up to its end or to where it failed. How many there are where the record ends before it does.
@@ -255,20 +268,35 @@ impl Rig for TapedRig<'_> {
     }
 
     fn hold(&mut self) {
-        // What the guard would not have is on record too, so that the run can be played back to here.
-        if let Some((targets, speed, offer)) = self.pending.take() {
-            let playing = self.state.borrow().playing();
-            if playing {
-                if self.played_intent(&targets, speed, None).is_ok() {
-                    self.state.borrow_mut().consume();
-                }
-            } else {
-                let _ = self.record_intent(&mut intent(&targets, speed, &offer, None));
-            }
-        }
+        self.forget_proposal();
         if let Some(rig) = self.live.as_deref_mut() {
             rig.hold();
         }
+    }
+
+    fn halt(&mut self) -> Option<Halted> {
+        self.forget_proposal();
+        if self.state.borrow().playing() {
+            let played = self.state.borrow_mut().played_hold();
+            if let (None, Some(rig)) = (&played, self.live.as_deref_mut()) {
+                rig.hold();
+            }
+            return played.map(|HeldBody { t, doubt, found, .. }| Halted { time: t, doubt, found, raw: Vec::new() });
+        }
+        // Also where the record cannot be kept: the rig comes first. What is not on record is no part of the run.
+        let rig = self.live.as_deref_mut()?;
+        let before = rig.time();
+        let halted = rig.halt()?;
+        let time = self.state.borrow().time;
+        let offset = *self.offset.get_or_insert(time - before);
+        let halted = Halted { time: halted.time + offset, ..halted };
+        let mut state = self.state.borrow_mut();
+        let Halted { doubt, found, raw, .. } = halted.clone();
+        let raw = raw.iter().map(|raw| escaped(raw)).collect();
+        let held = HeldBody { t: halted.time, doubt, found, raw, wall: state.wall() };
+        state.append(EntryKind::Held, &held).and_then(|()| state.promise()).ok()?;
+        state.time = halted.time;
+        Some(halted)
     }
 
     fn declared_noise(&self) -> DeclaredNoise {

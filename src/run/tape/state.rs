@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
-use super::entry::{Call, Doubt, EndBody, EndOutcome, FaultBody, IntentBody, OperatorBody, RigBody};
+use super::entry::{Call, Doubt, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, RigBody};
 use super::played::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
@@ -159,6 +159,16 @@ impl State {
             // Also the last words of a record that could not be kept.
             Err(fault) => Some(fault),
         }
+    }
+
+    /// What became of the rig when it was held for good; None where the record, of an older version, does not say.
+    pub(super) fn played_hold(&mut self) -> Option<HeldBody> {
+        if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Held) {
+            return None;
+        }
+        let held = self.peek(EntryKind::Held, "where the rig was held").ok()?;
+        self.consume();
+        Some(held)
     }
 
     /// What a record that could not be kept says last. It ends the run whatever is called for, and stays.

@@ -7,7 +7,7 @@ use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
 use crate::cli::screen::dialogue::{Typing, What};
-use crate::cli::screen::model::INSPECT;
+use crate::cli::screen::model::{Ended, INSPECT};
 use crate::quantity::Dimension;
 use crate::quantity::display::{readable, significant};
 
@@ -61,24 +61,33 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
 
 /// One word for how things stand, the gravest first.
 fn state(view: &View<'_>) -> (&'static str, Color) {
-    if view.wish.wants_hold() {
+    if let Some(ended) = view.model.ended {
+        match ended {
+            Ended::Held => ("HELD", Color::Yellow),
+            Ended::NotHeld => ("NOT CONFIRMED HELD: EMERGENCY STOP", Color::Red),
+            Ended::Unloading => ("UNLOADING, THE RIG MOVES", Color::Red),
+        }
+    } else if view.wish.wants_hold() {
         ("HOLDING", Color::Red)
     } else if view.wish.wants_end() {
         ("STOPPING", Color::Red)
     } else if view.dialogue.question.is_some() {
         ("INSPECTION", Color::Yellow)
     } else if view.dialogue.paused {
-        ("PAUSED", Color::Yellow)
+        (if view.dialogue.waiting { "PAUSED" } else { "PAUSING" }, Color::Yellow)
     } else {
         (view.model.by_hand.unwrap_or("RUNNING"), Color::Green)
     }
 }
 
 fn numbers_line(view: &View<'_>, wide: bool) -> String {
-    let Some(last) = view.model.last.as_ref() else { return String::new() };
+    let felt = view.model.felt();
+    if felt.is_empty() {
+        return String::new();
+    }
     let error_word = if wide { " error" } else { "" };
     let several = view.model.axes() > 1;
-    let (highest, sum) = last.axes().fold((0.0, 0.0), |(_, sum), (_, displacement, force)| (displacement, sum + force));
+    let (highest, sum) = felt.iter().fold((0.0, 0.0), |(_, sum), (displacement, force)| (*displacement, sum + force));
     let (displacement, force) = if several { ("top floor", "base shear") } else { ("X", "R") };
     let mut words = vec![
         format!("{displacement} {}", readable(highest, Dimension::LENGTH)),
@@ -88,11 +97,14 @@ fn numbers_line(view: &View<'_>, wide: bool) -> String {
         // What the last bit of a float leaves is no error.
         let error = if error.abs() < 1e-12 { 0.0 } else { error };
         words.push(format!("tracking{error_word} {}", readable(error, Dimension::LENGTH)));
+    } else if view.model.open_loop {
+        words.push("open loop".to_owned());
     }
-    if let Some(error) = last.energy_error {
+    let last = view.model.last.as_ref();
+    if let Some(error) = last.and_then(|last| last.energy_error) {
         words.push(format!("energy{error_word} {}", percent(error)));
     }
-    if let Some(share) = last.tracking_energy_error.filter(|_| wide) {
+    if let Some(share) = last.and_then(|last| last.tracking_energy_error).filter(|_| wide) {
         words.push(format!("tracking energy {}", percent(share)));
     }
     format!(" {}", words.join("   "))
@@ -110,7 +122,13 @@ fn clock(seconds: u64) -> String {
 
 /// The last line: the keys that do something now.
 pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
-    let text = if view.wish.wants_hold() {
+    let text = if view.model.ended == Some(Ended::Unloading) {
+        " h or Ctrl-C: hold now"
+    } else if let Some(Typing { what: What::Answer, .. }) = view.dialogue.typing.as_ref().filter(|_| view.dialogue.unload) {
+        " y unload, the rig MOVES   n leave it held"
+    } else if view.model.ended == Some(Ended::Held) && view.dialogue.typing.is_none() {
+        " the rig is held"
+    } else if view.wish.wants_hold() {
         " the rig holds now"
     } else if view.wish.wants_end() {
         " stops at the end of this step   h or Ctrl-C again: hold now"

@@ -19,7 +19,9 @@ const HELP: &[&str] = &[
     "h        hold the rig now, in the middle of a step too",
     "Ctrl-C   once as q, twice as h",
     "",
-    "any key closes this",
+    "After a stop by a person the rig holds: nothing moves unasked.",
+    "",
+    "any key closes this; h, q and Ctrl-C do what they say too",
 ];
 
 /// Draws it in the middle of `charts`; where that is too low, in the middle of `whole`.
@@ -49,7 +51,18 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
     let Typing { what, text } = dialogue.typing.as_ref()?;
     let typed = format!("> {}▏", tail(&shown(text), width.saturating_sub(3)));
     let question = || shown(dialogue.question.as_deref().unwrap_or_default());
-    let title = if matches!(what, What::Note | What::NoteName { .. }) { " Note " } else { " Inspection " };
+    let unload = dialogue.unload;
+    let title = match what {
+        What::Note | What::NoteName { .. } => " Note ",
+        _ if unload => " Held ",
+        _ => " Inspection ",
+    };
+    let answer = |yes: bool| match (yes, unload) {
+        (true, true) => "Yes, unload: the rig moves.",
+        (false, true) => "No, it stays held.",
+        (true, false) => "Yes, go on.",
+        (false, false) => "No, the run ends here and the rig holds.",
+    };
     let lines = match what {
         What::Note => {
             let waits = dialogue.question.is_some().then(|| "An inspection waits until this note is done.".to_owned());
@@ -57,14 +70,24 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
             waits.into_iter().chain(rest).collect()
         }
         What::NoteName { note } => vec![shown(note), "Your name:".to_owned(), typed],
-        What::Answer => vec![question(), String::new(), "Go on?   y yes   n no, the run ends here".to_owned()],
+        What::Answer if unload => {
+            vec![question(), String::new(), "Unload?   y yes, the rig MOVES   n no, it stays held".to_owned()]
+        }
+        What::Answer => {
+            let mut lines =
+                vec![question(), String::new(), "Go on?   y yes   n no, the run ends here and the rig holds".to_owned()];
+            if view.model.unloads {
+                lines.push("After a limit on the way the rig unloads by itself; after a stop by you it holds.".to_owned());
+            }
+            lines
+        }
         What::Remark { yes } => {
-            let answer = if *yes { "Yes, go on." } else { "No, the run ends here." };
+            let answer = answer(*yes);
             let asks = format!("{answer} A remark for the record; Enter without one, Esc back:");
             vec![question(), String::new(), asks, typed]
         }
         What::AnswerName { yes, .. } => {
-            let answer = if *yes { "Yes, go on." } else { "No, the run ends here." };
+            let answer = answer(*yes);
             vec![question(), String::new(), format!("{answer} Your name; Esc back:"), typed]
         }
     };
