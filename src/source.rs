@@ -83,17 +83,19 @@ impl Sources {
         self.files.iter().enumerate().map(|(index, file)| (FileId(u32::try_from(index).unwrap_or(u32::MAX)), file))
     }
 
-    /// The text under a span.
+    /// The text under a span, in whole characters: a letter of several bytes that is read as a sign of one may hold an end of it.
     #[must_use]
     pub fn text(&self, span: Span) -> &str {
-        &self.file(span.file).text[span.range()]
+        let text = &self.file(span.file).text;
+        let start = text.floor_char_boundary(span.start as usize);
+        &text[start..text.ceil_char_boundary((span.end as usize).max(start))]
     }
 
     /// Where a span starts.
     #[must_use]
     pub fn position(&self, span: Span) -> Position {
         let text = &self.file(span.file).text;
-        let before = &text[..(span.start as usize).min(text.len())];
+        let before = &text[..text.floor_char_boundary(span.start as usize)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         Position {
             line: before.bytes().filter(|byte| *byte == b'\n').count() + 1,
@@ -112,5 +114,9 @@ mod tests {
         let file = sources.add("a.psd", "x\r\näb = 1\n");
         assert_eq!(sources.position(Span::new(file, 0, 1)), Position { line: 1, column: 1 });
         assert_eq!(sources.position(Span::new(file, 5, 6)), Position { line: 2, column: 2 });
+        // In the middle of the ä, and behind the end.
+        let inside = Span::new(file, 4, 4);
+        assert_eq!((sources.position(inside), sources.text(inside)), (Position { line: 2, column: 1 }, "ä"));
+        assert_eq!(sources.text(Span::new(file, 8, 99)), "1\n");
     }
 }

@@ -152,7 +152,7 @@ fn touches(place: Span, places: &[Span]) -> bool {
 fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
     let line = |span: Span| {
         let text = &sources.file(span.file).text;
-        let (start, end) = (span.range().start.min(text.len()), span.range().end.min(text.len()));
+        let (start, end) = (text.floor_char_boundary(span.range().start), text.floor_char_boundary(span.range().end));
         let first = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let last = text[end..].find('\n').map_or(text.len(), |newline| end + newline);
         Span::new(span.file, first, last)

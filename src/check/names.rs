@@ -65,7 +65,8 @@ impl<'a> Checker<'a> {
 
     /// What stands before a place on its line.
     fn before(&self, span: Span) -> &'a str {
-        let before = &self.sources.file(span.file).text[..span.range().start];
+        let text = &self.sources.file(span.file).text;
+        let before = &text[..text.floor_char_boundary(span.range().start)];
         before.rsplit('\n').next().unwrap_or_default()
     }
 

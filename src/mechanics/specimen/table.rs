@@ -29,8 +29,8 @@ impl RestoringForce for AlongTheCurve {
 }
 
 /// R = K (X − p), K the steepest slope of the table, between two strengths, one each way. On the first loading each way the
-/// strength is the curve g itself, which begins where it bears its elastic strength; coming back, it is the force reached there before, until the farthest point is reached
-/// again and the curve goes on. p moves only at a strength and its way, so that nothing gives back energy it did not take.
+/// strength is the curve g itself, which begins where it bears its elastic strength; coming back, it is the force reached there before,
+/// until the farthest point is reached again and the curve goes on. p moves only at a strength and its way, so that nothing gives back energy it did not take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticCurve {
     table: Table,
@@ -53,8 +53,8 @@ impl PlasticCurve {
 }
 
 /// How much the force that the elastic line lacks counts against the force of the curve: what is steeper than κ/(1 + κ) of
-/// the steepest stretch, ten elevenths, is still elastic.
-const KAPPA: f64 = 10.0;
+/// the steepest stretch, 99 %, is still elastic; so no force of a first loading is off its curve by more than 1 % of the strength.
+const KAPPA: f64 = 100.0;
 
 /// Where the curve first bears its elastic strength F_e = max(g − κ (K x − g)), m, one way. A greatest value of continuous
 /// things is continuous: points that differ by little have strengths that do.

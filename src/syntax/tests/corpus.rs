@@ -154,6 +154,21 @@ pub fn soup() -> impl Strategy<Value = String> {
     prop::collection::vec(pieces, 0..60).prop_map(|pieces| pieces.concat())
 }
 
+/// Each is read as a sign of one byte, with blanks behind it: what stands after the sign begins in the middle of the letter.
+#[test]
+fn a_letter_of_several_bytes_that_is_read_as_a_sign_ends_no_text_within_itself() {
+    for letter in ["［", "］", "（", "｛", "≤", "×", "“", "‘", "«", "…", "−", "²"] {
+        for text in [
+            letter.to_owned(),
+            format!("a {letter}"),
+            format!("let a = {letter}"),
+            format!("let a = 1 {letter}\nlet b = {letter}{letter}"),
+        ] {
+            let _ = faults(&text);
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
