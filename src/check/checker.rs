@@ -82,6 +82,8 @@ pub struct Checker<'a> {
     pub used: BTreeSet<usize>,
     /// Results of procedures that something reads, and where.
     pub read: Vec<(ResultReference, Span)>,
+    /// Entries taken of lists that the run gives, as they are counted from 0, and where.
+    pub taken: Vec<(ResultReference, usize, Span)>,
     /// The rig of the run, where it is one that moves a specimen.
     pub real_rig: Option<usize>,
     stack: Vec<Node>,
@@ -119,6 +121,7 @@ impl<'a> Checker<'a> {
             known,
             used,
             read: Vec::new(),
+            taken: Vec::new(),
             real_rig: None,
             stack,
             too_deep: false,

@@ -122,6 +122,9 @@ impl<'a> Checker<'a> {
         {
             return self.fail(values::no_such_entry(index.span, place_in_list, length));
         }
+        if let Some(reference) = list.formula.as_result() {
+            self.taken.push((reference, place_in_list, index.span));
+        }
         Some(Typed { shape: Shape::Number, formula: Formula::Index(Box::new(list.formula.clone()), place_in_list), ..list })
     }
 

@@ -1,5 +1,6 @@
 //! What is read of a `stiffness ramp`, against what its steps can bear. In: procedures, and every result that some text reads. Out: an
-//! error where the ramp never gives it (E655), a warning where few readings tell it (W722). It looks at no reading.
+//! error where the ramp never gives it (E655), a warning where few readings tell it (W722); an error where an entry is read of more
+//! cycles than a `cycle` has (E401). It looks at no reading.
 
 use std::collections::BTreeSet;
 
@@ -34,6 +35,21 @@ pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
             && few.insert(*block)
         {
             checker.faults.push(fault::few_degrees_of_freedom(&procedure.name, points, degrees, displacements, span));
+        }
+    }
+}
+
+/// Lists of a `cycle`, all of one entry for each of its cycles.
+const BY_CYCLE: [&str; 4] = ["amplitudes", "energies", "damping_ratios", "stiffnesses"];
+
+/// An entry past the last cycle, which would never come; asked for only where no error stands.
+pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    for (reference, place, span) in std::mem::take(&mut checker.taken) {
+        let Some((_, Some(procedure))) = procedures.get(reference.procedure.0) else { continue };
+        let ProcedureKind::Cycle(cycle) = &procedure.kind else { continue };
+        let cycles = cycle.levels.iter().map(|level| level.cycles as usize).sum();
+        if BY_CYCLE.contains(&reference.name) && place >= cycles {
+            checker.faults.push(fault::no_such_entry(span, place, cycles));
         }
     }
 }

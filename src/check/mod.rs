@@ -241,6 +241,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
             print::warn(checker, report);
         }
         fits::hold(checker, &procedures);
+        fits::hold_entries(checker, &procedures);
         let rule = plan_block::decision_rule(&particulars);
         guarded::warn(checker, &procedures, requirements.as_deref().unwrap_or(&[]), rule);
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), &grounds, head);

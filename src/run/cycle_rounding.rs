@@ -55,7 +55,8 @@ pub(super) fn of_loops(history: &CycleHistory, quanta: Quanta, samples: u32) -> 
     ];
     let amplitude = |cycle: &WholeCycle| {
         let mut slopes = Slopes::none(history);
-        across(history, cycle).iter().for_each(|[_, (_, of_way)]| slopes.add(of_way, 0.5));
+        let [_, (_, of_way)] = across(history, cycle)?;
+        slopes.add(&of_way, 0.5);
         Some(slopes)
     };
     let of_cycle = |(entry, cycle): (usize, &WholeCycle)| {

@@ -220,7 +220,7 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
     };
     match result {
         "last_passed_energy" | "passed" | "blows" => {
-            let (index, blow) = blows().last().filter(|(_, blow)| blow.held.is_none())?;
+            let (index, blow) = blows().next_back().filter(|(_, blow)| blow.held.is_none())?;
             let why = of((index, blow), "max_displacement").or_else(|| of((index, blow), "max_drift")).map(|growth| growth.why);
             let reason = why.map_or_else(String::new, |why| format!(": {why}"));
             Some(Growth { entries: vec![0], why: format!("{name} ended with blow {}, which decided nothing{reason}", index + 1) })
@@ -229,7 +229,7 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         "max_displacements" => by_blow("max_displacement"),
         "absorbed_energies" => by_blow("absorbed_energy"),
         "residual_displacements" => by_blow("residual_displacement"),
-        "residual_displacement" | "residual_drift" => of(blows().last()?, result),
+        "residual_displacement" | "residual_drift" => of(blows().next_back()?, result),
         "max_drift" => {
             let found: Vec<Growth> = blows().filter_map(|blow| of(blow, result)).collect();
             let why = found.first()?.why.clone();

@@ -52,6 +52,9 @@ pub fn wrong_dimension(
     wanted_by: &str,
 ) -> Diagnostic {
     let help = match (number, wanted) {
+        (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
+            format!("`g` is the gram; write `{number} gn`, as many times the standard gravity of 9.80665 m/s^2")
+        }
         (Some(_), _) => format!("write {}, such as `{}`", article(wanted), example(number, wanted)),
         (None, Dimension::NUMBER) => format!("divide `{text}` by {}, so that a number is left", article(found)),
         (None, _) => {

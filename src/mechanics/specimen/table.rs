@@ -29,7 +29,7 @@ impl RestoringForce for AlongTheCurve {
 }
 
 /// R = K (X − p), K the steepest slope of the table, between two strengths, one each way. On the first loading each way the
-/// strength is the curve g itself; coming back, it is the force reached there before, until the farthest point is reached
+/// strength is the curve g itself, which begins where it bears its elastic strength; coming back, it is the force reached there before, until the farthest point is reached
 /// again and the curve goes on. p moves only at a strength and its way, so that nothing gives back energy it did not take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticCurve {
@@ -46,19 +46,34 @@ impl PlasticCurve {
     #[must_use]
     pub fn new(table: Table) -> Self {
         let stiffness = table.initial_stiffness();
-        // As far as the curve is as steep as its steepest stretch, nothing flows.
-        let elastic_to = |way: f64| {
-            let mut ends: Vec<f64> = table.points.iter().map(|[x, _]| x * way).filter(|x| *x > 0.0).collect();
-            ends.sort_by(f64::total_cmp);
-            let straight = |end: &f64| {
-                let force = table.force(way * end).abs();
-                (force - stiffness * end).abs() <= 1e-12 * force
-            };
-            way * ends.into_iter().take_while(straight).last().unwrap_or(0.0)
-        };
+        let elastic_to = |way: f64| way * elastic_to(&table, stiffness, way);
         let farthest = [elastic_to(1.0), elastic_to(-1.0)];
         Self { table, stiffness, farthest, displacement: 0.0, force: 0.0 }
     }
+}
+
+/// How much the force that the elastic line lacks counts against the force of the curve: what is steeper than κ/(1 + κ) of
+/// the steepest stretch, ten elevenths, is still elastic.
+const KAPPA: f64 = 10.0;
+
+/// Where the curve first bears its elastic strength F_e = max(g − κ (K x − g)), m, one way. A greatest value of continuous
+/// things is continuous: points that differ by little have strengths that do.
+fn elastic_to(table: &Table, stiffness: f64, way: f64) -> f64 {
+    let mut curve: Vec<[f64; 2]> =
+        table.points.iter().map(|[x, force]| [x * way, force * way]).filter(|[x, _]| *x > 0.0).collect();
+    curve.sort_by(|one, other| one[0].total_cmp(&other[0]));
+    // Between two points it is straight: it is greatest at a point.
+    let elastic = |[x, force]: &[f64; 2]| force - KAPPA * (stiffness * x - force).max(0.0);
+    let strength = curve.iter().map(elastic).fold(0.0, f64::max);
+    let mut before = [0.0, 0.0];
+    for point in curve {
+        if strength > 0.0 && point[1] >= strength * (1.0 - 1e-12) {
+            let share = ((strength - before[1]) / (point[1] - before[1])).min(1.0);
+            return if share >= 1.0 - 1e-12 { point[0] } else { before[0] + share * (point[0] - before[0]) };
+        }
+        before = point;
+    }
+    0.0
 }
 
 impl RestoringForce for PlasticCurve {
@@ -133,6 +148,21 @@ mod tests {
         let mut elastic = AlongTheCurve { table: table(&POINTS, Unloading::AlongTheCurve) };
         let back = energy_along(&mut elastic, 0.0, &[0.005, -0.004, 0.0], 1e-7);
         assert!(back.abs() < 1e-6, "{back} J of the 6 J it took");
+    }
+
+    #[test]
+    fn the_loops_depend_continuously_on_the_points() {
+        let energy = |at_1_mm: f64| {
+            let points = [[-0.010, -3500.0], [-0.004, -3000.0], [-0.002, -2000.0], [-0.001, -at_1_mm], [0.0, 0.0]];
+            let other = [[0.001, at_1_mm], [0.002, 2000.0], [0.004, 3000.0], [0.010, 3500.0]];
+            let mut model = PlasticCurve::new(table(&[&points[..], &other[..]].concat(), Unloading::InitialStiffness));
+            energy_along(&mut model, 0.0, &[0.008, -0.008, 0.0], 1e-6)
+        };
+        let straight = energy(1000.0);
+        for off in [-10.0, -1.0, -0.01, 0.01, 1.0, 10.0] {
+            let apart = (energy(1000.0 + off) / straight - 1.0).abs();
+            assert!(apart < 0.05 * f64::abs(off), "{off} N: {apart} of {straight} J");
+        }
     }
 
     #[test]
