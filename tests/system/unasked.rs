@@ -21,14 +21,27 @@ fn slow(plan: &str) -> String {
     plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um").replace("probe(0.1 mm", "probe(0.02 mm")
 }
 
+/// Waits until this stands on the screen, which is drawn whole only when the window gets another size.
+fn drawn(terminal: &Terminal, text: &str) {
+    let mut columns = 100;
+    until(text, || {
+        columns = 210 - columns;
+        let before = terminal.shown().len();
+        terminal.resize(columns);
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        terminal.shown().get(before..).is_some_and(|shown| shown.contains(text))
+    });
+}
+
 /// At the look at the specimen, with the rig where it bends it.
 fn at_the_look(stage: &Stage, with_screen: bool) -> Terminal {
     let command = &mut stage.run_with(&[]);
     let mut terminal = if with_screen { Terminal::with_screen(command) } else { Terminal::start(command) };
     if with_screen {
-        until("the release", || terminal.shown().contains("Go on?"));
+        drawn(&terminal, "end the run here");
         terminal.press("y\r");
-        until("the look", || terminal.shown().contains("look at the specimen"));
+        until("the way to the look", || stage.moves().last().is_some_and(|last| last.ends_with(" to 0.0002")));
+        drawn(&terminal, "end the run here");
     } else {
         terminal.answer("go on?", "y\n");
         terminal.answer("look at the specimen", "");
@@ -85,16 +98,15 @@ fn a_terminal_that_dies_at_a_look_leaves_the_rig_where_it_is() {
 
 #[test]
 fn a_yes_unloads_and_the_screen_says_that_the_rig_moves() {
-    let stage = Stage::of(|plan| slow(&unloading(plan)).replace("0.8 mm step 0.1 mm", "0.2 mm step 0.1 mm"), "");
+    let stage = Stage::of(|plan| slow(&unloading(plan)).replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm"), "");
     let mut terminal = at_the_look(&stage, true);
     let moves = stage.moves().len();
     terminal.press("n\r");
-    until("the question", || terminal.shown().contains("the rig MOVES"));
-    assert!(terminal.shown().contains("HELD"), "{}", terminal.shown());
+    drawn(&terminal, "the rig MOVES");
+    drawn(&terminal, "HELD");
     assert_eq!(stage.moves().len(), moves);
     terminal.press("y\r");
-    terminal.resize(110);
-    terminal.redrawn("UNLOADING, THE RIG MOVES");
+    drawn(&terminal, "UNLOADING, THE RIG MOVES");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     assert!(stage.moves().last().unwrap().ends_with(" to 0"), "{:?}", stage.moves());
     stage.proven();
@@ -160,7 +172,7 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
         assert!(shown.contains("found at ") && shown.contains("it will move to 0.1000 mm at 0.05 mm/s"), "{shown}");
         terminal.press(no);
         assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
-        assert!(terminal.shown().contains("nothing moved"), "{}", terminal.shown());
+        until("its last words", || terminal.shown().contains("nothing moved"));
         assert_eq!(stage.moves(), moves);
         assert!(fs::read(stage.journal()).unwrap() == journal, "the record is as it was");
     }
@@ -196,12 +208,10 @@ fn the_help_does_not_swallow_a_hold_and_a_pause_is_one_when_the_rig_rests() {
     let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
     terminal.press("p");
-    terminal.resize(110);
-    terminal.redrawn("PAUSING");
+    drawn(&terminal, "PAUSING");
     assert!(!terminal.shown().contains("PAUSED"), "the rig still moves");
     terminal.press("?");
-    terminal.resize(100);
-    terminal.redrawn("any key closes this");
+    drawn(&terminal, "closes");
     terminal.press("h");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     assert_eq!(stage.moves().len(), 3, "{}", stage.log());
