@@ -117,6 +117,6 @@ mod tests {
         // In the middle of the ä, and behind the end.
         let inside = Span::new(file, 4, 4);
         assert_eq!((sources.position(inside), sources.text(inside)), (Position { line: 2, column: 1 }, "ä"));
-        assert_eq!(sources.text(Span::new(file, 8, 99)), "1\n");
+        assert_eq!(sources.text(Span::new(file, 9, 99)), "1\n");
     }
 }
