@@ -79,7 +79,8 @@ fn fitted_to_too_few(ramp: &StiffnessRamp) -> Option<(String, &'static str)> {
     };
     let count = |points: usize| if points == 1 { "1 step".to_owned() } else { format!("{points} steps") };
     if points < wanted {
-        let lacks = format!("{} bear no such fit, which takes {wanted} at least", count(points));
+        let bear = if points == 1 { "bears" } else { "bear" };
+        let lacks = format!("{} {bear} no such fit, which takes {wanted} at least", count(points));
         return Some((lacks, "take more displacements, five or more of a straight line"));
     }
     let places: Option<Vec<f64>> = ramp.displacements.iter().map(Formula::constant).collect();

@@ -285,8 +285,9 @@ fn limits_lists_the_bounds_of_every_stage() {
 #[test]
 fn a_run_whose_record_nobody_could_read_back_does_not_begin() {
     let bench = Bench::new(&[("long.psd", &changed("time_step = 10 ms", "time_step = 0.1 us"))]);
-    bench.psd(&["check", "long.psd"]).with(0);
-    let told = bench.psd(&["run", "long.psd", "--out", "long"]).with(3).stderr;
+    let told = bench.psd(&["check", "long.psd"]).with(2).stderr;
+    assert!(told.contains("E653") && told.contains("10000000 steps"), "{told}");
+    let told = bench.psd(&["run", "long.psd", "--out", "long"]).with(2).stderr;
     assert!(told.contains("none of more than 4.3 GB is read back") && told.contains("a longer `time_step`"), "{told}");
     assert!(!bench.folder.path().join("long").exists(), "nothing is left of it");
 }

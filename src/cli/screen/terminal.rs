@@ -3,6 +3,7 @@
 //! here, byte by byte, and not by a queue of events: one that hears of a new size of the window may miss the key beside it.
 
 use std::io::{BufWriter, Stderr, Write as _, stderr};
+use std::mem::ManuallyDrop;
 use std::sync::Once;
 use std::time::Duration;
 
@@ -22,7 +23,9 @@ pub struct Gone;
 
 /// Drawn on standard error: standard output may be a pipe.
 pub struct Page {
-    terminal: Terminal<CrosstermBackend<BufWriter<Stderr>>>,
+    /// Never dropped: it would print that it cannot show the cursor of a terminal that is gone, and what cannot be printed panics, which
+    /// holds the rig. [`restore`] shows the cursor.
+    terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<Stderr>>>>,
     keyboard: Keyboard,
 }
 
@@ -50,7 +53,7 @@ impl Page {
             restore();
             return Err(Gone);
         };
-        Ok(Self { terminal, keyboard: Keyboard::default() })
+        Ok(Self { terminal: ManuallyDrop::new(terminal), keyboard: Keyboard::default() })
     }
 
     pub fn draw(&mut self, view: &View<'_>) -> Result<(), Gone> {

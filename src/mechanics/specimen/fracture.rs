@@ -4,7 +4,7 @@ use super::{RestoringForce, SpecimenModel};
 use crate::plan::Breaks;
 
 /// Breaks at the first place where |X| or |R| is at least what it bears. The force is looked at along a move, and not where it
-/// ends alone: at most [`STRETCH`] of the bound apart by the initial stiffness, so that a force that rises past the bound and
+/// ends alone: at most a share `STRETCH` of the bound apart by the initial stiffness, so that a force that rises past the bound and
 /// falls back within one move is seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fracture {

@@ -60,7 +60,7 @@ const KAPPA: f64 = 100.0;
 /// things is continuous: points that differ by little have strengths that do.
 fn elastic_to(table: &Table, stiffness: f64, way: f64) -> f64 {
     let mut curve: Vec<[f64; 2]> =
-        table.points.iter().map(|[x, force]| [x * way, force * way]).filter(|[x, _]| *x > 0.0).collect();
+        table.points.iter().map(|[x, force]| [x * way, table.scale * force * way]).filter(|[x, _]| *x > 0.0).collect();
     curve.sort_by(|one, other| one[0].total_cmp(&other[0]));
     // Between two points it is straight: it is greatest at a point.
     let elastic = |[x, force]: &[f64; 2]| force - KAPPA * (stiffness * x - force).max(0.0);

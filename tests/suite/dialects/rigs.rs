@@ -154,7 +154,7 @@ impact hit {{
   duration  = {duration} ms
 }}
 
-require "stays in travel" hit.max_displacement < 9 mm
+require "is struck" hit.max_displacement > 1 mm
 "#
         )
     }
