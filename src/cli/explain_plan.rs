@@ -8,6 +8,7 @@ use super::dry_rig::{Reach, Watched};
 use super::exit::Exit;
 use super::explain_drift;
 use super::explain_shake;
+use super::explain_start;
 use super::explain_tracking;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
@@ -111,6 +112,7 @@ impl<'a> DryRun<'a> {
                 section(&format!("Specimen {}", specimen.name), rows);
             }
         }
+        section("Start", explain_start::rows(self.plan));
         section("What moves", self.motions());
         for (index, (procedure, planned)) in self.record.procedures.iter().zip(&self.plan.procedures).enumerate() {
             if let (History::Impact(history), ProcedureKind::Impact(blow)) = (&procedure.history, &planned.kind)

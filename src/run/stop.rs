@@ -10,6 +10,8 @@ use crate::rig::RigFault;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Stop {
     Rig(RigFault),
+    /// A reading outside its limit before anything was told to move.
+    AtRest(RigFault),
     /// A person said so, or asked the program to end.
     Person {
         reason: String,
@@ -37,6 +39,7 @@ impl Stop {
         let reason = self.to_string();
         match self {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
+            | Self::AtRest(_)
             | Self::Person { .. } => Outcome::Aborted { reason },
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
@@ -61,7 +64,7 @@ impl Stop {
 
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
-            Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
+            Self::Rig(RigFault::LimitBreached { .. }) | Self::AtRest(_) => EventKind::LimitBreach,
             Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
@@ -75,6 +78,11 @@ impl std::fmt::Display for Stop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Rig(fault) => write!(f, "{fault}"),
+            Self::AtRest(fault) => write!(
+                f,
+                "{fault}; nothing has moved: look for a wrong unit, scale or word order, for load on the specimen, or for a zero \
+                 that lies elsewhere (`datum`)"
+            ),
             Self::Person { reason } => f.write_str(reason),
             Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
