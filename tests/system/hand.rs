@@ -74,6 +74,25 @@ fn a_jog_goes_where_it_is_told_and_is_on_record() {
 }
 
 #[test]
+fn a_jog_counts_from_the_zero_of_the_run_that_loaded_the_specimen() {
+    let here = |plan: &str| plan.replace("safe_state = hold", "safe_state = hold\n  datum      = here");
+    let stage = Stage::of(here, "stands at 3 mm");
+    let out = wait(&mut stage.recorded_tool("jog", &["--to", "0.5 mm", "--yes"]));
+    assert!(out.code == Some(0) && out.told.contains("R 50.00 N"), "{}", out.told);
+    let loaded = stage.path("loaded");
+    std::fs::rename(stage.path("run"), &loaded).unwrap();
+    // Its limits would go with a zero that it has while it carries load.
+    let refused = wait(&mut stage.recorded_tool("jog", &["--to", "0 mm", "--yes"]));
+    assert!(refused.code == Some(2) && refused.told.contains("the specimen carries 50.00 N"), "{}", refused.told);
+    assert_eq!(stage.moves().len(), 1);
+    let back = wait(&mut stage.recorded_tool("jog", &["--datum", loaded.to_str().unwrap(), "--to", "0 mm", "--yes"]));
+    assert_eq!(back.code, Some(0), "{}", back.told);
+    let moves: Vec<String> = stage.requests().into_iter().filter(|request| request.contains(">MOVE")).collect();
+    assert!(moves.len() == 2 && moves[0].contains(" 3.500000 ") && moves[1].contains(" 3.000000 "), "{moves:?}");
+    assert!(stage.proven().contains("all 1 came out again"));
+}
+
+#[test]
 fn only_a_yes_moves_and_the_end_of_the_input_is_none() {
     let stage = Stage::new();
     for keys in ["n\n", "\n", "\u{4}", "yesterday\n"] {

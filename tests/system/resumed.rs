@@ -82,7 +82,10 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
     let held = wait(&mut stage.run_with(&["--yes"]));
     assert!(held.code == Some(3) && held.told.contains("`--let-go`"), "{}", held.told);
     let _ = fs::remove_dir_all(stage.path("run"));
-    let jog = wait(&mut stage.recorded_tool("jog", &["--to", "0 mm", "--yes", "--let-go"]));
+    // Its specimen is bent: the zero is that of the run which bent it.
+    let first = stage.path("first");
+    let back = ["--datum", first.to_str().unwrap(), "--to", "0 mm", "--yes", "--let-go"];
+    let jog = wait(&mut stage.recorded_tool("jog", &back));
     assert_eq!(jog.code, Some(0), "{}", jog.told);
     let record = fs::read_to_string(stage.journal()).unwrap();
     assert!(record.contains("what was found held was let go of where it stands (A. Tester)"), "{record}");
