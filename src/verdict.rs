@@ -15,7 +15,8 @@ use crate::uncertainty::{FEW, Known, known};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Pass,
-    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it.
+    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it; a run that
+    /// could not go on with what it found.
     Inconclusive,
     Fail,
     /// Stopped by a limit or by a person.
@@ -101,6 +102,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         plan.requirements.iter().map(|requirement| assess_requirement(requirement, rule, record)).collect();
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
+        Outcome::Blocked { .. } => Verdict::Inconclusive,
         Outcome::Completed => Verdict::Pass,
         Outcome::Aborted { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
