@@ -16,7 +16,7 @@ const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"]
 
 pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Tolerances, found: &mut Vec<Finding>) {
     let read = |text: Option<&str>| text.and_then(|text| serde_json::from_str::<Value>(text).ok());
-    let Some(was) = read(was) else {
+    let Some(was) = read(was).map(as_named_now) else {
         found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::New));
         return;
     };
@@ -25,6 +25,15 @@ pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Toleranc
         return;
     };
     Walk { tolerances, found }.value(&mut Vec::new(), &was, &is);
+}
+
+/// Versions before the verdict `completed` wrote `pass` where nothing was required.
+fn as_named_now(mut was: Value) -> Value {
+    let nothing_required = was["requirements"].as_array().is_some_and(Vec::is_empty);
+    if nothing_required && was["verdict"] == "pass" {
+        was["verdict"] = "completed".into();
+    }
+    was
 }
 
 struct Walk<'a> {
@@ -259,6 +268,27 @@ mod tests {
             now["procedures"]["hit"]["results"]["x"]["u"] = json!(1e-3 + 0.4e-9);
         });
         assert_eq!(same, Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_pass_of_an_older_version_is_completed_only_where_nothing_was_required() {
+        let compared = |was: &Value, is: &Value| {
+            let mut found = Vec::new();
+            compare(Some(&was.to_string()), Some(&is.to_string()), &Tolerances::default(), &mut found);
+            found.iter().map(|finding| finding.name.clone()).collect::<Vec<_>>()
+        };
+        let mut older = summary();
+        older["requirements"] = json!([]);
+        let mut now = older.clone();
+        now["verdict"] = json!("completed");
+        assert_eq!(compared(&older, &now), [""; 0]);
+        assert_eq!(compared(&now, &now), [""; 0]);
+        assert_eq!(compared(&now, &older), ["verdict"]);
+        now["verdict"] = json!("aborted");
+        assert_eq!(compared(&older, &now), ["verdict"]);
+        let mut completed = summary();
+        completed["verdict"] = json!("completed");
+        assert_eq!(compared(&summary(), &completed), ["verdict"]);
     }
 
     #[test]
