@@ -109,7 +109,7 @@ fn play(checked: &Checked) -> Option<(Record, Assessment)> {
 fn exit_code(played: Option<&(Record, Assessment)>) -> u8 {
     match played.map(|(_, assessment)| assessment.verdict) {
         None => 2,
-        Some(Verdict::Pass) => 0,
+        Some(Verdict::Completed | Verdict::Pass) => 0,
         Some(Verdict::Fail | Verdict::Inconclusive) => 1,
         Some(Verdict::Error) => 3,
         Some(Verdict::Aborted) => 4,
