@@ -91,6 +91,7 @@ impl<'a> DryRun<'a> {
         match self.record.outcome {
             Outcome::Completed => Exit::Met,
             Outcome::Aborted { .. } => Exit::Stopped,
+            Outcome::Blocked { .. } => Exit::Missed,
             Outcome::Faulted { .. } => Exit::Fault,
         }
     }
@@ -257,6 +258,7 @@ impl<'a> DryRun<'a> {
         match &self.record.outcome {
             Outcome::Completed => None,
             Outcome::Aborted { reason } => Some(format!("The run would be stopped{}: {}", self.stopped_in(), escape(reason))),
+            Outcome::Blocked { reason } => Some(format!("The run could not go on: {}", escape(reason))),
             Outcome::Faulted { reason } => Some(format!("The rig would fail: {}", escape(reason))),
         }
     }

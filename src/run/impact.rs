@@ -107,6 +107,7 @@ impl Setting {
             return Err(Stop::BadInput {
                 field: "time_step",
                 value: time_step,
+                dimension: Dimension::TIME,
                 wanted: format!("long enough for at most {MOST_STEPS} steps").into(),
             });
         }
@@ -147,7 +148,12 @@ pub(super) fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactL
         Contact::Restitution { coefficient } => {
             let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
             if coefficient > 1.0 {
-                return Err(Stop::BadInput { field: "restitution", value: coefficient, wanted: "at most 1".into() });
+                return Err(Stop::BadInput {
+                    field: "restitution",
+                    value: coefficient,
+                    dimension: Dimension::NUMBER,
+                    wanted: "at most 1".into(),
+                });
             }
             ContactLaw::Restitution { coefficient }
         }

@@ -176,13 +176,13 @@ pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diag
 /// A result of a run that does not unload by the name of one that does, or the other way round.
 pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Span) -> Diagnostic {
     let unloads = now.starts_with("residual");
-    let message = if unloads { "is unloaded: what is left is residual" } else { "ends under load: what is left is not residual" };
+    let message = if unloads { "takes the load off" } else { "ends under load" };
     let help = match (unloads, kind.kind) {
         (true, _) => format!("read `{now}`"),
         (false, Kind::Escalate) => format!("read `{now}`, or write `between = unload`"),
         (false, _) => format!("read `{now}`, or unload first: `unload rest {{ }}`, then `rest.{name}`"),
     };
-    Diagnostic::new(Code::UnknownResult, format!("`{name}` is called `{now}` here: the `{}` {message}", kind.words()))
+    Diagnostic::new(Code::UnknownResult, format!("`{name}` is called `{now}` here, where the `{}` {message}", kind.words()))
         .at(span, format!("the `{}` has `{now}`", kind.words()))
         .help(help)
 }

@@ -184,6 +184,7 @@ impl Hand<'_> {
             let (exit, reason) = match outcome {
                 Outcome::Completed => (Exit::Met, ""),
                 Outcome::Aborted { reason } => (Exit::Stopped, reason.as_str()),
+                Outcome::Blocked { reason } => (Exit::Missed, reason.as_str()),
                 Outcome::Faulted { reason } => (Exit::Fault, reason.as_str()),
             };
             tell(&format!("  nothing moved: {reason}\n"));
