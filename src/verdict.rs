@@ -17,7 +17,8 @@ pub enum Verdict {
     /// The run came to its end and nothing is required of it: there is nothing to pass.
     Completed,
     Pass,
-    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it.
+    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it; a run that
+    /// could not go on with what it found.
     Inconclusive,
     Fail,
     /// Stopped by a limit or by a person.
@@ -104,6 +105,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         plan.requirements.iter().map(|requirement| assess_requirement(requirement, rule, record)).collect();
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
+        Outcome::Blocked { .. } => Verdict::Inconclusive,
         Outcome::Completed => Verdict::Completed,
         Outcome::Aborted { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,

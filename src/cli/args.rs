@@ -129,6 +129,9 @@ pub struct JogArguments {
     /// Lets go of an axis that is found held, where it stands; it is recorded
     #[arg(long)]
     pub let_go: bool,
+    /// Counts places from the zero of this run, on a rig with `datum = here`
+    #[arg(long, value_name = "RUN")]
+    pub datum: Option<PathBuf>,
     /// Whose hand it is [default: the plan's `operator`]
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,

@@ -14,6 +14,7 @@ mod explain;
 mod explain_drift;
 mod explain_plan;
 mod explain_shake;
+mod explain_start;
 mod explain_tracking;
 mod fmt;
 mod issue;

@@ -4,8 +4,8 @@
 use serde_json::{Map, Value};
 
 use super::finding::{Change, Finding, Part};
-use super::number;
 use super::tolerance::{Rule, Tolerances};
+use super::{number, older};
 use crate::quantity::{Dimension, unit};
 
 /// What tells which run it was, by which program and on which day's machine.
@@ -15,8 +15,8 @@ const NOT_COMPARED: &[&str] = &["run_id", "psd", "plan.sha256", "rig.firmware", 
 const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"];
 
 pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Tolerances, found: &mut Vec<Finding>) {
-    let read = |text: Option<&str>| text.and_then(|text| serde_json::from_str::<Value>(text).ok());
-    let Some(was) = read(was).map(as_named_now) else {
+    let read = |text: Option<&str>| text.and_then(|text| older::summary(text).ok());
+    let Some(was) = read(was) else {
         found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::New));
         return;
     };
@@ -25,15 +25,6 @@ pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Toleranc
         return;
     };
     Walk { tolerances, found }.value(&mut Vec::new(), &was, &is);
-}
-
-/// Versions before the verdict `completed` wrote `pass` where nothing was required.
-fn as_named_now(mut was: Value) -> Value {
-    let nothing_required = was["requirements"].as_array().is_some_and(Vec::is_empty);
-    if nothing_required && was["verdict"] == "pass" {
-        was["verdict"] = "completed".into();
-    }
-    was
 }
 
 struct Walk<'a> {

@@ -130,7 +130,7 @@ pub struct RecordSummary {
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OutcomeSummary {
-    #[schemars(extend("enum" = ["completed", "aborted", "faulted"]))]
+    #[schemars(extend("enum" = ["completed", "aborted", "blocked", "faulted"]))]
     pub kind: &'static str,
     pub reason: Option<String>,
 }

@@ -133,7 +133,7 @@ impl Rebuilt {
                 Finding::wrong("targets", "the run came to its end, and the record has none".to_owned())
             }
             (None, _) if ended => Finding::wrong("targets", "the record has an end that the run does not come to".to_owned()),
-            (None, Outcome::Aborted { reason } | Outcome::Faulted { reason }) => {
+            (None, Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason }) => {
                 let told = if reason.contains("INCOMPLETE") { reason.clone() } else { format!("INCOMPLETE: {reason}") };
                 Finding::sound("targets", format!("{}; {told}{built}", again()))
             }

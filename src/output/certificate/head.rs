@@ -12,7 +12,9 @@ use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 pub(super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),
-        Outcome::Aborted { reason } | Outcome::Faulted { reason } => format!(" Reason: {}.", reason.trim_end_matches('.')),
+        Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason } => {
+            format!(" Reason: {}.", reason.trim_end_matches('.'))
+        }
     };
     Stated { name: run.assessment.verdict.name(), text: (sentence(run) + &reason).into() }
 }
@@ -27,6 +29,9 @@ fn sentence(run: &Run<'_>) -> String {
         Verdict::Completed => "The plan states no requirement: nothing was decided.".to_owned(),
         Verdict::Pass if all.len() == 1 => "The requirement is met.".to_owned(),
         Verdict::Pass => format!("All {} requirements are met.", all.len()),
+        Verdict::Inconclusive if matches!(run.record.outcome, Outcome::Blocked { .. }) => {
+            "The run could not go on with a value that it found; what follows is what was recorded until then.".to_owned()
+        }
         Verdict::Inconclusive if with(Verdict::Inconclusive) == 0 => {
             "The zeros of the rig drifted farther than it allows: nothing that its readings enter is decided.".to_owned()
         }

@@ -2,7 +2,7 @@
 
 use psd::output::standing::{self, Standing};
 use psd::output::{Change, Issue, IssueKind, Issues, RealRun, console};
-use psd::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, ReadingRules, RealLink, SafeState};
+use psd::plan::{Calibration, Datum, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, ReadingRules, RealLink, SafeState};
 use psd::record::{Event, EventKind, Outcome};
 
 use super::fixture::{Finished, finished};
@@ -25,6 +25,7 @@ fn real() -> Finished {
             serial_number: None,
         }),
         safe_state: SafeState::Hold,
+        datum: Datum::Machine,
         gate: Gate { zero: 20.0, probe: 20e-6, stiffness: Interval { low: 250e3, high: 350e3 } },
         readings: ReadingRules {
             samples: 5,
