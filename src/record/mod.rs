@@ -7,6 +7,7 @@ pub mod equipment;
 mod escalate;
 mod floors;
 pub mod journal;
+mod reached;
 mod unload;
 
 use serde::{Deserialize, Serialize};
