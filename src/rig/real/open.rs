@@ -38,6 +38,7 @@ impl RealRig {
             settled: None,
             rested: Vec::new(),
             seen_speed: None,
+            seen_places: Vec::new(),
             reread: 0,
             untrusted: None,
             deaf: false,
