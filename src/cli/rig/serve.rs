@@ -149,6 +149,7 @@ fn on_record(
     Ok(exit.max(match recorded.record.outcome {
         Outcome::Completed => Exit::Met,
         Outcome::Aborted { .. } => Exit::Stopped,
+        Outcome::Blocked { .. } => Exit::Missed,
         Outcome::Faulted { .. } => Exit::Fault,
     }))
 }

@@ -115,7 +115,9 @@ pub fn rehearse(plan: &Plan, played: &Played) -> Result<(), Refusal> {
         return Err(mismatch.into());
     }
     match record.outcome {
-        Outcome::Aborted { reason } | Outcome::Faulted { reason } if !reason.contains(state::CUT_OFF) => {
+        Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason }
+            if !reason.contains(state::CUT_OFF) =>
+        {
             Err(Refusal::EndsAgain { reason })
         }
         _ => Ok(()),
