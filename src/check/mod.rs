@@ -272,6 +272,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         report: report?,
         golden: golden?,
         rehearses: None,
+        unloads_at_once: false,
         files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),
     };

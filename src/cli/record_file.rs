@@ -15,7 +15,7 @@ use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, FileStorage, Journal, Line, OLDEST_FORMAT, Recovered, Storage, recover};
 use crate::rig::Rig;
 use crate::run::rehearsal;
-use crate::run::tape::{self, Header, HeaderFile, Played};
+use crate::run::tape::{self, Header, HeaderFile, Played, RULES};
 
 /// Name of the journal in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
@@ -52,6 +52,7 @@ pub fn header(
         run_id: provenance.run_id.clone(),
         psd: provenance.psd_version.clone(),
         build: provenance.build.sources.clone(),
+        rules: RULES,
         toolchain: provenance.build.toolchain.clone(),
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),

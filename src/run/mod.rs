@@ -86,6 +86,8 @@ mod secant_doubts;
 #[cfg(test)]
 mod sequence_tests;
 mod session;
+#[cfg(test)]
+mod settled_hold_tests;
 mod shake;
 mod shake_doubts;
 mod shake_results;
@@ -104,6 +106,8 @@ mod storey_summary;
 mod strike;
 mod striking;
 mod study;
+#[cfg(test)]
+mod sweep_lag_tests;
 pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -111,6 +115,8 @@ pub(crate) mod testing;
 mod tests;
 mod triggers;
 mod unload;
+#[cfg(test)]
+mod unload_tests;
 mod watch;
 mod zero;
 

@@ -24,6 +24,8 @@ pub(super) struct Session<'run> {
     remarks: Vec<(String, usize)>,
     /// Where the rig was found, m.
     pub(super) home: Vec<f64>,
+    /// [`Plan::unloads_at_once`]
+    pub(super) unloads_at_once: bool,
     /// A person was asked to look, or has paused the run: somebody may stand at the specimen.
     pub(super) attended: bool,
     /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
@@ -62,6 +64,7 @@ impl<'run> Session<'run> {
                     step: None,
                     remarks: Vec::new(),
                     home,
+                    unloads_at_once: plan.unloads_at_once,
                     attended: false,
                     reckoned,
                 })
@@ -294,6 +297,13 @@ impl<'run> Session<'run> {
 
 pub(super) fn signed(by: Option<&str>) -> String {
     by.map_or_else(String::new, |name| format!(" ({name})"))
+}
+
+/// Standard deviation of the base shear as the cells of all floors read it, N.
+pub(super) fn of_base_shear(session: &Session<'_>) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+    let floors = session.guard.commanded().len() as f64;
+    session.guard.declared_noise().force * floors.sqrt()
 }
 
 /// Displacement (m) and force (N) of the one degree of freedom.
