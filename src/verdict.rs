@@ -102,7 +102,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
         Outcome::Completed => Verdict::Pass,
-        Outcome::Aborted { .. } => Verdict::Aborted,
+        Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
     };
     let verdict = requirements.iter().map(|requirement| requirement.verdict).fold(run, Verdict::max);

@@ -69,6 +69,8 @@ impl Run<'_> {
 pub struct Provenance {
     /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
     pub run_id: String,
+    /// Of its report, where that is not the run's id: another record of the run has another one.
+    pub number: Option<String>,
     pub psd_version: String,
     /// Which program of that version.
     pub build: Build,
@@ -87,10 +89,11 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// The id of the report: that of its run, but of an amendment its own.
+    /// The id of the report: of its run or its record, but of an amendment its own.
     #[must_use]
     pub fn report_id(&self) -> &str {
-        self.amends.as_ref().map_or(&self.run_id, |amends| &amends.report_id)
+        let own = self.number.as_ref().unwrap_or(&self.run_id);
+        self.amends.as_ref().map_or(own, |amends| &amends.report_id)
     }
 
     /// Who stood by, as the record says.

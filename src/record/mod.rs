@@ -51,6 +51,10 @@ pub enum Outcome {
     Aborted {
         reason: String,
     },
+    /// Nobody released the rig, and nothing moved: exit 4.
+    NotReleased {
+        reason: String,
+    },
     /// The rig failed: exit 3.
     Faulted {
         reason: String,

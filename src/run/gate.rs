@@ -2,6 +2,7 @@
 //! wrong sign, unit or scale and a dead sensor are found here, while nothing can be broken. In: the rig, what the plan
 //! expects. Out: what was found, as a note of the record, or why the run does not begin.
 
+use super::motion::Motion;
 use super::session::Session;
 use super::stop::Stop;
 use crate::plan::{Gate, Plan, RealLink};
@@ -22,7 +23,9 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
     ways.dedup();
     let ways = ways.join(", ");
     let by = if axes == 1 { format!("by {ways}") } else { format!("each of its {axes} axes in turn, by {ways}") };
-    session.inspect(&format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name))?;
+    let note = format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name);
+    let does = format!("it moves {by} to check itself, then {afterwards}");
+    session.release(&note, &Motion::of(plan, session.identity(), does))?;
 
     let first = session.guard.read()?;
     session.guard.pause(REST)?;

@@ -14,6 +14,10 @@ pub(super) enum Stop {
     Person {
         reason: String,
     },
+    /// Nobody released the rig: nothing has moved.
+    NotReleased {
+        reason: String,
+    },
     /// A real rig did not prove itself before the first step.
     Gate {
         reason: String,
@@ -38,6 +42,7 @@ impl Stop {
         match self {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
             | Self::Person { .. } => Outcome::Aborted { reason },
+            Self::NotReleased { .. } => Outcome::NotReleased { reason },
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
             | Self::NoInput { .. }
@@ -51,18 +56,21 @@ impl Stop {
             self,
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
                 | Self::Gate { .. }
+                | Self::NotReleased { .. }
         )
     }
 
     /// Whether it was a person who ended the run.
     pub(super) const fn is_a_persons(&self) -> bool {
-        matches!(self, Self::Person { .. } | Self::Rig(RigFault::Interrupted))
+        matches!(self, Self::Person { .. } | Self::NotReleased { .. } | Self::Rig(RigFault::Interrupted))
     }
 
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
-            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
+            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } | Self::NotReleased { .. } => {
+                EventKind::Hold
+            }
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
             | Self::NoInput { .. }
@@ -75,7 +83,7 @@ impl std::fmt::Display for Stop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Rig(fault) => write!(f, "{fault}"),
-            Self::Person { reason } => f.write_str(reason),
+            Self::Person { reason } | Self::NotReleased { reason } => f.write_str(reason),
             Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
             Self::BadInput { field, value, wanted } => {

@@ -122,6 +122,7 @@ fn told(record: &Record, assessment: &Assessment) -> String {
     let mut text = match &record.outcome {
         Outcome::Completed => "the run completed\n".to_owned(),
         Outcome::Aborted { reason } => format!("the run was aborted: {reason}\n"),
+        Outcome::NotReleased { reason } => format!("the rig was not released: {reason}\n"),
         Outcome::Faulted { reason } => format!("the run failed: {reason}\n"),
     };
     for requirement in &assessment.requirements {

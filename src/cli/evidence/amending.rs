@@ -65,13 +65,13 @@ impl AmendmentFile {
         inert::json(&serde_json::to_string_pretty(self).unwrap_or_default()) + "\n"
     }
 
-    /// The id of the report of a run with the first `count` amendments.
-    fn id(&self, run_id: &str, count: usize) -> String {
+    /// The id of the report that is called `own` as it was made, with the first `count` amendments.
+    fn id(&self, own: &str, count: usize) -> String {
         if count == 0 {
-            return run_id.to_owned();
+            return own.to_owned();
         }
         let until = Self { schema: self.schema.clone(), amendments: self.amendments[..count].to_vec() };
-        sha256(format!("{run_id}\n{}", until.json()).as_bytes())[..16].to_owned()
+        sha256(format!("{own}\n{}", until.json()).as_bytes())[..16].to_owned()
     }
 }
 
@@ -94,8 +94,11 @@ pub fn may_be_amended(field: &str) -> Result<&'static str, String> {
 /// Plan and provenance as the amendments say.
 pub fn amended(plan: &mut Plan, provenance: &mut Provenance, file: &AmendmentFile) -> Result<(), String> {
     let mut amendments = Vec::new();
+    // Older versions called the first report as its run.
+    let by_run = file.amendments.first().is_some_and(|first| first.replaces == provenance.run_id);
+    let own = if by_run { provenance.run_id.clone() } else { provenance.report_id().to_owned() };
     for (before, one) in file.amendments.iter().enumerate() {
-        if one.replaces != file.id(&provenance.run_id, before) {
+        if one.replaces != file.id(&own, before) {
             return Err(format!(
                 "`{AMENDMENT}` takes the place of report {}, which is none of this run",
                 one_line(&one.replaces)
@@ -112,7 +115,7 @@ pub fn amended(plan: &mut Plan, provenance: &mut Provenance, file: &AmendmentFil
         let (replaces, by, reason) = (one.replaces.clone(), one.by.clone(), one.reason.clone());
         amendments.push(Amendment { replaces, by, reason, changes });
     }
-    provenance.amends = Some(Amends { report_id: file.id(&provenance.run_id, file.amendments.len()), amendments });
+    provenance.amends = Some(Amends { report_id: file.id(&own, file.amendments.len()), amendments });
     Ok(())
 }
 

@@ -12,7 +12,9 @@ use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 pub(super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),
-        Outcome::Aborted { reason } | Outcome::Faulted { reason } => format!(" Reason: {}.", reason.trim_end_matches('.')),
+        Outcome::Aborted { reason } | Outcome::NotReleased { reason } | Outcome::Faulted { reason } => {
+            format!(" Reason: {}.", reason.trim_end_matches('.'))
+        }
     };
     Stated { name: run.assessment.verdict.name(), text: (sentence(run) + &reason).into() }
 }

@@ -164,7 +164,7 @@ impl Ended {
     pub(super) fn reason(&self) -> &str {
         match &self.record.outcome {
             Outcome::Completed => "",
-            Outcome::Aborted { reason } | Outcome::Faulted { reason } => reason,
+            Outcome::Aborted { reason } | Outcome::NotReleased { reason } | Outcome::Faulted { reason } => reason,
         }
     }
 
