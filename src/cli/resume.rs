@@ -58,7 +58,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let expected = expected::rest(expected::of(&plan), steps);
     let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
     let wish = Wish::default().letting_go(arguments.let_go);
-    let mut opened = real_rig::open(&plan, &attendance, &wish, settings)?;
+    // Its zero is where it was when the run began, wherever the rig stands now.
+    let datum = read.played.rig.as_ref().and_then(|rig| rig.datum.as_deref());
+    let at_its_datum = Plan { rig: plan.rig.with_recorded_datum(datum), ..plan.clone() };
+    let mut opened = real_rig::open(&at_its_datum, &attendance, &wish, settings)?;
     opened.watcher.expect(expected);
     let resumption = settle(arguments, &plan, &link, &read.played, &mut opened)?;
 

@@ -13,6 +13,8 @@ pub struct Motion {
     pub rig: String,
     /// Who answered there.
     pub identity: Identity,
+    /// Where it stands, where that was read: `at 0 mm, 0.2 N`.
+    pub stands: Option<String>,
     /// What the rig does, as a sentence has it behind its name: `it moves to 1 mm`.
     pub does: String,
     /// What the motion takes.
@@ -38,7 +40,7 @@ impl Motion {
     /// What the rig of a plan does, as far as its plan alone says.
     #[must_use]
     pub fn of(plan: &Plan, identity: Identity, does: String) -> Self {
-        Self { rig: plan.rig.name.clone(), identity, does, expected: Extent::default(), limits: plan.limits }
+        Self { rig: plan.rig.name.clone(), identity, stands: None, does, expected: Extent::default(), limits: plan.limits }
     }
 
     /// The same motion, of which this is known where nothing was known before.
@@ -59,8 +61,9 @@ impl Motion {
     pub fn lines(&self) -> Vec<String> {
         let Extent { travel, force, speed, duration } = self.expected;
         let speed = speed.map(|speed| format!("up to {}", readable(speed, Dimension::VELOCITY)));
-        vec![
-            row("rig", &self.who()),
+        let stands = self.stands.as_ref().map(|stands| row("stands", stands));
+        let first = std::iter::once(row("rig", &self.who())).chain(stands);
+        let rest = [
             row("motion", &self.does),
             row(
                 "travel",
@@ -76,7 +79,8 @@ impl Motion {
             ),
             row("speed", &within(speed, self.limits.speed, Dimension::VELOCITY)),
             row("duration", &duration.map_or_else(|| "not known".to_owned(), about)),
-        ]
+        ];
+        first.chain(rest).collect()
     }
 
     /// The rig's name, and who answered there.

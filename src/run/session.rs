@@ -44,6 +44,7 @@ impl<'run> Session<'run> {
         let axes = rig.degrees_of_freedom();
         let identity = rig.identity();
         let reckoned = identity.simulated && plan.rig.link.as_real().is_none();
+        let datum = rig.datum().is_some();
         let wanted = plan.degrees_of_freedom();
         let guard = if axes == wanted {
             Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
@@ -70,7 +71,11 @@ impl<'run> Session<'run> {
                 })
             }
             Err(fault) => {
-                let stop = Stop::Rig(fault);
+                // Records of older versions have the fault alone.
+                let stop = match fault {
+                    RigFault::LimitBreached { .. } if datum => Stop::AtRest(fault),
+                    fault => Stop::Rig(fault),
+                };
                 let event = Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() };
                 observer.event(&event);
                 Err(Box::new((event, stop)))

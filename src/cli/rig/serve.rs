@@ -154,6 +154,7 @@ fn on_record(
     Ok(exit.max(match recorded.record.outcome {
         Outcome::Completed => Exit::Met,
         Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
+        Outcome::Blocked { .. } => Exit::Missed,
         Outcome::Faulted { .. } => Exit::Fault,
     }))
 }
