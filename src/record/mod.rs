@@ -52,6 +52,10 @@ pub enum Outcome {
     Aborted {
         reason: String,
     },
+    /// Nobody released the rig, and nothing moved: exit 4.
+    NotReleased {
+        reason: String,
+    },
     /// A value of the plan, known only in the run, cannot be used: exit 1.
     Blocked {
         reason: String,

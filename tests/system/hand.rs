@@ -7,7 +7,7 @@ use std::process::Stdio;
 use rustix::process::Signal;
 
 use crate::stage::{Stage, code, finish, impatient, signal, start, until, wait};
-use crate::terminal::Terminal;
+use crate::terminal::{MOVE, Terminal};
 
 #[test]
 fn a_monitor_ends_with_its_reader_and_with_each_signal() {
@@ -93,11 +93,11 @@ fn a_jog_counts_from_the_zero_of_the_run_that_loaded_the_specimen() {
 }
 
 #[test]
-fn only_a_yes_moves_and_the_end_of_the_input_is_none() {
+fn only_the_word_moves_and_the_end_of_the_input_is_none() {
     let stage = Stage::new();
-    for keys in ["n\n", "\n", "\u{4}", "yesterday\n"] {
+    for keys in ["n\n", "\u{4}", "y\nyes\nmove\nRELEASE\n\nn\n"] {
         let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &["--to", "1 mm"]));
-        terminal.answer("[y or n]", keys);
+        terminal.answer(MOVE, keys);
         assert_eq!(code(&mut terminal.child), Some(4), "{keys:?}: {}", terminal.shown());
         assert!(terminal.shown().contains("nothing moved"), "{}", terminal.shown());
         assert!(stage.proven().contains("all 0 came out again"));
@@ -117,10 +117,12 @@ fn a_sitting_goes_from_place_to_place() {
     let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &[]));
     terminal.answer("at 0 mm; where to?", "0.5\n");
     terminal.answer("write it as 1 mm", "0.5 mm\n");
-    terminal.answer("move from 0 mm to 0.5 mm? [y or n]", "y\n");
+    terminal.answer("it moves from 0 mm to 0.5 mm", "MOVE\n");
+    terminal.answer(MOVE, "MOVE\n");
     terminal.answer("at 0.5 mm; where to?", "11 mm\n");
     terminal.answer("refused: target displacement 11 mm", "0 mm\n");
-    terminal.answer("move from 0.5 mm to 0 mm? [y or n]", "y\n");
+    terminal.answer("it moves from 0.5 mm to 0 mm", "");
+    terminal.answer(MOVE, "MOVE\n");
     terminal.answer("at 0 mm; where to?", "q\n");
     assert_eq!(code(&mut terminal.child), Some(4), "one place was refused: {}", terminal.shown());
     assert_eq!(stage.moves().len(), 2);

@@ -8,7 +8,7 @@ use std::io::Write as _;
 use rustix::process::Signal;
 
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
-use crate::terminal::Terminal;
+use crate::terminal::{RELEASE, Terminal, UNLOAD};
 
 /// A stepper frame with an indicator beside it.
 fn stepper(plan: &str) -> String {
@@ -104,7 +104,7 @@ fn stopped_at_zero() -> Stage {
     };
     let stage = Stage::of(console, "");
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-    terminal.answer("go on?", "n\n");
+    terminal.answer(RELEASE, "n\n");
     let code = code(&mut terminal.child);
     assert_eq!(code, Some(4), "{}", terminal.shown());
     stage
@@ -142,10 +142,10 @@ fn a_rig_that_is_not_there_leaves_the_record_as_it_was() {
 fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
     let stage = Stage::of(|plan| plan.replace("safe_state = hold", "safe_state = unload"), "");
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-    terminal.answer("go on?", "y\n");
+    terminal.answer(RELEASE, "RELEASE\n");
     stage.after_moves(6);
     signal(&terminal.child, Signal::INT);
-    terminal.answer("unload?", "y\n");
+    terminal.answer(UNLOAD, "UNLOAD\n");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
     assert!(told.contains("unloading to where the run began"), "{told}");
