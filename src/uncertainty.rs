@@ -89,7 +89,7 @@ pub enum Source {
         procedure: ProcedureId,
         result: &'static str,
     },
-    /// Times are told to a whole step.
+    /// The time step of an integration, and that times are told to a whole one: the run is integrated again in finer steps.
     TimeStep {
         procedure: ProcedureId,
     },
@@ -188,6 +188,10 @@ impl Results for Moved<'_> {
 
     fn degrees(&self, source: Source) -> f64 {
         self.results.degrees(source)
+    }
+
+    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+        self.results.no_uncertainty(reference)
     }
 }
 

@@ -47,7 +47,7 @@ mod manual;
 mod motion;
 mod room;
 mod several;
-mod stage;
+pub(crate) mod stage;
 mod targets;
 mod two_axes;
 mod unnumbered;
