@@ -11,7 +11,7 @@ use super::output::give;
 use super::record_file::{self, journal_of};
 use super::run_folder::{RunFolder, write_new};
 use crate::comparison::{self, Comparison, Side};
-use crate::golden::{FIGURES, SUMMARY};
+use crate::golden::{FIGURES, SUMMARY, older};
 use crate::output::comparison::page;
 use crate::output::summary::Summary;
 use crate::output::{Figures, OutputError, OutputFile, Run, figure_data};
@@ -64,7 +64,7 @@ fn from_results(name: String, folder: &Path) -> Result<Side, Failure> {
         return Err(Failure::file(folder, "is no run: it has neither a record nor a summary")
             .help("name a run folder, such as runs/beam-1, or a folder of blessed results"));
     };
-    let summary = serde_json::from_str(summary).map_err(|error| Failure::file(folder.join(SUMMARY), error.to_string()))?;
+    let summary = older::summary(summary).map_err(|error| Failure::file(folder.join(SUMMARY), error.to_string()))?;
     let figures = match truth.text(FIGURES) {
         Some(text) => serde_json::from_str(text).map_err(|error| Failure::file(folder.join(FIGURES), error.to_string()))?,
         None => Figures::default(),

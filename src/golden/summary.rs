@@ -4,8 +4,8 @@
 use serde_json::{Map, Value};
 
 use super::finding::{Change, Finding, Part};
-use super::number;
 use super::tolerance::{Rule, Tolerances};
+use super::{number, older};
 use crate::quantity::{Dimension, unit};
 
 /// What tells which run it was, by which program and on which day's machine.
@@ -15,7 +15,7 @@ const NOT_COMPARED: &[&str] = &["run_id", "psd", "plan.sha256", "rig.firmware", 
 const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"];
 
 pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Tolerances, found: &mut Vec<Finding>) {
-    let read = |text: Option<&str>| text.and_then(|text| serde_json::from_str::<Value>(text).ok());
+    let read = |text: Option<&str>| text.and_then(|text| older::summary(text).ok());
     let Some(was) = read(was) else {
         found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::New));
         return;

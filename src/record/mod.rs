@@ -180,6 +180,8 @@ pub struct RampStep {
 pub struct RampHistory {
     /// The reading before the first increment, m and N.
     pub start: Option<(f64, f64)>,
+    /// The reading before the first increment of each repeat, numbered by the steps before it.
+    pub before: Vec<RampStep>,
     pub steps: Vec<RampStep>,
     /// None if too few steps were recorded, or the fit is of two lines.
     pub fit: Option<LineFit>,

@@ -27,6 +27,8 @@ pub struct Guard<'rig> {
     pub(super) heard: f64,
     /// Where holds are to be told.
     pub(super) holds: Option<Holds>,
+    /// The reading that broke a limit last, if it is one.
+    pub(super) broken: Option<Reading>,
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -53,7 +55,7 @@ impl<'rig> Guard<'rig> {
         let heard = rig.time();
         let (commanded, going) = (Vec::new(), Vec::new());
         let mut guard =
-            Self { rig, limits, own, commanded, going, settled: false, proposed: None, speed: None, heard, holds: None };
+            Self { rig, limits, own, commanded, going, settled: false, proposed: None, speed: None, heard, holds: None, broken: None };
         guard.commanded = guard.read()?.displacement;
         Ok(guard)
     }
@@ -156,7 +158,15 @@ impl<'rig> Guard<'rig> {
         let reading = self.rig.read();
         let reading = self.or_hold(reading)?;
         self.heard = reading.time;
-        self.check_reading(&reading)?;
+        if let Err(fault) = self.judge_reading(&reading) {
+            self.broken = Some(reading).filter(is_finite);
+            return Err(fault);
+        }
+        Ok(reading)
+    }
+
+    fn judge_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
+        self.check_reading(reading)?;
         if self.settled {
             let errors: Vec<f64> =
                 reading.displacement.iter().zip(&self.commanded).map(|(measured, target)| (measured - target).abs()).collect();
@@ -165,13 +175,18 @@ impl<'rig> Guard<'rig> {
                 return Err(self.breach(LimitedQuantity::TrackingError, Some(place), limit, errors[place]));
             }
             if let Some(holds) = &mut self.holds {
-                holds.see(&self.commanded, &reading);
+                holds.see(&self.commanded, reading);
             }
         }
-        Ok(reading)
+        Ok(())
     }
 
-    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way. The limit on the increment is not for
+    /// The reading that broke a limit, once: it was made all the same.
+    pub fn take_broken(&mut self) -> Option<Reading> {
+        self.broken.take()
+    }
+
+    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way; the last is the one that broke a limit, if any did. The limit on the increment is not for
     /// it, since its target goes along evenly; the one on the tracking error is for settled readings.
     pub fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Traversed {
         let refused = |fault| Traversed { readings: Vec::new(), fault: Some(fault) };
@@ -185,15 +200,24 @@ impl<'rig> Guard<'rig> {
         self.speed = Some(velocity.abs());
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
-        let mut heard = self.heard;
+        let (mut heard, mut broken) = (self.heard, None);
         // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
         let traversed = self.rig.traverse(targets, velocity, samples, &mut |reading| {
             heard = reading.time;
-            outside(&limits, &own, &reading).map_or(Ok(()), Err)?;
-            readings.push(reading);
-            Ok(())
+            match outside(&limits, &own, &reading) {
+                Some(fault) => {
+                    broken = Some(reading).filter(is_finite);
+                    Err(fault)
+                }
+                None => {
+                    readings.push(reading);
+                    Ok(())
+                }
+            }
         });
         self.heard = heard;
+        readings.extend(broken.clone());
+        self.broken = broken;
         let fault = self.or_hold(traversed).err();
         if fault.is_none() {
             self.commanded.copy_from_slice(targets);
@@ -297,6 +321,11 @@ impl<'rig> Guard<'rig> {
 /// Infinity is inside "no limit", but no place for a rig.
 fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
+}
+
+/// Whether a reading is of numbers: what is none is not kept.
+pub(super) fn is_finite(reading: &Reading) -> bool {
+    reading.displacement.iter().chain(&reading.force).all(|value| value.is_finite())
 }
 
 /// The first value of a reading that lies outside its limit: those of its axis, where it has any of its own.
@@ -461,7 +490,7 @@ mod tests {
             let (commanded, own, going, holds, speed) = (vec![0.001], Vec::new(), Vec::new(), None, None);
             let (settled, proposed, heard) = (true, None, 0.0);
             let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled, proposed, speed, heard, holds };
+                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled, proposed, speed, heard, holds, broken: None };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

@@ -215,7 +215,7 @@ pub(super) fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, histo
         of("max_displacement", Dimension::LENGTH, |summary| summary.max_displacement),
         of("time_of_max_displacement", Dimension::TIME, |summary| summary.time_of_max_displacement),
         result("stop_time", Dimension::TIME, summary.and_then(|summary| summary.stop_time)),
-        of("residual_displacement", Dimension::LENGTH, |summary| summary.residual_displacement),
+        of("final_displacement", Dimension::LENGTH, |summary| summary.final_displacement),
         of("max_velocity", Dimension::VELOCITY, |summary| summary.max_velocity),
         of("max_contact_force", Dimension::FORCE, |summary| summary.max_contact_force),
         of("impulse", Dimension::IMPULSE, |summary| summary.impulse),

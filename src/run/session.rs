@@ -273,6 +273,17 @@ impl<'run> Session<'run> {
         Ok(first(&self.guard.read()?))
     }
 
+    /// One reading of every axis, and what ends the run where it breaks a limit: it was made all the same, and is kept.
+    pub(super) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
+        match self.guard.read() {
+            Ok(reading) => Ok((reading, None)),
+            Err(fault) => match self.guard.take_broken() {
+                Some(reading) => Ok((reading, Some(fault.into()))),
+                None => Err(fault.into()),
+            },
+        }
+    }
+
     /// Back to `place` (m), as one move or, where increments are limited, as equal ones.
     pub(super) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
         self.go_to_all(&[place], speed)

@@ -56,7 +56,7 @@ pub(super) fn propagate(
         job.run.shaken(&scaled, path, &job.distortion)
     };
     let numbers = |job: &Job, floors: &Floors| {
-        let lists = [&floors.max_displacement, &floors.max_drift, &floors.residual_drift, &job.periods];
+        let lists = [&floors.max_displacement, &floors.max_drift, &floors.final_drift, &job.periods];
         lists.into_iter().flatten().copied().chain([floors.max_base_shear]).collect::<Vec<f64>>()
     };
     let floors = doubts.floors();
@@ -71,7 +71,7 @@ pub(super) fn propagate(
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
     let path = doubts.under_way(&setting.frame, path, std::mem::take(&mut found.velocities))?;
-    let lists = ["max_displacement", "max_drift", "residual_drift", "periods"].map(|name| (name, floors));
+    let lists = ["max_displacement", "max_drift", "final_drift", "periods"].map(|name| (name, floors));
     let layout: Vec<(&'static str, usize)> = lists.into_iter().chain([("max_base_shear", 1)]).collect();
     let job = |shifts: Shifts<'_>, distortion: FrameDistortion| {
         let (run, periods, scale) = moved(doubts, plan, (setting, distortion.finer), (ground, shifts))

@@ -352,17 +352,14 @@ fn widen(told: &mut [Contribution], other: &[Contribution]) {
     }
 }
 
-/// Contributions that say something; of a result that no source moves one of them, for its uncertainty is known to be none. Nothing
-/// is known of one that is not finite.
+/// Contributions that say something; of a result that nothing moves, not even the time step, that of the step, for its uncertainty is
+/// known to be none. Nothing is known of one that is not finite.
 fn told(mut parts: Vec<Contribution>) -> Vec<Contribution> {
     if !parts.iter().all(|part| part.amount.is_finite()) {
         return Vec::new();
     }
-    if parts.iter().any(|part| part.amount != 0.0) {
-        parts.retain(|part| part.amount != 0.0);
-    } else {
-        parts.truncate(1);
-    }
+    let moves = parts.iter().any(|part| part.amount != 0.0);
+    parts.retain(|part| if moves { part.amount != 0.0 } else { matches!(part.source, Source::TimeStep { .. }) });
     parts
 }
 
