@@ -7,7 +7,7 @@ pub mod device;
 pub mod dialect;
 pub mod failpoint;
 #[cfg(test)]
-mod fault_table;
+pub(crate) mod fault_table;
 mod guard;
 mod guard_about;
 mod guard_glide;
