@@ -3,6 +3,8 @@
 
 mod amending;
 mod check;
+#[cfg(test)]
+mod damaged_tests;
 mod folder;
 #[cfg(test)]
 mod header_tests;

@@ -22,6 +22,7 @@ mod played;
 #[cfg(test)]
 mod resume_tests;
 mod rig;
+mod shape;
 mod state;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -36,6 +37,7 @@ pub use entry::{
 pub use observer::TapedObserver;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;
+pub use shape::{Malformed, well_formed};
 pub use state::CUT_OFF;
 
 use std::cell::RefCell;
