@@ -107,7 +107,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
         Outcome::Blocked { .. } => Verdict::Inconclusive,
         Outcome::Completed => Verdict::Completed,
-        Outcome::Aborted { .. } => Verdict::Aborted,
+        Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
     };
     let verdict = requirements.iter().map(|requirement| requirement.verdict).fold(run, Verdict::max);

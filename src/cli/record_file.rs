@@ -190,8 +190,10 @@ fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
 
 /// The provenance that the record gives; the plan's own date counts where none was given on the command line.
 fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
+    let number = super::provenance::report_number(&header.run_id, plan, recovered.ended, Some(recovered.head()));
     let stated = Provenance {
         run_id: header.run_id.clone(),
+        number,
         psd_version: header.psd.clone(),
         build: Build { sources: header.build.clone(), toolchain: header.toolchain.clone() },
         plan_sha256: header.files.first().map_or_else(String::new, |file| file.sha256.clone()),

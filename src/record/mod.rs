@@ -7,6 +7,7 @@ pub mod equipment;
 mod escalate;
 mod floors;
 pub mod journal;
+mod reached;
 mod unload;
 
 use serde::{Deserialize, Serialize};
@@ -49,6 +50,10 @@ pub enum Outcome {
     Completed,
     /// Stopped by a limit or by a person: exit 4.
     Aborted {
+        reason: String,
+    },
+    /// Nobody released the rig, and nothing moved: exit 4.
+    NotReleased {
         reason: String,
     },
     /// A value of the plan, known only in the run, cannot be used: exit 1.

@@ -60,6 +60,7 @@ mod inputs;
 mod inspect;
 #[cfg(test)]
 mod matrix_doubts_tests;
+mod motion;
 mod move_to;
 pub mod need;
 #[cfg(test)]
@@ -121,6 +122,7 @@ mod watch;
 mod zero;
 
 pub use damping_sweep::MOST_SAMPLES;
+pub use motion::{Extent, Motion};
 pub use request::{Parting, Request};
 pub use study::MOST_DRAWS;
 
@@ -150,9 +152,14 @@ pub trait Observer {
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
-    /// A person stopped the run, or stands at the specimen, and the plan's safe state is to unload: whether that may be. None: nobody
-    /// is asked, and the rig stays held. Asked again while it is [`Inspection::Wait`].
-    fn may_unload(&mut self, _question: &str) -> Option<Inspection> {
+    /// A real rig is about to move for the first time: whether a person releases it for this motion. `note` is the record's word for
+    /// it. Asked again while it is [`Inspection::Wait`].
+    fn release(&mut self, note: &str, _motion: &Motion) -> Inspection {
+        self.inspect(note)
+    }
+    /// The run has ended early, and the rig holds: whether it may take the load off. `declared`: the plan's safe state is to unload.
+    /// None: nobody wants it, and the rig stays held. Asked again while it is [`Inspection::Wait`].
+    fn may_unload(&mut self, _question: &str, _motion: &Motion, _declared: bool) -> Option<Inspection> {
         None
     }
     /// What a person wants between two steps. Asked until it is [`Next::GoOn`].

@@ -115,7 +115,10 @@ pub fn rehearse(plan: &Plan, played: &Played) -> Result<(), Refusal> {
         return Err(mismatch.into());
     }
     match record.outcome {
-        Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason }
+        Outcome::Aborted { reason }
+        | Outcome::NotReleased { reason }
+        | Outcome::Blocked { reason }
+        | Outcome::Faulted { reason }
             if !reason.contains(state::CUT_OFF) =>
         {
             Err(Refusal::EndsAgain { reason })
