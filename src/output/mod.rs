@@ -100,8 +100,8 @@ impl Provenance {
 
     /// What an issue of the report states of a particular; the last one counts.
     fn restated(&self, field: &str) -> Option<&str> {
-        let changes = self.issues.iter().flat_map(|issues| &issues.all).flat_map(|issue| &issue.changes);
-        changes.filter(|change| change.field == field).last().map(|change| change.is.as_str())
+        let mut changes = self.issues.iter().flat_map(|issues| &issues.all).flat_map(|issue| &issue.changes);
+        changes.rfind(|change| change.field == field).map(|change| change.is.as_str())
     }
 
     /// Who stood by, as the record says.
