@@ -85,7 +85,9 @@ fn of_procedure(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     match &procedure.history {
         History::Ramp(history) => {
             let holds = (!history.holds.is_empty()).then(|| Table::of(beside("holds"), &history.holds, holds));
-            once(Table::of(name, &history.steps, ramp)).chain(holds).collect()
+            let mut rows: Vec<RampStep> = history.steps.iter().chain(&history.before).cloned().collect();
+            rows.sort_by_key(|row| row.step);
+            once(Table::of_steps(name, rows.len(), 1, move |range| ramp(&rows[range]))).chain(holds).collect()
         }
         History::Move(steps) => vec![Table::of(name, steps, ramp)],
         History::FrameUnload(steps) => vec![Table::of(name, steps, floors::unloading)],
