@@ -11,6 +11,7 @@ use super::output::tell;
 use super::rehearse;
 use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
+use super::writing::Telling;
 use crate::diagnostic::excerpt::escape;
 use crate::output::{self, Listed, OutputError, Provenance, Run, Shelf};
 use crate::plan::Plan;
@@ -33,8 +34,12 @@ pub fn conclude(
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
     tell(&output::console::verdict_text(&run, settings.color));
     tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    tell(&into(folder));
     let kept = Folder::digests(folder)?.kept();
-    write_made(folder, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
+    write_made(folder, &kept, |shelf| {
+        let shelf = &mut Telling::over(shelf, settings);
+        made_of(plan, &recorded.record, &assessment, provenance, None, shelf)
+    })?;
     let exit = Exit::from(assessment.verdict);
     match (&recorded.fault, &recorded.mismatch) {
         (None, None) => Ok(exit),
@@ -47,6 +52,11 @@ pub fn conclude(
             Ok(exit.max(Exit::Fault))
         }
     }
+}
+
+/// Said with the verdict: where the record lies, and the results will.
+pub fn into(folder: &Path) -> String {
+    format!("  run folder {}\n", escape(&folder.display().to_string()))
 }
 
 /// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.

@@ -49,7 +49,11 @@ fn known_damage_is_an_error_with_its_place() {
         ("tangents_51", include_bytes!("../../../tests/records/tangents_51.psdj"), "record 10 (SAMPLE)"),
         ("zero_75", include_bytes!("../../../tests/records/zero_75.psdj"), "record 13 (SAMPLE)"),
         ("zero_76", include_bytes!("../../../tests/records/zero_76.psdj"), "record 14 (SAMPLE)"),
-        ("waits_for_ever", include_bytes!("../../../tests/records/waits_for_ever.psdj"), "record 31: the run calls for the end of a step"),
+        (
+            "waits_for_ever",
+            include_bytes!("../../../tests/records/waits_for_ever.psdj"),
+            "record 31: the run calls for the end of a step",
+        ),
     ];
     for (name, journal, place) in cases {
         let fault = played(journal).expect_err(name);
