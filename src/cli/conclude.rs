@@ -8,6 +8,7 @@ use super::evidence::Folder;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::tell;
+use super::record_file::{self, journal_of};
 use super::rehearse;
 use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
@@ -28,13 +29,17 @@ pub fn conclude(
     recorded: &Recorded,
     settings: Settings,
 ) -> Result<Exit, Failure> {
+    let provenance = &as_recorded(folder, plan, provenance, recorded).inspect_err(|_| {
+        // Without a report, but not without where the rig stands.
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    })?;
     let assessment = verdict::assess(plan, &recorded.record);
-    let provenance = &as_recorded(folder, plan, provenance);
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
     tell(&output::console::verdict_text(&run, settings.color));
     tell(&how_it_stands(folder, plan, &recorded.record, settings));
     let kept = Folder::digests(folder)?.kept();
-    write_made(folder, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
+    let shelf = FolderShelf::new(folder);
+    write_made(shelf, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
     let exit = Exit::from(assessment.verdict);
     match (&recorded.fault, &recorded.mismatch) {
         (None, None) => Ok(exit),
@@ -85,13 +90,14 @@ pub fn made_of(
     output::put_everything(&Run { plan, record, assessment, provenance }, shelf)
 }
 
-/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest.
+/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest. The manifest is the
+/// last: results without one are none that came to their end.
 pub fn write_made(
-    folder: &Path,
+    mut shelf: FolderShelf<'_>,
     beside: &[Listed],
     make: impl FnOnce(&mut dyn Shelf) -> Result<Vec<Listed>, OutputError>,
 ) -> Result<(), Failure> {
-    let mut shelf = FolderShelf::new(folder);
+    let folder = shelf.folder();
     let listed = match make(&mut shelf) {
         Ok(listed) => listed,
         Err(error) => return Err(shelf.failed(error)),
@@ -106,9 +112,22 @@ pub fn summary(folder: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
 }
 
-/// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where
-/// it cannot be read back, what the run began with is told, and no head of the record.
-fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance) -> Provenance {
-    let read = plan.rig.link.as_real().and_then(|_| super::record_file::read(folder).ok());
-    read.map_or_else(|| began.clone(), |read| read.provenance)
+/// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where the record could
+/// not be kept, and cannot be read back, what the run began with is told, and no head of the record. One that could be kept, and is not
+/// what was written, proves nothing: somebody has changed it under way, and no results are made of it.
+fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance, recorded: &Recorded) -> Result<Provenance, Failure> {
+    if plan.rig.link.as_real().is_none() {
+        return Ok(began.clone());
+    }
+    let read = record_file::read(folder);
+    if recorded.fault.is_some() {
+        return Ok(read.map_or_else(|_| began.clone(), |read| read.provenance));
+    }
+    let read = read?;
+    let lies_there = (read.recovered.lines.len() as u64, read.recovered.head().to_owned());
+    if recorded.sealed.as_ref() != Some(&lies_there) {
+        return Err(Failure::file(journal_of(folder), "is not what this run has written: no results are made of it")
+            .help("look for who else writes there; `psd verify` says what is wrong with it"));
+    }
+    Ok(read.provenance)
 }

@@ -18,3 +18,4 @@ pub use check::{Finding, examine};
 pub use folder::{Folder, MANIFEST};
 pub use rebuilt::{PlayedBack, Rebuilt};
 pub use signature::{Statement, file_name, sign as sign_manifest};
+pub use standing::stands;

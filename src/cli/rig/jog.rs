@@ -10,7 +10,7 @@ use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
 use crate::cli::record_file::{self, Circumstances};
-use crate::cli::run_folder::RunFolder;
+use crate::cli::run_folder::{FolderShelf, RunFolder};
 use crate::cli::settings::Settings;
 use crate::cli::watch::{Attendance, Signals, next_line, typed_lines};
 use crate::cli::{plan_file, provenance, real_rig};
@@ -19,7 +19,7 @@ use crate::plan::{Interval, Link, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::record::Outcome;
-use crate::rig::{LimitedQuantity, Rig, RigFault, Wish, connect, virtual_rig};
+use crate::rig::{Connected, LimitedQuantity, Rig as _, RigFault, Wish, connect, virtual_rig};
 use crate::run::driven::{Driver, Specimen};
 use crate::run::tape::{self, BY_HAND};
 use crate::run::{Parting, Unwatched};
@@ -49,12 +49,12 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
         Link::Real(_) => {
             let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
             let place = |fault: &str| plan_file::place_of_link(&checked, &arguments.plan, fault);
-            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
+            let connected = connected.map_err(|failure| failure.in_the_plan(place))?;
             if !settings.can_ask && !connected.rig.identity().simulated {
                 return Err(Failure::command_line("a real rig is not moved by hand without a person at a terminal")
                     .help("start it from a terminal"));
             }
-            on_a_real_rig(arguments, plan, &attendance, &mut connected.rig, &wanted, person, settings)
+            on_a_real_rig(arguments, plan, &attendance, connected, &wanted, person, settings)
         }
     }
 }
@@ -97,11 +97,12 @@ fn on_a_real_rig(
     arguments: &JogArguments,
     plan: &Plan,
     attendance: &Attendance,
-    rig: &mut dyn Rig,
+    mut connected: Connected,
     wanted: &Wanted,
     person: Person<'_>,
     settings: Settings,
 ) -> Result<Exit, Failure> {
+    let rig = &mut connected.rig;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..real_rig::circumstances(plan, attendance) };
     let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
@@ -111,7 +112,9 @@ fn on_a_real_rig(
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = real_rig::wall_clock();
     let (recorded, steps) = tape::record_driven(plan, rig, &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
-    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, None, shelf))?;
+    drop(connected);
+    let kept = Folder::digests(folder.path())?.kept();
+    write_made(FolderShelf::new(folder.path()), &kept, |shelf| output::put_driven(&steps, None, shelf))?;
     tell(&format!("  on record: {}\n", folder.path().display()));
     if let Some(fault) = &recorded.fault {
         tell(&format!("  the record could not be kept to its end: {fault}\n"));

@@ -77,9 +77,10 @@ impl Dialogue {
 
     /// A key was pressed.
     pub fn press(&mut self, key: Key, wish: &Wish) {
-        if key == Key::Interrupt {
-            interrupt(wish);
-            return;
+        match key {
+            Key::Interrupt => return interrupt(wish),
+            Key::Quit => return wish.hold_now(),
+            _ => {}
         }
         // The help closes with any key; one that it names as a way to stop also does that.
         if std::mem::take(&mut self.help) && !matches!(key, Key::Character('h' | 'H' | 'q' | 'Q')) {
@@ -140,7 +141,7 @@ impl Dialogue {
             Key::Enter => self.enter(),
             Key::Escape => self.typing = None,
             Key::End if self.question.is_some() && !typing.what.is_note() => self.no_answer(),
-            Key::End | Key::Interrupt => {}
+            Key::End | Key::Interrupt | Key::Quit => {}
         }
     }
 
@@ -250,10 +251,10 @@ impl Dialogue {
         Next::GoOn
     }
 
-    /// The terminal is gone: the run stops, and nothing is answered.
+    /// The terminal is gone: the rig holds, and nothing is answered.
     pub fn lose(&mut self, wish: &Wish) {
         self.lost = true;
-        wish.stop_after_step();
+        wish.hold_now();
     }
 }
 
@@ -377,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_stop() {
+    fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_hold() {
         let wish = Wish::default();
         let mut dialogue = Dialogue::default();
         dialogue.press(Key::Character('q'), &wish);
@@ -385,9 +386,12 @@ mod tests {
         dialogue.press(Key::Interrupt, &wish);
         assert!(wish.wants_hold());
         let wish = Wish::default();
+        dialogue.press(Key::Quit, &wish);
+        assert!(wish.wants_hold());
+        let wish = Wish::default();
         dialogue.paused = true;
         dialogue.lose(&wish);
-        assert!(wish.wants_end());
+        assert!(wish.wants_hold());
         assert_eq!(dialogue.next(), Next::GoOn, "a pause does not outlast its terminal");
         assert!(matches!(dialogue.ask("look"), Inspection::Stop { .. }));
     }

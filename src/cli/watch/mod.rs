@@ -5,6 +5,8 @@ mod asking;
 mod plain;
 mod signals;
 
+use std::cell::RefCell;
+
 use super::screen::{self, Screen};
 use super::settings::Settings;
 use crate::plan::Plan;
@@ -191,6 +193,47 @@ impl Observer for Watcher {
 
     fn event(&mut self, event: &Event) {
         self.face().event(event);
+    }
+}
+
+/// A watcher that is also asked while nothing runs: before a record that was played is gone on with.
+pub struct Shared<'a>(pub &'a RefCell<Watcher>);
+
+impl Observer for Shared<'_> {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.0.borrow_mut().procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.0.borrow_mut().step_done(report);
+    }
+
+    fn studying(&mut self, done: usize, of: usize) {
+        self.0.borrow_mut().studying(done, of);
+    }
+
+    fn procedure_finished(&mut self, name: &str) {
+        self.0.borrow_mut().procedure_finished(name);
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.0.borrow().stop_requested()
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        self.0.borrow_mut().inspect(note)
+    }
+
+    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
+        self.0.borrow_mut().may_unload(question)
+    }
+
+    fn next(&mut self) -> Next {
+        self.0.borrow_mut().next()
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.0.borrow_mut().event(event);
     }
 }
 
