@@ -11,11 +11,14 @@ use crate::record::{Beyond, BlowHistory, Outcome, ProcedureRecord, Record};
 use crate::rig::failpoint::{self, Guarding};
 use crate::uncertainty::{FEW, Known, known};
 
-/// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
+/// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
+    /// The run came to its end and nothing is required of it: there is nothing to pass.
+    Completed,
     Pass,
-    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it.
+    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it; a run that
+    /// could not go on with what it found.
     Inconclusive,
     Fail,
     /// Stopped by a limit or by a person.
@@ -29,6 +32,7 @@ impl Verdict {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Completed => "completed",
             Self::Pass => "pass",
             Self::Inconclusive => "inconclusive",
             Self::Fail => "fail",
@@ -101,7 +105,8 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         plan.requirements.iter().map(|requirement| assess_requirement(requirement, rule, record)).collect();
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
-        Outcome::Completed => Verdict::Pass,
+        Outcome::Blocked { .. } => Verdict::Inconclusive,
+        Outcome::Completed => Verdict::Completed,
         Outcome::Aborted { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
     };

@@ -84,6 +84,8 @@ pub struct Checker<'a> {
     pub read: Vec<(ResultReference, Span)>,
     /// Entries taken of lists that the run gives, as they are counted from 0, and where.
     pub taken: Vec<(ResultReference, usize, Span)>,
+    /// Whether the plan is of a record, and may call things as older versions did.
+    pub recorded: bool,
     /// The rig of the run, where it is one that moves a specimen.
     pub real_rig: Option<usize>,
     stack: Vec<Node>,
@@ -122,6 +124,7 @@ impl<'a> Checker<'a> {
             used,
             read: Vec::new(),
             taken: Vec::new(),
+            recorded: false,
             real_rig: None,
             stack,
             too_deep: false,

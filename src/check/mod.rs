@@ -30,6 +30,7 @@ mod impact;
 mod imports;
 mod inspect;
 mod integrator;
+mod left;
 mod limits;
 mod literal;
 mod matrix;
@@ -99,6 +100,8 @@ pub struct Options {
     pub date: Option<String>,
     /// A run is to begin, the command line names nobody, and nobody can be asked.
     pub unattended: bool,
+    /// The plan is of a record: names of older versions are read.
+    pub recorded: bool,
 }
 
 /// The outcome of a check. `plan` is there if no error stands.
@@ -161,6 +164,7 @@ fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
 }
 
 fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Options) -> Option<Plan> {
+    checker.recorded = options.recorded;
     checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
     for block in 0..checker.scope.blocks.len() {
         checker.entries_of(block);
@@ -243,6 +247,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         fits::hold(checker, &procedures);
         fits::hold_entries(checker, &procedures);
         let rule = plan_block::decision_rule(&particulars);
+        left::warn(checker, &procedures, requirements.as_deref().unwrap_or(&[]));
         guarded::warn(checker, &procedures, requirements.as_deref().unwrap_or(&[]), rule);
         warnings::whole_plan(checker, &procedures, requirements.as_deref().unwrap_or(&[]), &grounds, head);
     }

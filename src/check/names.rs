@@ -15,9 +15,15 @@ impl<'a> Checker<'a> {
     /// The value a bare name stands for.
     pub fn name(&mut self, name: &str, span: Span, place: Place) -> Option<Typed> {
         if let Reads::Blow(procedure) = place.reads
-            && let Some(result) = schema::block(Kind::Impact).result(name)
+            && let Some(block) = self.procedure(procedure)
+            && let renamed =
+                self.left_under_another_name(block, name).filter(|last| self.result_of_blow(block, last.name).is_some())
+            && let Some(result) = self.result_of_blow(block, name).or(renamed)
             && (!result.of_storey || self.strikes_a_storey(procedure))
         {
+            if result.name != name && !self.recorded {
+                return self.fail(fault::left_under_another_name(self.scope.blocks[block].kind, name, result.name, span));
+            }
             let formula = Formula::Result(ResultReference { procedure, name: result.name, part: Part::Value });
             let shape = if result.list { Shape::List } else { Shape::Number };
             return Some(Typed { shape, ..Typed::number(formula, result.dimension, span) });
@@ -122,7 +128,12 @@ impl<'a> Checker<'a> {
     /// What a block gives: a result, a derived value, or a field.
     fn member(&mut self, block: usize, name: &Ident, span: Span, place: Place) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
-        if let (Some(result), Some(procedure)) = (declared.kind.result(&name.node), declared.procedure) {
+        let renamed = self.left_under_another_name(block, &name.node);
+        if let Some(now) = renamed.filter(|_| !self.recorded) {
+            return self.fail(fault::left_under_another_name(declared.kind, &name.node, now.name, name.span));
+        }
+        let known = renamed.or_else(|| declared.kind.result(&name.node));
+        if let (Some(result), Some(procedure)) = (known, declared.procedure) {
             let unloads = declared.kind.kind == Kind::Unload;
             if result.of_storey && !unloads && storey_impact::struck_frame(self, block).is_none() {
                 let fault = frames::result_of_a_storey(result.name, name.span, declared.block.head);

@@ -5,13 +5,13 @@ use std::path::Path;
 
 use super::args::CompareArguments;
 use super::bless::truth_in;
-use super::evidence::{AMENDMENT, AmendmentFile, Folder, PlayedBack};
+use super::evidence::{Folder, IssueFile, PlayedBack};
 use super::exit::{Exit, Failure};
 use super::output::give;
 use super::record_file::{self, journal_of};
 use super::run_folder::{RunFolder, write_new};
 use crate::comparison::{self, Comparison, Side};
-use crate::golden::{FIGURES, SUMMARY};
+use crate::golden::{FIGURES, SUMMARY, older};
 use crate::output::comparison::page;
 use crate::output::summary::Summary;
 use crate::output::{Figures, OutputError, OutputFile, Run, figure_data};
@@ -45,9 +45,8 @@ fn side(run: &Path) -> Result<Side, Failure> {
 
 fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
     let kept = Folder::read(run)?;
-    let amendment = kept.bytes(AMENDMENT).map(AmendmentFile::read).transpose();
-    let amendment = amendment.map_err(|fault| Failure::file(run.join(AMENDMENT), fault))?;
-    let played = PlayedBack::of(record_file::read(run)?, amendment.as_ref()).map_err(|fault| Failure::file(run, fault))?;
+    let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
+    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
     if played.steps.is_some() {
         return Err(Failure::file(run, "is a run that a client drove: it has no results to compare"));
     }
@@ -64,7 +63,7 @@ fn from_results(name: String, folder: &Path) -> Result<Side, Failure> {
         return Err(Failure::file(folder, "is no run: it has neither a record nor a summary")
             .help("name a run folder, such as runs/beam-1, or a folder of blessed results"));
     };
-    let summary = serde_json::from_str(summary).map_err(|error| Failure::file(folder.join(SUMMARY), error.to_string()))?;
+    let summary = older::summary(summary).map_err(|error| Failure::file(folder.join(SUMMARY), error.to_string()))?;
     let figures = match truth.text(FIGURES) {
         Some(text) => serde_json::from_str(text).map_err(|error| Failure::file(folder.join(FIGURES), error.to_string()))?,
         None => Figures::default(),

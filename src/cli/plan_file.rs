@@ -29,7 +29,7 @@ pub fn open_to_run(path: &Path, settings: &PlanSettings, unattended: bool) -> Re
     let text = read_plan(path)?;
     let loader = FolderLoader::beside(path)?;
     let (rig, set, date) = (settings.rig.clone(), settings.set.clone(), settings.date.clone());
-    let options = Options { rig, settings: set, date, unattended };
+    let options = Options { rig, settings: set, date, unattended, recorded: false };
     Ok(check(&name_of(path), &text, &loader, &options))
 }
 

@@ -35,7 +35,7 @@ pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
         real: None,
         equipment: None,
         prediction: None,
-        amends: None,
+        issues: None,
     }
 }
 

@@ -168,7 +168,7 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
         return Err("the record holds no plan".to_owned());
     };
     let (rig, settings, date) = (header.rig.clone(), header.settings.clone(), header.date.clone());
-    let options = Options { rig, settings, date, unattended: false };
+    let options = Options { rig, settings, date, unattended: false, recorded: true };
     let checked = check(&first.name, text, &files, &options);
     let plan = checked.plan.ok_or_else(|| {
         let fault = checked.diagnostics.iter().find(|found| found.is_error());

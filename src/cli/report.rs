@@ -5,11 +5,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::amend::amend;
 use super::args::ReportArguments;
 use super::conclude::write_made;
-use super::evidence::{AMENDMENT, AmendmentFile, Folder, MANIFEST, PlayedBack, stands};
+use super::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stands};
 use super::exit::{Exit, Failure};
+use super::issue::amend;
 use super::loader::plain;
 use super::output::{give, tell};
 use super::record_file::{self, journal_of};
@@ -27,16 +27,15 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     let journal = journal_of(run);
     let _still = journal.exists().then(|| FileStorage::keep_still(&journal)).transpose()?;
     let kept = Folder::read(run)?;
-    let amendment = kept.bytes(AMENDMENT).map(AmendmentFile::read).transpose();
-    let amendment = amendment.map_err(|fault| Failure::file(run.join(AMENDMENT), fault))?;
+    let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
     let read = record_file::read(run)?;
     stands(&read).map_err(|fault| Failure::file(journal, fault).help("no report is made of a record that does not verify"))?;
-    let played = PlayedBack::of(read, amendment.as_ref()).map_err(|fault| Failure::file(run, fault))?;
+    let played = PlayedBack::of(read, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,
     };
-    let beside = kept.files.get(AMENDMENT).map(|held| (AMENDMENT.to_owned(), held.digest.clone()));
+    let beside = held_issue(&kept).map(|(name, held)| (name.to_owned(), held.digest.clone()));
     let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
     // What a manifest lists lies beside it: another folder is a whole run folder, and verifies.
     if folder != *run {

@@ -64,6 +64,9 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
 
     let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
     let wish = Wish::default().letting_go(arguments.let_go);
+    // Its zero is where it was when the run began, wherever the rig stands now.
+    let datum = read.played.rig.as_ref().and_then(|rig| rig.datum.as_deref());
+    let at_its_datum = plan.rig.with_recorded_datum(datum);
     let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
     let simulated = read.played.last_rig.as_ref().is_some_and(|rig| rig.identity.simulated);
     let watcher = RefCell::new(Watcher::new(settings, &attendance, &plan, simulated, signals));
@@ -73,7 +76,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         if wish.wants_end() {
             return Err(Failure::NotReleased { reason: "stopped on request".to_owned() });
         }
-        let rig = &mut opened.insert(connect(&plan.rig, &plan.limits, &wish)?).rig;
+        let rig = &mut opened.insert(connect(&at_its_datum, &plan.limits, &wish)?).rig;
         watcher.borrow().watch(rig.live());
         let resumption = settle(arguments, &plan, &link, &read.played, rig, &mut watcher.borrow_mut())?;
 

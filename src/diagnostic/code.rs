@@ -164,6 +164,7 @@ codes! {
     W728 NoEffect Warning;
     W727 GateWithinNoise Warning;
     W729 NothingToGuard Warning;
+    W730 FinalIsNotResidual Warning;
 }
 
 impl std::fmt::Display for Code {

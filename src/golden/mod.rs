@@ -7,6 +7,7 @@ mod finding;
 pub mod json;
 mod junit;
 mod number;
+pub mod older;
 mod summary;
 mod table;
 mod tap;

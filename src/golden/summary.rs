@@ -4,8 +4,8 @@
 use serde_json::{Map, Value};
 
 use super::finding::{Change, Finding, Part};
-use super::number;
 use super::tolerance::{Rule, Tolerances};
+use super::{number, older};
 use crate::quantity::{Dimension, unit};
 
 /// What tells which run it was, by which program and on which day's machine.
@@ -15,7 +15,7 @@ const NOT_COMPARED: &[&str] = &["run_id", "psd", "plan.sha256", "rig.firmware", 
 const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"];
 
 pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Tolerances, found: &mut Vec<Finding>) {
-    let read = |text: Option<&str>| text.and_then(|text| serde_json::from_str::<Value>(text).ok());
+    let read = |text: Option<&str>| text.and_then(|text| older::summary(text).ok());
     let Some(was) = read(was) else {
         found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::New));
         return;
@@ -259,6 +259,27 @@ mod tests {
             now["procedures"]["hit"]["results"]["x"]["u"] = json!(1e-3 + 0.4e-9);
         });
         assert_eq!(same, Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_pass_of_an_older_version_is_completed_only_where_nothing_was_required() {
+        let compared = |was: &Value, is: &Value| {
+            let mut found = Vec::new();
+            compare(Some(&was.to_string()), Some(&is.to_string()), &Tolerances::default(), &mut found);
+            found.iter().map(|finding| finding.name.clone()).collect::<Vec<_>>()
+        };
+        let mut older = summary();
+        older["requirements"] = json!([]);
+        let mut now = older.clone();
+        now["verdict"] = json!("completed");
+        assert_eq!(compared(&older, &now), [""; 0]);
+        assert_eq!(compared(&now, &now), [""; 0]);
+        assert_eq!(compared(&now, &older), ["verdict"]);
+        now["verdict"] = json!("aborted");
+        assert_eq!(compared(&older, &now), ["verdict"]);
+        let mut completed = summary();
+        completed["verdict"] = json!("completed");
+        assert_eq!(compared(&summary(), &completed), ["verdict"]);
     }
 
     #[test]

@@ -46,7 +46,7 @@ pub struct Floors {
     pub max_displacement: Vec<f64>,
     pub max_drift: Vec<f64>,
     /// At the end.
-    pub residual_drift: Vec<f64>,
+    pub final_drift: Vec<f64>,
     pub max_base_shear: f64,
 }
 
@@ -237,13 +237,13 @@ struct Peaks {
     /// Drift and its velocity at the end of the last step.
     last: Vec<(f64, f64)>,
     /// Inside the last step, where the run ends.
-    residual: Vec<f64>,
+    final_inside: Vec<f64>,
 }
 
 impl Peaks {
     fn new(floors: usize, time_step: f64) -> Self {
         let nothing = || vec![0.0; floors];
-        let ends = Floors { max_displacement: nothing(), max_drift: nothing(), residual_drift: nothing(), max_base_shear: 0.0 };
+        let ends = Floors { max_displacement: nothing(), max_drift: nothing(), final_drift: nothing(), max_base_shear: 0.0 };
         Self {
             ends,
             displacement: Extremes::new(floors, time_step),
@@ -252,13 +252,13 @@ impl Peaks {
             time_step,
             velocity: nothing(),
             last: vec![(0.0, 0.0); floors],
-            residual: nothing(),
+            final_inside: nothing(),
         }
     }
 
     /// Takes the end of a step, of which the run counts this share.
     fn take(&mut self, state: &FrameState, share: f64) {
-        drifts(&state.displacement, &mut self.ends.residual_drift);
+        drifts(&state.displacement, &mut self.ends.final_drift);
         drifts(&state.velocity, &mut self.velocity);
         let widen = |largest: &mut [f64], values: &[f64]| {
             for (largest, value) in largest.iter_mut().zip(values) {
@@ -266,16 +266,16 @@ impl Peaks {
             }
         };
         widen(&mut self.ends.max_displacement, &state.displacement);
-        widen(&mut self.ends.max_drift, &self.ends.residual_drift);
+        widen(&mut self.ends.max_drift, &self.ends.final_drift);
         let shear = state.restoring_force.iter().sum::<f64>();
         self.ends.max_base_shear = self.ends.max_base_shear.max(shear.abs());
         self.displacement.take(state.displacement.iter().copied().zip(state.velocity.iter().copied()));
-        let drift = || self.ends.residual_drift.iter().copied().zip(self.velocity.iter().copied());
+        let drift = || self.ends.final_drift.iter().copied().zip(self.velocity.iter().copied());
         self.drift.take(drift());
         for (storey, now) in drift().enumerate() {
             let (before, speed) = self.last[storey];
             let mean = speed + 0.5 * share * (now.1 - speed);
-            self.residual[storey] = if share < 1.0 { before + share * self.time_step * mean } else { now.0 };
+            self.final_inside[storey] = if share < 1.0 { before + share * self.time_step * mean } else { now.0 };
             self.last[storey] = now;
         }
         self.base_shear.take(shear);
@@ -285,7 +285,7 @@ impl Peaks {
         let between = Floors {
             max_displacement: self.displacement.largest().to_vec(),
             max_drift: self.drift.largest().to_vec(),
-            residual_drift: self.residual,
+            final_drift: self.final_inside,
             max_base_shear: self.base_shear.largest(),
         };
         let seen = again.is_seen(&between.max_drift);

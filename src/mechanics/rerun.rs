@@ -26,7 +26,7 @@ pub const OUTCOMES: [&str; 14] = [
     "max_displacement",
     "time_of_max_displacement",
     "stop_time",
-    "residual_displacement",
+    "final_displacement",
     "max_velocity",
     "max_contact_force",
     "impulse",

@@ -13,7 +13,7 @@ pub struct ImpactSummary {
     /// End of the first step with Ẋs ≤ 0, s.
     pub stop_time: Option<f64>,
     /// Computed X at the end of the run, m.
-    pub residual_displacement: f64,
+    pub final_displacement: f64,
     /// Largest |Ẋ|, m/s.
     pub max_velocity: f64,
     /// N
@@ -79,7 +79,7 @@ impl SummaryBuilder {
                 max_displacement: f64::NEG_INFINITY,
                 time_of_max_displacement: 0.0,
                 stop_time: None,
-                residual_displacement: 0.0,
+                final_displacement: 0.0,
                 max_velocity: 0.0,
                 max_contact_force: 0.0,
                 impulse: 0.0,
@@ -104,7 +104,7 @@ impl SummaryBuilder {
             summary.time_of_max_displacement = state.time;
             summary.absorbed_energy = state.energies.restoring;
         }
-        summary.residual_displacement = state.displacement;
+        summary.final_displacement = state.displacement;
         summary.max_velocity = summary.max_velocity.max(state.velocity.abs());
         summary.max_contact_force = summary.max_contact_force.max(state.contact_force);
         summary.impulse += state.contact_force * self.input.time_step;
@@ -146,7 +146,7 @@ impl SummaryBuilder {
             _ => None,
         };
         self.summary.still_rising =
-            still_rising(self.last_velocity, self.summary.residual_displacement, self.summary.max_displacement);
+            still_rising(self.last_velocity, self.summary.final_displacement, self.summary.max_displacement);
         self.summary.last_blow_cut = self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
         if self.summary.max_displacement == f64::NEG_INFINITY {
             self.summary.max_displacement = 0.0;

@@ -90,6 +90,9 @@ fn standing_text(standing: &Standing, rehearsed: bool) -> String {
         Standing::Rehearsal => "  (simulated rig: rehearsal)".to_owned(),
         Standing::Incomplete => "  (INCOMPLETE)".to_owned(),
         Standing::NotCertifiable { missing } => format!("  (NOT CERTIFIABLE: lacks {})", one_line(&missing.join(", "))),
+        Standing::ParticularsMissing { missing } => {
+            format!("  (PARTICULARS MISSING: {}; see `psd issue`)", one_line(&missing.join(", ")))
+        }
     }
 }
 
@@ -99,6 +102,7 @@ fn padded(text: &str, width: usize) -> String {
 
 fn paint(verdict: Verdict, words: &str, coloured: bool) -> String {
     let code = match verdict {
+        Verdict::Completed => return words.to_owned(),
         Verdict::Pass => "32",
         Verdict::Inconclusive => "33",
         Verdict::Fail | Verdict::Aborted | Verdict::Error => "31",

@@ -19,12 +19,13 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
     match &run.record.outcome {
         Outcome::Completed => {}
         Outcome::Aborted { reason } => found.push(format!("The run was stopped: {reason}.")),
+        Outcome::Blocked { reason } => found.push(format!("The run could not go on: {reason}.")),
         Outcome::Faulted { reason } => found.push(format!("The rig failed: {reason}.")),
     }
     // The event that ended the run says what the outcome has said already.
     let ending = match &run.record.outcome {
         Outcome::Completed => "",
-        Outcome::Aborted { reason } | Outcome::Faulted { reason } => reason,
+        Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason } => reason,
     };
     for event in run.record.events.iter().filter(|event| event.text != ending) {
         let what = match event.kind {

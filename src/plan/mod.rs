@@ -41,8 +41,8 @@ pub use limits::{Interval, Limits};
 pub use portal::{ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses};
 pub use record_size::{Counts, FRAME, MOST_RECORD_BYTES, WALL};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
-    RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
+    Calibration, Datum, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors,
+    ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::{FrameUnload, Unload};

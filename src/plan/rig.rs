@@ -24,6 +24,18 @@ impl RigPlan {
     }
 }
 
+impl RigPlan {
+    /// The same rig with the plan's zero where an earlier opening of it has put it on record, m, one an axis; None: as the plan says.
+    #[must_use]
+    pub fn with_recorded_datum(&self, places: Option<&[f64]>) -> Self {
+        let mut rig = self.clone();
+        if let (Link::Real(link), Some(places)) = (&mut rig.link, places) {
+            link.datum = Datum::At(places.to_vec());
+        }
+        rig
+    }
+}
+
 /// What stands behind the rig.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a plan has one")]
@@ -198,6 +210,7 @@ pub struct RealLink {
     pub actuator: DeviceLink,
     pub load_cell: Option<DeviceLink>,
     pub safe_state: SafeState,
+    pub datum: Datum,
     pub gate: Gate,
     pub readings: ReadingRules,
     /// Longest time without a sign of life between program and rig, s: past it the rig is to hold by itself, and the
@@ -399,6 +412,17 @@ impl SafeState {
             Self::Unload => "unload",
         }
     }
+}
+
+/// Where the zero of the plan's displacements lies. Targets, readings and limits count from it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Datum {
+    /// At the rig's own zero: the rig must stand there when a run begins.
+    Machine,
+    /// Where the rig stands when it is opened for a run.
+    Here,
+    /// At these places of the rig's own coordinate, m, one an axis: on record, of a run that goes on.
+    At(Vec<f64>),
 }
 
 /// What must be so before the first step: the readings at rest, and the stiffness that a tiny move shows.

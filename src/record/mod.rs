@@ -51,6 +51,10 @@ pub enum Outcome {
     Aborted {
         reason: String,
     },
+    /// A value of the plan, known only in the run, cannot be used: exit 1.
+    Blocked {
+        reason: String,
+    },
     /// The rig failed: exit 3.
     Faulted {
         reason: String,

@@ -4,7 +4,7 @@
 
 use super::failpoint::{Guarding, on};
 use super::holds::Holds;
-use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally, named_axis};
+use super::{LimitedQuantity, Reading, Rig, RigFault, named_axis};
 use crate::plan::{Interval, Limits};
 
 /// A rig and what nothing may drive it past.
@@ -27,6 +27,8 @@ pub struct Guard<'rig> {
     pub(super) heard: f64,
     /// Where holds are to be told.
     pub(super) holds: Option<Holds>,
+    /// The first reading: displacements, m, and forces, N.
+    pub(super) found: (Vec<f64>, Vec<f64>),
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -51,10 +53,12 @@ impl<'rig> Guard<'rig> {
     /// As [`Guard::new`].
     pub fn of_axes(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
         let heard = rig.time();
-        let (commanded, going) = (Vec::new(), Vec::new());
+        let (commanded, going, found) = (Vec::new(), Vec::new(), (Vec::new(), Vec::new()));
         let mut guard =
-            Self { rig, limits, own, commanded, going, settled: false, proposed: None, speed: None, heard, holds: None };
-        guard.commanded = guard.read()?.displacement;
+            Self { rig, limits, own, commanded, going, settled: false, proposed: None, speed: None, heard, holds: None, found };
+        let Reading { displacement, force, .. } = guard.read()?;
+        guard.commanded.clone_from(&displacement);
+        guard.found = (displacement, force);
         Ok(guard)
     }
 
@@ -69,17 +73,6 @@ impl<'rig> Guard<'rig> {
     #[must_use]
     pub const fn time(&self) -> f64 {
         self.heard
-    }
-
-    #[must_use]
-    pub fn declared_noise(&self) -> DeclaredNoise {
-        self.rig.declared_noise()
-    }
-
-    /// What was mended on the lines of the rig so far.
-    #[must_use]
-    pub fn tally(&self) -> Tally {
-        self.rig.tally()
     }
 
     /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the rig's own, else the highest
@@ -320,7 +313,7 @@ pub(super) fn increment(from: f64, to: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::{EachReading, Identity, Offer};
+    use crate::rig::{DeclaredNoise, EachReading, Identity, Offer};
 
     /// Says what it is told to say, and remembers what it was asked.
     #[derive(Default)]
@@ -349,7 +342,7 @@ mod tests {
         fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
             self.proposed.push((targets[0], speed));
             let said = targets[0] + self.misspoken;
-            Ok(Offer { targets: vec![said], speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None })
+            Ok(Offer { targets: vec![said], speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None, at_the_rig: None })
         }
         fn execute(&mut self) -> Result<(), RigFault> {
             self.displacement = self.proposed.last().unwrap().0 + self.error;
@@ -459,9 +452,9 @@ mod tests {
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
             let (commanded, own, going, holds, speed) = (vec![0.001], Vec::new(), Vec::new(), None, None);
-            let (settled, proposed, heard) = (true, None, 0.0);
+            let (settled, proposed, heard, found) = (true, None, 0.0, (Vec::new(), Vec::new()));
             let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled, proposed, speed, heard, holds };
+                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled, proposed, speed, heard, holds, found };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

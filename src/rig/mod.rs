@@ -9,6 +9,7 @@ pub mod failpoint;
 #[cfg(test)]
 mod fault_table;
 mod guard;
+mod guard_about;
 mod guard_glide;
 mod guard_halt;
 mod guard_speed;
@@ -95,6 +96,8 @@ pub struct Offer {
     pub wire: Vec<u8>,
     /// Number of the move, where the rig remembers the last one it was given.
     pub move_id: Option<u64>,
+    /// The targets in the rig's own coordinate, m, where its zero is another than the plan's.
+    pub at_the_rig: Option<Vec<f64>>,
 }
 
 /// The last move a rig remembers.
@@ -333,6 +336,12 @@ pub trait Rig {
     /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent
     /// stiffness.
     fn declared_noise(&self) -> DeclaredNoise;
+
+    /// Where the plan's zero lies in the rig's own coordinate, m, one an axis; None: it has no other coordinate than the plan's, or
+    /// the record, of an older version, does not say.
+    fn datum(&self) -> Option<Vec<f64>> {
+        None
+    }
 
     /// Speed of a move for which none is asked, m/s; None: as fast as the plan's limits allow.
     fn own_speed(&self) -> Option<f64> {

@@ -300,7 +300,7 @@ impl Rig for VirtualFrame {
             return refused(format!("a move at {speed} m/s never arrives"));
         }
         self.proposed = Some((targets.iter().map(|target| self.sign * target).collect(), speed));
-        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None })
+        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None, at_the_rig: None })
     }
 
     /// All axes arrive at once; the one with the farthest way goes at the speed that was asked for.

@@ -190,7 +190,7 @@ impl Rig for VirtualRig {
             return Err(RigFault::Device(format!("a move at {speed} m/s never arrives")));
         }
         self.proposed = Some((target, speed));
-        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None })
+        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None, at_the_rig: None })
     }
 
     fn execute(&mut self) -> Result<(), RigFault> {

@@ -71,7 +71,12 @@ impl Cycling {
         let amplitudes = plan.levels.iter().map(|level| level.amplitude.clone()).collect::<Vec<_>>();
         let amplitudes = inputs.list("amplitudes", &amplitudes)?;
         if let Some(value) = amplitudes.iter().copied().find(|amplitude| !(*amplitude > 0.0 && amplitude.is_finite())) {
-            return Err(Stop::BadInput { field: "amplitudes", value, wanted: "greater than 0".into() });
+            return Err(Stop::BadInput {
+                field: "amplitudes",
+                value,
+                dimension: Dimension::LENGTH,
+                wanted: "greater than 0".into(),
+            });
         }
         let about = inputs.number("about", &plan.about, Dimension::LENGTH)?;
         let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
@@ -140,7 +145,7 @@ impl Cycling {
         let wanted = ((to - from).abs() / speed * rate).round().max(1.0);
         if wanted > MOST_TARGETS {
             let wanted_words = format!("at most {MOST_TARGETS} readings a way").into();
-            return Err(Stop::BadInput { field: "rate", value: wanted, wanted: wanted_words });
+            return Err(Stop::BadInput { field: "rate", value: wanted, dimension: Dimension::NUMBER, wanted: wanted_words });
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_TARGETS")]
         let samples = wanted as usize;

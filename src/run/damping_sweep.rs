@@ -162,7 +162,12 @@ impl Sweep {
         let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
         let rate = plan.rate.as_ref().map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY)).transpose()?;
         if stroke == 0.0 {
-            return Err(Stop::BadInput { field: "stroke", value: stroke, wanted: "other than 0".into() });
+            return Err(Stop::BadInput {
+                field: "stroke",
+                value: stroke,
+                dimension: Dimension::LENGTH,
+                wanted: "other than 0".into(),
+            });
         }
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
@@ -174,7 +179,12 @@ impl Sweep {
         let home = session.commanded();
         for velocity in velocities {
             if velocity == 0.0 {
-                return Err(Stop::BadInput { field: "velocities", value: velocity, wanted: "other than 0".into() });
+                return Err(Stop::BadInput {
+                    field: "velocities",
+                    value: velocity,
+                    dimension: Dimension::VELOCITY,
+                    wanted: "other than 0".into(),
+                });
             }
             let seconds = (stroke / velocity).abs();
             let samples = self.samples(seconds, rate)?;
@@ -201,6 +211,7 @@ impl Sweep {
             return Err(Stop::BadInput {
                 field: "rate",
                 value: wanted,
+                dimension: Dimension::NUMBER,
                 wanted: format!("at most {MOST_SAMPLES} readings a stroke").into(),
             });
         }

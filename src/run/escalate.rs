@@ -24,7 +24,7 @@ pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, se
     if stop.is_none() {
         session.remark_again();
     }
-    Performed { results: results(&history), history: History::Escalate(history), stop }
+    Performed { results: results(&history, plan.between), history: History::Escalate(history), stop }
 }
 
 fn run(
@@ -78,7 +78,7 @@ fn run(
 
 /// Whether the condition holds after a blow, decided once the specimen is where the next one begins; else why that is not known.
 fn decide(plan: &Escalate, rule: DecisionRule, blow: &Blow, before: &dyn Results) -> (Option<bool>, String) {
-    let known = OfBlow { own: plan.own, results: as_brought(blow), before };
+    let known = OfBlow { own: plan.own, results: as_brought(blow, plan.between), before };
     let parts = plan.condition.iter().map(|part| assess_on_blow(part, rule, &known, (plan.own, &blow.history)));
     let worst = parts.reduce(|worst, next| if next.verdict > worst.verdict { next } else { worst });
     match worst {
@@ -88,21 +88,41 @@ fn decide(plan: &Escalate, rule: DecisionRule, blow: &Blow, before: &dyn Results
     }
 }
 
-/// The results of a blow, with where it rests where the specimen was brought to after it, as the results of the row tell it.
-fn as_brought(blow: &Blow) -> Vec<NamedResult> {
+/// The results of a blow, with where the specimen was brought to after it, as the results of the row name it.
+fn as_brought(blow: &Blow, between: Between) -> Vec<NamedResult> {
     let mut results = blow.results.clone();
-    let rests = |result: &mut NamedResult| match (result.name, &blow.rest) {
-        ("residual_displacement", Some(_)) => {
-            let [parts, _] = blow.doubts_of_rest().unwrap_or_default();
-            *result = told(result.name, Dimension::LENGTH, blow.rest_of_struck().map(|(place, _)| place), parts);
+    let Some(rest) = &blow.rest else { return results };
+    let left = Left::of(between);
+    let [parts, _] = blow.doubts_of_rest().unwrap_or_default();
+    let place = told(left.displacement, Dimension::LENGTH, blow.rest_of_struck().map(|(place, _)| place), parts);
+    let drift = blow.storey().map(|_| list(left.drift, Dimension::LENGTH, rest.drift(), rest.doubts_of_drifts()));
+    for brought in [Some(place), drift].into_iter().flatten() {
+        match results.iter_mut().find(|result| result.name == brought.name) {
+            Some(own) => *own = brought,
+            None => results.push(brought),
         }
-        ("residual_drift", Some(rest)) => {
-            *result = list("residual_drift", Dimension::LENGTH, rest.drift(), rest.doubts_of_drifts());
-        }
-        _ => {}
-    };
-    results.iter_mut().for_each(rests);
+    }
     results
+}
+
+/// What the place is called where a blow leaves the specimen: a residual one only where the load is off.
+struct Left {
+    displacement: &'static str,
+    displacements: &'static str,
+    drift: &'static str,
+}
+
+impl Left {
+    const fn of(between: Between) -> Self {
+        match between {
+            Between::Unload => {
+                Self { displacement: "residual_displacement", displacements: "residual_displacements", drift: "residual_drift" }
+            }
+            Between::Home | Between::Stay => {
+                Self { displacement: "final_displacement", displacements: "final_displacements", drift: "final_drift" }
+            }
+        }
+    }
 }
 
 /// To where the next blow begins.
@@ -201,8 +221,9 @@ fn told(name: &'static str, dimension: Dimension, value: Option<f64>, contributi
 }
 
 /// In the order of the reference.
-fn results(history: &EscalateHistory) -> Vec<NamedResult> {
+fn results(history: &EscalateHistory, between: Between) -> Vec<NamedResult> {
     let blows = &history.blows;
+    let left = Left::of(between);
     // Each as uncertain as that of its blow.
     let known = |name, dimension, of_blow: &str| {
         list(name, dimension, of(blows, of_blow), by_blow(blows, |blow| contributions(blow, of_blow)))
@@ -230,7 +251,7 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
         energy("last_passed_energy", passed, nothing),
         energy("first_failed_energy", failed, None),
         largest(blows, "max_displacement"),
-        told("residual_displacement", Dimension::LENGTH, last.and_then(place), last.map_or_else(Vec::new, doubts_of_place)),
+        told(left.displacement, Dimension::LENGTH, last.and_then(place), last.map_or_else(Vec::new, doubts_of_place)),
         sum(blows, "absorbed_energy", absorbed),
         list("velocities", Dimension::VELOCITY, blows.iter().map(|blow| blow.velocity).collect(), by_blow(blows, of_velocity)),
         list(
@@ -240,7 +261,7 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
             by_blow(blows, |blow| contributions(blow, "striker_energy")),
         ),
         known("max_displacements", Dimension::LENGTH, "max_displacement"),
-        list("residual_displacements", Dimension::LENGTH, rests, by_blow(blows, doubts_of_place)),
+        list(left.displacements, Dimension::LENGTH, rests, by_blow(blows, doubts_of_place)),
         known("absorbed_energies", Dimension::ENERGY, "absorbed_energy"),
         known("impulses", Dimension::IMPULSE, "impulse"),
         unknown("energy_errors", Dimension::NUMBER, "energy_error"),
@@ -250,7 +271,7 @@ fn results(history: &EscalateHistory) -> Vec<NamedResult> {
         let (drift, doubts) = rest.map(|rest| (rest.drift(), rest.doubts_of_drifts())).unwrap_or_default();
         results.extend([
             largest_of_storeys(blows, "max_drift"),
-            list("residual_drift", Dimension::LENGTH, drift, doubts),
+            list(left.drift, Dimension::LENGTH, drift, doubts),
             sum_of_storeys(blows, "storey_energy"),
         ]);
     }

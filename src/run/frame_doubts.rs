@@ -286,7 +286,7 @@ pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
     let lists = [
         (displacement, floors.max_displacement.as_slice()),
         ("max_drift", &floors.max_drift),
-        ("residual_drift", &floors.residual_drift),
+        ("final_drift", &floors.final_drift),
         ("max_base_shear", &shear),
     ];
     lists.into_iter().all(|(name, found)| {
@@ -301,7 +301,7 @@ pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
 }
 
 /// Results that wait for the end of the run, beside those of any impact.
-const LATE_OF_STOREYS: [&str; 2] = ["residual_drift", "storey_energy"];
+const LATE_OF_STOREYS: [&str; 2] = ["final_drift", "storey_energy"];
 
 /// Says of what waits for the end of a run that swung back that it is not sure.
 pub(super) fn mark_late(layout: &[(&'static str, usize)], contributions: &mut [Vec<Contribution>]) {

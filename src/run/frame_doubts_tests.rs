@@ -340,7 +340,7 @@ fn shakes_of_the_true_rig_scatter_as_foretold() {
         ("max_displacement", 1),
         ("max_drift", 0),
         ("max_drift", 1),
-        ("residual_drift", 0),
+        ("final_drift", 0),
         ("max_base_shear", 0),
     ];
     scatters_as_foretold(&rebuilt(doubtful), &names, false, &mut |uniform, _| {
@@ -370,13 +370,13 @@ fn blows_on_a_storey_scatter_as_foretold() {
     let names = [
         ("max_displacement", 0),
         ("absorbed_energy", 0),
-        ("residual_displacement", 0),
+        ("final_displacement", 0),
         ("max_velocity", 0),
         ("max_drift", 0),
         ("max_drift", 1),
         ("floor_displacement", 0),
-        ("residual_drift", 0),
-        ("residual_drift", 1),
+        ("final_drift", 0),
+        ("final_drift", 1),
         ("storey_energy", 0),
         ("storey_energy", 1),
         ("max_base_shear", 0),
@@ -395,7 +395,7 @@ fn noise_of_the_cells_scatters_as_foretold() {
         plan.rig.link = Link::Virtual(VirtualLink { noise: 0.3, seed, ..VirtualLink::default() });
         plan
     };
-    let names = [("max_displacement", 0), ("max_displacement", 1), ("max_drift", 1), ("residual_drift", 0)];
+    let names = [("max_displacement", 0), ("max_displacement", 1), ("max_drift", 1), ("final_drift", 0)];
     scatters_as_foretold(&with(1), &names, true, &mut |_, run| with(run + 1));
 }
 

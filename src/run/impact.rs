@@ -107,6 +107,7 @@ impl Setting {
             return Err(Stop::BadInput {
                 field: "time_step",
                 value: time_step,
+                dimension: Dimension::TIME,
                 wanted: format!("long enough for at most {MOST_STEPS} steps").into(),
             });
         }
@@ -147,7 +148,12 @@ pub(super) fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactL
         Contact::Restitution { coefficient } => {
             let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
             if coefficient > 1.0 {
-                return Err(Stop::BadInput { field: "restitution", value: coefficient, wanted: "at most 1".into() });
+                return Err(Stop::BadInput {
+                    field: "restitution",
+                    value: coefficient,
+                    dimension: Dimension::NUMBER,
+                    wanted: "at most 1".into(),
+                });
             }
             ContactLaw::Restitution { coefficient }
         }
@@ -215,7 +221,7 @@ pub(super) fn results(summary: Option<&ImpactSummary>, worst: Option<f64>, histo
         of("max_displacement", Dimension::LENGTH, |summary| summary.max_displacement),
         of("time_of_max_displacement", Dimension::TIME, |summary| summary.time_of_max_displacement),
         result("stop_time", Dimension::TIME, summary.and_then(|summary| summary.stop_time)),
-        of("residual_displacement", Dimension::LENGTH, |summary| summary.residual_displacement),
+        of("final_displacement", Dimension::LENGTH, |summary| summary.final_displacement),
         of("max_velocity", Dimension::VELOCITY, |summary| summary.max_velocity),
         of("max_contact_force", Dimension::FORCE, |summary| summary.max_contact_force),
         of("impulse", Dimension::IMPULSE, |summary| summary.impulse),

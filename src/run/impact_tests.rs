@@ -58,7 +58,7 @@ fn example_1_comes_out_as_printed() {
 
 #[test]
 fn results_stand_in_the_order_of_the_reference_also_when_there_are_none() {
-    let reference = "max_displacement, time_of_max_displacement, stop_time, residual_displacement, max_velocity, \
+    let reference = "max_displacement, time_of_max_displacement, stop_time, final_displacement, max_velocity, \
                      max_contact_force, impulse, contacts, restitution, indentation, indentation_energy, absorbed_energy, \
                      restoring_energy, damping_energy, striker_energy, energy_error, tracking_energy_error, tracking_indicator, \
                      nrms_error, peak_error, time_step, critical_time_step, steps";

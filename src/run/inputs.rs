@@ -53,7 +53,7 @@ impl<'record> Inputs<'record> {
     pub(super) fn not_negative(&mut self, field: &'static str, formula: &Formula, dimension: Dimension) -> Result<f64, Stop> {
         match self.number(field, formula, dimension)? {
             value if value >= 0.0 => Ok(value),
-            value => Err(Stop::BadInput { field, value, wanted: "at least 0".into() }),
+            value => Err(Stop::BadInput { field, value, dimension, wanted: "at least 0".into() }),
         }
     }
 
@@ -69,7 +69,7 @@ impl<'record> Inputs<'record> {
         if estimate.value > 0.0 {
             Ok(estimate)
         } else {
-            Err(Stop::BadInput { field, value: estimate.value, wanted: "greater than 0".into() })
+            Err(Stop::BadInput { field, value: estimate.value, dimension, wanted: "greater than 0".into() })
         }
     }
 

@@ -31,7 +31,7 @@ const NAMES: [(&str, usize); 8] = [
     ("max_displacement", 1),
     ("max_drift", 0),
     ("max_drift", 1),
-    ("residual_drift", 1),
+    ("final_drift", 1),
     ("max_base_shear", 0),
     ("periods", 0),
     ("periods", 1),

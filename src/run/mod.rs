@@ -90,6 +90,7 @@ mod shake;
 mod shake_doubts;
 mod shake_results;
 mod shaking;
+pub mod start;
 mod stepping;
 mod stiffer;
 #[cfg(test)]

@@ -22,7 +22,7 @@ use crate::uncertainty::{Contribution, Moved, Source, sources_of};
 pub(super) const LEADS_ELSEWHERE: &str = "the recorded way, taken again, does not lead to the recorded results";
 
 /// Results that wait for the end of the run.
-pub(super) const LATE: [&str; 4] = ["residual_displacement", "impulse", "restoring_energy", "damping_energy"];
+pub(super) const LATE: [&str; 4] = ["final_displacement", "impulse", "restoring_energy", "damping_energy"];
 
 /// One run to take.
 struct Job {
@@ -249,7 +249,7 @@ pub(super) fn same(one: &ImpactSummary, other: &ImpactSummary) -> bool {
         |summary| summary.max_displacement,
         |summary| summary.time_of_max_displacement,
         |summary| summary.stop_time.unwrap_or(-1.0),
-        |summary| summary.residual_displacement,
+        |summary| summary.final_displacement,
         |summary| summary.impulse,
         |summary| summary.absorbed_energy,
     ];

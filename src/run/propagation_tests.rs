@@ -164,7 +164,7 @@ fn runs_of_the_true_rig_scatter_as_foretold() {
     }
     let told = run_unwatched(&doubtful);
     let mut uniform = Uniform(20_060_101);
-    let names = ["max_displacement", "absorbed_energy", "residual_displacement", "impulse", "max_velocity"];
+    let names = ["max_displacement", "absorbed_energy", "final_displacement", "impulse", "max_velocity"];
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for _ in 0..RUNS {
         let velocity = 1.0 + 0.01 * uniform.normal();
@@ -263,7 +263,7 @@ fn a_record_that_does_not_lead_to_its_results_tells_none() {
         max_displacement: 0.2,
         time_of_max_displacement: 0.2,
         stop_time: None,
-        residual_displacement: 0.0,
+        final_displacement: 0.0,
         max_velocity: 0.0,
         max_contact_force: 0.0,
         impulse: 0.0,

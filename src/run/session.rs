@@ -40,6 +40,7 @@ impl<'run> Session<'run> {
     ) -> Result<Self, Box<(Event, Stop)>> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
+        let datum = rig.datum().is_some();
         let reckoned = rig.identity().simulated && plan.rig.link.as_real().is_none();
         let wanted = plan.degrees_of_freedom();
         let guard = if axes == wanted {
@@ -66,7 +67,11 @@ impl<'run> Session<'run> {
                 })
             }
             Err(fault) => {
-                let stop = Stop::Rig(fault);
+                // Records of older versions have the fault alone.
+                let stop = match fault {
+                    RigFault::LimitBreached { .. } if datum => Stop::AtRest(fault),
+                    fault => Stop::Rig(fault),
+                };
                 let event = Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() };
                 observer.event(&event);
                 Err(Box::new((event, stop)))

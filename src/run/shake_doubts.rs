@@ -55,7 +55,7 @@ pub(super) fn propagate(
         job.run.shaken(&scaled, path, &job.distortion)
     };
     let numbers = |job: &Job, floors: &Floors| {
-        let lists = [&floors.max_displacement, &floors.max_drift, &floors.residual_drift, &job.periods];
+        let lists = [&floors.max_displacement, &floors.max_drift, &floors.final_drift, &job.periods];
         lists.into_iter().flatten().copied().chain([floors.max_base_shear]).collect::<Vec<f64>>()
     };
     let floors = doubts.floors();
@@ -90,7 +90,7 @@ pub(super) fn propagate(
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
     let mut parts = runs.told(parts)?;
-    let lists = ["max_displacement", "max_drift", "residual_drift", "periods"].map(|name| (name, floors));
+    let lists = ["max_displacement", "max_drift", "final_drift", "periods"].map(|name| (name, floors));
     let layout: Vec<(&'static str, usize)> = lists.into_iter().chain([("max_base_shear", 1)]).collect();
     if path.swung_back() {
         mark_late(&layout, &mut parts);

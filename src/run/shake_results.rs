@@ -73,7 +73,7 @@ pub(super) fn results(modes: Option<&Modes>, summary: Option<&ShakeSummary>, fol
     let mut results = vec![
         list("max_displacement", Dimension::LENGTH, summary.map(|summary| &summary.max_displacement)),
         list("max_drift", Dimension::LENGTH, summary.map(|summary| &summary.max_drift)),
-        list("residual_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
+        list("final_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
         list("periods", Dimension::TIME, modes.map(|modes| &modes.periods)),
         result("max_base_shear", Dimension::FORCE, summary.map(|summary| summary.max_base_shear)),
         result("energy_error", Dimension::NUMBER, summary.map(|summary| summary.energy_error)),

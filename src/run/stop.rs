@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 
 use crate::formula::FormulaError;
+use crate::quantity::Dimension;
+use crate::quantity::display::stated;
 use crate::record::{EventKind, Outcome};
 use crate::rig::RigFault;
 
@@ -10,6 +12,8 @@ use crate::rig::RigFault;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Stop {
     Rig(RigFault),
+    /// A reading outside its limit before anything was told to move.
+    AtRest(RigFault),
     /// A person said so, or asked the program to end.
     Person {
         reason: String,
@@ -27,21 +31,21 @@ pub(super) enum Stop {
     BadInput {
         field: &'static str,
         value: f64,
+        dimension: Dimension,
         wanted: Cow<'static, str>,
     },
 }
 
 impl Stop {
-    /// Limits and people abort a run; a rig that fails, or a procedure that cannot begin, is a fault.
+    /// Limits and people abort a run; an input that cannot be used blocks it; a rig that fails is a fault.
     pub(super) fn outcome(&self) -> Outcome {
         let reason = self.to_string();
         match self {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
+            | Self::AtRest(_)
             | Self::Person { .. } => Outcome::Aborted { reason },
-            Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
-            | Self::Gate { .. }
-            | Self::NoInput { .. }
-            | Self::BadInput { .. } => Outcome::Faulted { reason },
+            Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Blocked { reason },
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::Gate { .. } => Outcome::Faulted { reason },
         }
     }
 
@@ -61,7 +65,7 @@ impl Stop {
 
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
-            Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
+            Self::Rig(RigFault::LimitBreached { .. }) | Self::AtRest(_) => EventKind::LimitBreach,
             Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
@@ -75,11 +79,16 @@ impl std::fmt::Display for Stop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Rig(fault) => write!(f, "{fault}"),
+            Self::AtRest(fault) => write!(
+                f,
+                "{fault}; nothing has moved: look for a wrong unit, scale or word order, for load on the specimen, or for a zero \
+                 that lies elsewhere (`datum`)"
+            ),
             Self::Person { reason } => f.write_str(reason),
             Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
-            Self::BadInput { field, value, wanted } => {
-                write!(f, "`{field}` came out as {value} in SI units, but must be {wanted}")
+            Self::BadInput { field, value, dimension, wanted } => {
+                write!(f, "`{field}` came out as {}, but must be {wanted}", stated(*value, *dimension))
             }
         }
     }

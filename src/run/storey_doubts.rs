@@ -89,7 +89,7 @@ pub(super) fn propagate(
     // From the beginning of a step to the end of one: two times, each up to Δt off.
     let both = Contribution::new(Source::TimeStep { procedure: doubts.procedure }, time_step / 6.0_f64.sqrt());
     parts[DURATION].push(both);
-    let lists = ["floor_displacement", "max_drift", "residual_drift", "storey_energy", "periods"].map(|name| (name, floors));
+    let lists = ["floor_displacement", "max_drift", "final_drift", "storey_energy", "periods"].map(|name| (name, floors));
     let layout: Vec<(&'static str, usize)> = OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1)).chain(lists).collect();
     if path.swung_back() {
         mark_late(&layout, &mut parts);
@@ -110,7 +110,7 @@ fn numbers(job: &Job, found: &BlowOutcome) -> Vec<f64> {
     let duration = if *first_blow > 0 { *first_blow as f64 * job.run.time_step } else { f64::NAN };
     let back = if *striker_velocity < 0.0 { -striker_velocity } else { f64::NAN };
     let floors = &floors.between;
-    let lists = [&floors.max_displacement, &floors.max_drift, &floors.residual_drift, storey_energy, &job.periods];
+    let lists = [&floors.max_displacement, &floors.max_drift, &floors.final_drift, storey_energy, &job.periods];
     let scalars = [duration, back, floors.max_base_shear, job.critical_time_step];
     blow.values.iter().copied().chain(scalars).chain(lists.into_iter().flatten().copied()).collect()
 }

@@ -46,7 +46,7 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
 }
 
 pub(super) fn no_frame() -> Stop {
-    Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }
+    Stop::BadInput { field: "specimen", value: 0.0, dimension: Dimension::NUMBER, wanted: "a frame of storeys".into() }
 }
 
 /// One blow, as far as it went.

@@ -109,7 +109,7 @@ pub(super) fn results(summary: Option<&StoreySummary>, followed: &Followed, hist
         result("rebound_velocity", Dimension::VELOCITY, back),
         list("floor_displacement", Dimension::LENGTH, summary.map(|summary| &summary.floor_displacement)),
         list("max_drift", Dimension::LENGTH, summary.map(|summary| &summary.max_drift)),
-        list("residual_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
+        list("final_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
         list("storey_energy", Dimension::ENERGY, summary.map(|summary| &summary.storey_energy)),
         result("max_base_shear", Dimension::FORCE, summary.map(|summary| summary.max_base_shear)),
         list("periods", Dimension::TIME, history.modes.as_ref().map(|modes| &modes.periods)),

@@ -65,12 +65,13 @@ pub(super) fn perform_frame(plan: &FrameUnload, whole: &Plan, inputs: &mut Input
 }
 
 fn no_frame() -> Stop {
-    Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }
+    Stop::BadInput { field: "specimen", value: 0.0, dimension: Dimension::NUMBER, wanted: "a frame of storeys".into() }
 }
 
 /// How the forces of a frame are expected to fall.
 pub(super) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
-    let unfit = |reason: String| Stop::BadInput { field: "specimen", value: 0.0, wanted: reason.into() };
+    let unfit =
+        |reason: String| Stop::BadInput { field: "specimen", value: 0.0, dimension: Dimension::NUMBER, wanted: reason.into() };
     let properties = FrameProperties::of(frame, &Damping::None);
     let properties = properties.map_err(|reason| unfit(format!("a frame that can be unloaded: {reason}")))?;
     Unloading::of(&properties.matrices.stiffness).map_err(|reason| unfit(format!("a stiffness that resists: {reason}")))

@@ -71,7 +71,11 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement of the structure over the run"),
     ResultKind::measured("time_of_max_displacement", Dimension::TIME, "virtual time of the largest displacement"),
     ResultKind::measured("stop_time", Dimension::TIME, "virtual time at which the striker first stood still"),
-    ResultKind::measured("residual_displacement", Dimension::LENGTH, "displacement at the end of the run"),
+    ResultKind::measured(
+        "final_displacement",
+        Dimension::LENGTH,
+        "displacement at the last step of the run, under whatever load it then carries",
+    ),
     ResultKind::measured("max_velocity", Dimension::VELOCITY, "largest size of the structure's velocity"),
     ResultKind::measured(
         "max_contact_force",
@@ -108,7 +112,7 @@ pub(super) const IMPACT: &[ResultKind] = &[
         .of_storey(),
     ResultKind::measured_list("floor_displacement", Dimension::LENGTH, "largest size of each floor's displacement").of_storey(),
     ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift").of_storey(),
-    ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run").of_storey(),
+    ResultKind::measured_list("final_drift", Dimension::LENGTH, "each storey's drift at the last step of the run").of_storey(),
     ResultKind::measured_list("storey_energy", Dimension::ENERGY, "shear of each storey integrated over its drift, over the run")
         .of_storey(),
     ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey")
@@ -155,7 +159,7 @@ pub(super) const SHAKE: &[ResultKind] = &[
         "largest size of each floor's displacement, relative to the ground",
     ),
     ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift"),
-    ResultKind::measured_list("residual_drift", Dimension::LENGTH, "each storey's drift at the end of the run"),
+    ResultKind::measured_list("final_drift", Dimension::LENGTH, "each storey's drift at the last step of the run"),
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first"),
     ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey"),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),

@@ -76,6 +76,12 @@ const SIGN: &[Variant] = &[
     Variant::word("negative", "the rig's positive direction is against the striker's"),
 ];
 
+/// Where the zero of the plan's displacements lies.
+const DATUM: &[Variant] = &[
+    Variant::word("machine", "the rig's own zero; a rig that stands elsewhere when the run begins is refused"),
+    Variant::word("here", "where the rig stands when the run begins, its specimen without load; on record"),
+];
+
 /// What one axis says of itself: each in place of what the rig says of all.
 const AXIS: &[Variant] = &[Variant::with(
     "axis",
@@ -151,6 +157,7 @@ pub(super) const RIG: BlockKind = BlockKind {
             .or_said("one axis")
             .of_real_rigs(),
         Field::choice("sign", SIGN, "direction of the rig's displacement and force").or_said("positive"),
+        Field::choice("datum", DATUM, "where the plan's displacements are 0").or_said("machine").of_real_rigs(),
         Field::quantity("speed", Dimension::VELOCITY, "speed of a move for which nothing else is said")
             .or(1.0, "mm/s")
             .above_zero()

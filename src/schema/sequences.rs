@@ -93,7 +93,16 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ),
         ResultKind::measured("first_failed_energy", Dimension::ENERGY, "energy of the blow after which it no longer held"),
         ResultKind::measured("max_displacement", Dimension::LENGTH, "largest displacement over all blows"),
-        ResultKind::measured("residual_displacement", Dimension::LENGTH, "where the specimen was brought to after the last blow"),
+        ResultKind::measured(
+            "residual_displacement",
+            Dimension::LENGTH,
+            "where the specimen rests after the last blow, if unloaded",
+        ),
+        ResultKind::measured(
+            "final_displacement",
+            Dimension::LENGTH,
+            "where the specimen was left after the last blow, with `between = home` or `stay`",
+        ),
         ResultKind::measured(
             "absorbed_energy",
             Dimension::ENERGY,
@@ -105,7 +114,12 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ResultKind::measured_list(
             "residual_displacements",
             Dimension::LENGTH,
-            "where the specimen was brought to after each blow",
+            "where the specimen rests after each blow, if unloaded",
+        ),
+        ResultKind::measured_list(
+            "final_displacements",
+            Dimension::LENGTH,
+            "where the specimen was left after each blow, with `between = home` or `stay`",
         ),
         ResultKind::measured_list(
             "absorbed_energies",
@@ -119,7 +133,13 @@ pub(super) const ESCALATE: BlockKind = BlockKind {
         ResultKind::measured_list(
             "residual_drift",
             Dimension::LENGTH,
-            "each storey's drift where it was brought to after the last blow",
+            "each storey's drift where it rests after the last blow, if unloaded",
+        )
+        .of_storey(),
+        ResultKind::measured_list(
+            "final_drift",
+            Dimension::LENGTH,
+            "each storey's drift where it was left after the last blow, with `between = home` or `stay`",
         )
         .of_storey(),
         ResultKind::measured_list(

@@ -123,6 +123,15 @@ impl Bench {
         Self { converters, ..self }
     }
 
+    /// The same bench whose rams stand at these places of their controllers, m, with the specimen not bent.
+    #[must_use]
+    pub fn standing_at(mut self, places: &[f64]) -> Self {
+        for (ram, place) in self.rams.iter_mut().zip(places) {
+            ram.stand_at(*place);
+        }
+        self
+    }
+
     /// Something goes wrong now with the ram at this place, its specimen or its sensors.
     pub fn strike(&mut self, ram: usize, fault: BenchFault) {
         let time = self.time;
@@ -196,9 +205,9 @@ impl Bench {
         }
         let moved: Vec<f64> = self.rams.iter().zip(before).map(|(ram, before)| ram.settings.sign * (ram.at - before)).collect();
         if moved.iter().any(|moved| *moved != 0.0) {
-            let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.at).collect();
+            let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.bends()).collect();
             let forces = self.structure.bend(&places);
-            let felt = self.rams.iter_mut().zip(forces).map(|(ram, force)| ram.faults.specimen_force(ram.at, force));
+            let felt = self.rams.iter_mut().zip(forces).map(|(ram, force)| ram.faults.specimen_force(ram.bends(), force));
             self.restoring_force = felt.collect();
         }
         self.structure.relax(&moved, going, seconds);

@@ -193,11 +193,11 @@ fn growing_entries(floors: &[FloorStep], of: fn(&FloorStep) -> Vec<f64>, rate: f
     growing
 }
 
-/// Of a result of a blow as the condition of its row reads it: where it rests after a blow that was cut is no more its own.
+/// Of a result of a blow as the condition of its row reads it: where it is left after a blow that was cut is no more its own.
 fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
     match result {
-        "residual_displacement" => of_blow(steps, "max_displacement", name),
-        "residual_drift" => {
+        "residual_displacement" | "final_displacement" => of_blow(steps, "max_displacement", name),
+        "residual_drift" | "final_drift" => {
             let growth = of_blow(steps, "max_displacement", name).or_else(|| of_blow(steps, "max_drift", name))?;
             Some(Growth { entries: (0..steps.floors.last()?.computed.len()).collect(), ..growth })
         }
@@ -228,8 +228,8 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         "max_displacement" | "absorbed_energy" => by_blow(result).map(one),
         "max_displacements" => by_blow("max_displacement"),
         "absorbed_energies" => by_blow("absorbed_energy"),
-        "residual_displacements" => by_blow("residual_displacement"),
-        "residual_displacement" | "residual_drift" => of(blows().next_back()?, result),
+        "residual_displacements" | "final_displacements" => by_blow("residual_displacement"),
+        "residual_displacement" | "residual_drift" | "final_displacement" | "final_drift" => of(blows().next_back()?, result),
         "max_drift" => {
             let found: Vec<Growth> = blows().filter_map(|blow| of(blow, result)).collect();
             let why = found.first()?.why.clone();

@@ -115,8 +115,13 @@ fn the_whole_takes_its_worst_part_and_the_end_of_the_run() {
         label: "travel".to_owned(),
         conditions: vec![condition(result("max_displacement"), compare(Comparison::Less, limit))],
     };
+    assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Completed, "nothing was required");
+    plan.requirements = vec![requirement(9.0)];
     assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Pass);
-    plan.requirements = vec![requirement(9.0), requirement(7.0)];
+    let blocked = record(Outcome::Blocked { reason: String::new() });
+    assert_eq!(assess(&plan, &blocked).verdict, Verdict::Inconclusive);
+    plan.requirements.push(requirement(7.0));
+    assert_eq!(assess(&plan, &blocked).verdict, Verdict::Fail);
     let assessed = assess(&plan, &record(Outcome::Completed));
     assert_eq!(assessed.verdict, Verdict::Fail);
     assert_eq!(assessed.requirements[0].verdict, Verdict::Pass);

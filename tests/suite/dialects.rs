@@ -15,6 +15,10 @@ use serde_json::Value;
 
 /// Longest wait for anything: far beyond what a machine under load takes.
 const PATIENCE: Duration = Duration::from_mins(4);
+/// `reply_timeout` of a rig that answers, s: longer than a loaded machine keeps an emulator waiting.
+const ANSWERS: f64 = 30.0;
+/// `reply_timeout` of a rig that stays silent, s.
+const SILENT: f64 = 0.2;
 /// N/m
 const STIFFNESS: f64 = 3e5;
 /// Of the beam's free vibration, √(K/M) with M = 0.73038 kg, 1/s.
@@ -84,18 +88,18 @@ fn ready(folder: &Path) -> bool {
 }
 
 /// The plan of a case and what it uses, with ports of its own.
-fn write_plan(case: &Case, folder: &Path) {
+fn write_plan(case: &Case, folder: &Path, reply_timeout: f64) {
     let beam = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/lib/gfrp_beam.psd");
     fs::copy(beam, folder.join("gfrp_beam.psd")).expect("the beam");
     let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a free port");
-    fs::write(folder.join("plan.psd"), case.plan(folder, &free.to_string())).expect("the plan");
+    fs::write(folder.join("plan.psd"), case.plan(folder, &free.to_string(), reply_timeout)).expect("the plan");
 }
 
 /// Runs a case on both rigs; the error says what was wrong, with what both processes said.
 fn run(case: &Case) -> Result<(), String> {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    write_plan(case, folder);
+    write_plan(case, folder, ANSWERS);
     let said = |what: &str| {
         let log = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_default();
         let bytes = log("bytes.txt");

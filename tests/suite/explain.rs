@@ -66,6 +66,7 @@ fn checked(code: Code, kind: &str) -> Checked {
         settings: settings.into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
         date: None,
         unattended: plan.option("unattended").is_some(),
+        recorded: false,
     };
     check("plan.psd", &plan.text, &PageFiles(&fences), &options)
 }

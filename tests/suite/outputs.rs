@@ -336,3 +336,21 @@ fn only_the_formats_asked_for_are_written() {
         ]
     );
 }
+
+#[test]
+fn a_run_of_which_nothing_is_required_is_completed_and_never_passed() {
+    let mut finished = finished();
+    finished.plan.requirements.clear();
+    finished.assessment = psd::verdict::assess(&finished.plan, &finished.record);
+    let files = files(&finished);
+    let html = text(&files, "certificate.html");
+    assert!(html.contains("<div class=\"verdict completed\"><strong>COMPLETED</strong>") && !html.contains("<strong>PASS"));
+    assert!(html.contains("The plan states no requirement: nothing was decided."));
+    let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
+    assert_eq!(summary["verdict"], "completed");
+    let told = console::verdict_text(&finished.run(), true);
+    assert!(told.starts_with("COMPLETED  Simply supported beam") && !told.contains("PASS"), "{told}");
+    assert!(bytes(&files, "certificate.pdf").starts_with(b"%PDF"), "paper knows the word too");
+    finished.record.outcome = Outcome::Aborted { reason: "a limit".into() };
+    assert_eq!(psd::verdict::assess(&finished.plan, &finished.record).verdict, Verdict::Aborted);
+}

@@ -17,7 +17,9 @@ fn stepper(plan: &str) -> String {
     let (port, after) = port.split_once("\", dialect: native, reply_timeout: 2 s)").unwrap();
     let devices = format!(
         "  actuator   = serial(port: \"{port}\", dialect: grbl, reply_timeout: 1 s)\n  \
-           load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 1 s)"
+           load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 1 s)\n  \
+           sign       = negative\n  \
+           datum      = here"
     );
     let plan = format!("{before}{devices}{after}").replace("duration  = 24 ms", "duration  = 3 ms");
     let plan = plan.replace("samples    = 1", "samples    = 1\n  resolution = 2.5 um");

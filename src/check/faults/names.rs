@@ -173,6 +173,20 @@ pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diag
         .help(format!("a result is read from its procedure: did you mean `{procedure}.{name}`?"))
 }
 
+/// A result of a run that does not unload by the name of one that does, or the other way round.
+pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Span) -> Diagnostic {
+    let unloads = now.starts_with("residual");
+    let message = if unloads { "takes the load off" } else { "ends under load" };
+    let help = match (unloads, kind.kind) {
+        (true, _) => format!("read `{now}`"),
+        (false, Kind::Escalate) => format!("read `{now}`, or write `between = unload`"),
+        (false, _) => format!("read `{now}`, or unload first: `unload rest {{ }}`, then `rest.{name}`"),
+    };
+    Diagnostic::new(Code::UnknownResult, format!("`{name}` is called `{now}` here, where the `{}` {message}", kind.words()))
+        .at(span, format!("the `{}` has `{now}`", kind.words()))
+        .help(help)
+}
+
 /// `1 m/s` of `1 m / s`, and `10 mm` of `10 * mm`, where the last word is a unit.
 fn quantity_apart(name: &str, before: &str) -> Option<String> {
     crate::quantity::unit::lookup(name)?;

@@ -29,6 +29,14 @@ pub fn missing_unit(text: &str, span: Span, number: Option<&str>, wanted: Dimens
         .help(format!("write the unit, such as `{}`", example(number, wanted)))
 }
 
+/// A plain number would be read as radians, where most people think of degrees.
+pub fn angle_without_unit(text: &str, span: Span) -> Diagnostic {
+    let plain = text.parse::<f64>().is_ok();
+    let help =
+        if plain { format!("write `{text} deg`, or `{text} rad`") } else { "write `deg` or `rad`, as in `40 deg`".to_owned() };
+    Diagnostic::new(Code::MissingUnit, format!("`{text}` is an angle without a unit")).at(span, "degrees or radians?").help(help)
+}
+
 /// `entries`: a list or range, whose unit stands once, at its end.
 pub fn missing_unit_of_entries(entries: &str, span: Span, wanted: Dimension, wanted_by: &str) -> Diagnostic {
     let unit = wanted.usual_unit();

@@ -276,6 +276,15 @@ pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
         .help("leave room in the limit itself, or require what is measured")
 }
 
+/// `read` is where the last step of a run was; `row`: of a row of blows.
+pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) -> Diagnostic {
+    let or_row = if row { ", or write `between = unload`" } else { "" };
+    Diagnostic::new(Code::FinalIsNotResidual, format!("`{read}` is read under load: it is not what stays when the load is off"))
+        .at(required, "required of the last step")
+        .at(head, "nothing unloads the specimen after it")
+        .help(format!("unload the specimen with `unload rest {{ }}`, and require its `residual_…`{or_row}"))
+}
+
 /// `step` and `duration` in s.
 pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f64) -> Diagnostic {
     let told = |time| display::stated(time, Dimension::TIME);

@@ -3,8 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::amending::AMENDMENT;
 use super::folder::{Folder, MANIFEST};
+use super::issues;
 use super::keys::KnownKey;
 use super::rebuilt::{Rebuilt, Report};
 use super::signature;
@@ -73,8 +73,9 @@ fn results(folder: &Folder, report: &Report, findings: &mut Vec<Finding>) {
         faults.entry(part_of(path)).or_default().push(fault);
     }
     let expected: BTreeSet<&String> = report.files.iter().map(|(path, _)| path).collect();
-    let kept: BTreeSet<String> = folder.kept().into_iter().map(|(name, _)| name).collect();
-    for (name, _) in folder.listed().filter(|(name, _)| !expected.contains(name) && !kept.contains(*name) && *name != AMENDMENT) {
+    let issue = issues::held(folder).map(|(name, _)| name.to_owned());
+    let kept: BTreeSet<String> = folder.kept().into_iter().map(|(name, _)| name).chain(issue).collect();
+    for (name, _) in folder.listed().filter(|(name, _)| !expected.contains(name) && !kept.contains(*name)) {
         faults.entry(part_of(name)).or_default().push(format!("`{name}` is none of the run's files"));
     }
     for (part, _) in PARTS.iter().rev() {
@@ -117,7 +118,7 @@ fn manifest(folder: &Folder, report: Option<&Report>) -> Finding {
     if faults.is_empty()
         && let Some(report) = report
     {
-        let beside = folder.files.get(AMENDMENT).map(|held| (AMENDMENT.to_owned(), held.digest.clone()));
+        let beside = issues::held(folder).map(|(name, held)| (name.to_owned(), held.digest.clone()));
         let all: Vec<(String, String)> = report.files.iter().cloned().chain(folder.kept()).chain(beside).collect();
         if manifest_with(&[], &all).bytes != bytes {
             faults.push("it is not the one that the record gives".to_owned());

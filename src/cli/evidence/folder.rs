@@ -16,7 +16,7 @@ use crate::cli::record_file::JOURNAL;
 use crate::digest::{hex, sha256};
 use crate::record::journal::{MOST_BYTES, is_part_of_a_reserve};
 
-use super::amending::AMENDMENT;
+use super::issues::{ISSUE, OLDER_ISSUE};
 use super::signature;
 
 /// Name of the manifest; it does not list itself.
@@ -41,7 +41,7 @@ pub struct Folder {
 pub struct Held {
     /// SHA-256, hex.
     pub digest: String,
-    /// Only of files that are read: the record, the manifest, the amendment, signatures.
+    /// Only of files that are read: the record, the manifest, the issue, signatures.
     pub bytes: Option<Vec<u8>>,
 }
 
@@ -163,7 +163,7 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
 }
 
 fn is_read(name: &str) -> bool {
-    matches!(name, JOURNAL | MANIFEST | AMENDMENT) || signature::is_name(name) || is_reserve(name)
+    matches!(name, JOURNAL | MANIFEST | ISSUE | OLDER_ISSUE) || signature::is_name(name) || is_reserve(name)
 }
 
 fn is_kept(name: &str) -> bool {

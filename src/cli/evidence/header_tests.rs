@@ -5,12 +5,15 @@ use serde_json::{Value, json};
 
 use super::check::examine;
 use super::folder::{Folder, Held, MANIFEST};
-use super::rebuilt::Rebuilt;
+use super::rebuilt::{PlayedBack, Rebuilt};
 use super::tests::{faults, folder, run, with};
-use crate::cli::record_file::JOURNAL;
+use crate::cli::record_file::{self, JOURNAL};
+use crate::digest::sha256;
+use crate::formula::ResultValue;
 use crate::output::manifest_with;
 use crate::record::journal::testing::forged;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, recover};
+use crate::verdict::Verdict;
 
 /// The run's folder with another first line, and every check word and the manifest as if it had always been so.
 fn retold(mut alter: impl FnMut(&mut Value)) -> Folder {
@@ -81,4 +84,27 @@ fn a_record_of_version_1_gives_the_same_results() {
     let unknown = retold(|header| header["format"] = json!(3));
     assert!(unknown.files.get(JOURNAL).is_some_and(|held: &Held| held.bytes.is_some()));
     assert_eq!(found(&unknown), ["record"]);
+}
+
+/// A plan of before said `residual_…` of what is not unloaded. Its record is read, and the plan itself is to be corrected.
+#[test]
+fn a_record_of_a_plan_with_an_older_name_is_read() {
+    let require = "\nrequire \"stays\" hit.residual_displacement < 1 m\n";
+    let text = |body: &Value| format!("{}{require}", body["text"].as_str().unwrap());
+    let recovered = recover(&run()[JOURNAL]).unwrap();
+    let plan = recovered.lines.iter().find(|line| line.kind == EntryKind::Plan).unwrap().body();
+    let digest = sha256(text(&plan).as_bytes());
+    let older = forged(&run()[JOURNAL], |kind, body| match kind {
+        EntryKind::Header => body["files"][0]["sha256"] = json!(digest),
+        EntryKind::Plan => body["text"] = json!(text(body)),
+        _ => {}
+    });
+    let read = record_file::from_bytes(JOURNAL.as_ref(), &older).unwrap();
+    let played = PlayedBack::of(read, None).unwrap();
+    assert!(played.mismatch.is_none(), "{:?}", played.mismatch);
+    let stays = &played.assessment.requirements[0];
+    let ResultValue::Number { value: last, .. } = played.record.procedures[0].result("final_displacement").unwrap().value else {
+        panic!("one number")
+    };
+    assert_eq!((stays.verdict, stays.conditions[0].value), (Verdict::Pass, last));
 }

@@ -1,6 +1,7 @@
 //! `psd rig jog`: moves the rig by hand, inside the plan's limits, through the guard and never without a yes. In: places as
 //! the language writes them. Out: where the rig went; of a real rig also a run folder with the record.
 
+use std::path::Path;
 use std::sync::mpsc::Receiver;
 
 use super::typed::{number, places};
@@ -15,11 +16,11 @@ use crate::cli::settings::Settings;
 use crate::cli::watch::{Attendance, Signals, next_line, typed_lines};
 use crate::cli::{plan_file, provenance, real_rig};
 use crate::output;
-use crate::plan::{Interval, Link, Plan};
+use crate::plan::{Datum, Interval, Link, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::record::Outcome;
-use crate::rig::{Connected, LimitedQuantity, Rig as _, RigFault, Wish, connect, virtual_rig};
+use crate::rig::{Connected, LimitedQuantity, Rig, RigFault, Wish, connect, virtual_rig};
 use crate::run::driven::{Driver, Specimen};
 use crate::run::tape::{self, BY_HAND};
 use crate::run::{Parting, Unwatched};
@@ -47,16 +48,44 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
     match plan.rig.link {
         Link::Virtual(_) => on_a_virtual_rig(arguments, plan, &wanted, person, settings),
         Link::Real(_) => {
-            let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let recorded = arguments.datum.as_deref().map(|run| datum_of(run, plan)).transpose()?;
+            let rig = plan.rig.with_recorded_datum(recorded.as_deref());
+            let connected = connect(&rig, &plan.limits, &wish).map_err(Failure::Rig);
             let place = |fault: &str| plan_file::place_of_link(&checked, &arguments.plan, fault);
-            let connected = connected.map_err(|failure| failure.in_the_plan(place))?;
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
             if !settings.can_ask && !connected.rig.identity().simulated {
                 return Err(Failure::command_line("a real rig is not moved by hand without a person at a terminal")
                     .help("start it from a terminal"));
             }
+            if recorded.is_none() {
+                without_load(plan, &mut connected.rig)?;
+            }
             on_a_real_rig(arguments, plan, &attendance, connected, &wanted, person, settings)
         }
     }
+}
+
+/// Where the zero of a recorded run lies in the coordinate of its rig, m, one an axis.
+fn datum_of(run: &Path, plan: &Plan) -> Result<Vec<f64>, Failure> {
+    let read = record_file::read(run)?;
+    let of_this_rig = read.plan.rig.name == plan.rig.name;
+    let datum = read.played.rig.filter(|_| of_this_rig).and_then(|rig| rig.datum);
+    datum.ok_or_else(|| {
+        Failure::command_line(format!("{}: its record says of no datum of rig `{}`", run.display(), plan.rig.name))
+    })
+}
+
+/// A rig whose zero is where it stands does not count from where its specimen carries load: its limits would go with it.
+fn without_load(plan: &Plan, rig: &mut dyn Rig) -> Result<(), Failure> {
+    let Some(link) = plan.rig.link.as_real().filter(|link| link.datum == Datum::Here) else { return Ok(()) };
+    let found = rig.read().map_err(Failure::Rig)?;
+    let loaded = found.force.iter().enumerate().find(|(axis, force)| force.is_nan() || force.abs() > link.gate_of(*axis).zero);
+    let Some((_, force)) = loaded else { return Ok(()) };
+    Err(Failure::command_line(format!(
+        "the specimen carries {}: where it stands is no zero to count from, and nothing moved",
+        readable(*force, Dimension::FORCE)
+    ))
+    .help("`--datum RUN` counts from the zero of the run that loaded it"))
 }
 
 /// What the command line asks for, SI.
@@ -158,6 +187,7 @@ impl Hand<'_> {
             let (exit, reason) = match outcome {
                 Outcome::Completed => (Exit::Met, ""),
                 Outcome::Aborted { reason } => (Exit::Stopped, reason.as_str()),
+                Outcome::Blocked { reason } => (Exit::Missed, reason.as_str()),
                 Outcome::Faulted { reason } => (Exit::Fault, reason.as_str()),
             };
             tell(&format!("  nothing moved: {reason}\n"));

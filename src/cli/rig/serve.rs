@@ -131,6 +131,7 @@ impl Served {
         Ok(exit.max(match recorded.record.outcome {
             Outcome::Completed => Exit::Met,
             Outcome::Aborted { .. } => Exit::Stopped,
+            Outcome::Blocked { .. } => Exit::Missed,
             Outcome::Faulted { .. } => Exit::Fault,
         }))
     }

@@ -2,8 +2,9 @@
 //! run. Out: blocks, and the plan's files to go with them.
 
 use super::super::document::{Attachment, Block, Column, Style, Table, Text};
-use super::super::{Listed, RealRun, Run, number, plan_files};
-use super::{pairs, particulars};
+use super::super::particulars::stated;
+use super::super::{Listed, RealRun, Run, issue, number, plan_files};
+use super::pairs;
 use crate::digest::sha256;
 use crate::inert;
 use crate::mechanics::self_test;
@@ -76,8 +77,9 @@ fn provenance(run: &Run<'_>) -> Block {
     let settings: Vec<String> = run.plan.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let settings = if settings.is_empty() { "none".to_owned() } else { settings.join("; ") };
     let simulated = if run.record.rig.simulated { " (simulated)" } else { "" };
-    let mut rows = vec![
-        ("Report", Text::new().id(run.provenance.report_id())),
+    let mut rows = vec![("Report", Text::new().id(run.provenance.report_id()))];
+    rows.extend(issue::first(run).map(|issued| ("Issued", issued.into())));
+    rows.extend([
         ("Run", Text::new().id(&run.provenance.run_id)),
         ("Program", format!("psd {}", run.provenance.psd_version).into()),
         ("Its sources, SHA-256", id_or_unknown(&run.provenance.build.sources)),
@@ -86,7 +88,7 @@ fn provenance(run: &Run<'_>) -> Block {
         ("Settings on the command line", settings.into()),
         ("Rig", format!("{}{simulated}", run.record.rig.name).into()),
         ("Firmware of the rig", known(&run.record.rig.firmware)),
-    ];
+    ]);
     match (&run.provenance.real, run.plan.rig.link.as_virtual()) {
         (Some(real), _) => rows.extend(record(real)),
         (None, Some(link)) => {
@@ -133,7 +135,7 @@ fn validation(run: &Run<'_>, body: &mut Vec<Block>) {
         Column::short("Verdict"),
     ];
     body.push(Block::Table(Table { columns, rows: self_test::all().iter().map(row).collect() }));
-    body.push(Block::note(match particulars::stated(run, "validation") {
+    body.push(Block::note(match stated(run, "validation") {
         Some(text) => Text::from(format!("Validation by the laboratory: {text}")),
         None => Text::from("The program that set this report passes or fails these cases by the code that reckoned the run. ")
             .code("psd test")

@@ -65,7 +65,8 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
         Some(ResultValue::List(values)) => values.as_slice(),
         _ => &[],
     };
-    let (largest, stayed, energy) = (list("max_drift"), list("residual_drift"), list("storey_energy"));
+    let left = if procedure.result("residual_drift").is_some() { "residual_drift" } else { "final_drift" };
+    let (largest, stayed, energy) = (list("max_drift"), list(left), list("storey_energy"));
     let whole = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let height = |storey: usize| frame.and_then(|frame| frame.storeys.get(storey)).and_then(|storey| storey.height);
     let columns = vec![
@@ -91,7 +92,7 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
             (storey + 1).to_string().into(),
             length("max_drift", largest),
             share(largest).into(),
-            length("residual_drift", stayed),
+            length(left, stayed),
             share(stayed).into(),
             frames::known_entry(procedure, "storey_energy", storey)
                 .unwrap_or_else(|| number::text_beside(took, whole(energy), Dimension::ENERGY).into()),
@@ -107,6 +108,8 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
     let shown = |value: Option<f64>, beside: f64, dimension| {
         value.map_or_else(|| Text::from("—"), |value| number::text_beside(value, beside, dimension).into())
     };
+    let unloaded = procedure.result("residual_displacements").is_some();
+    let left = if unloaded { "residual_displacements" } else { "final_displacements" };
     let row = |(index, blow): (usize, &Blow)| {
         let held = match blow.held {
             Some(true) => "held",
@@ -122,7 +125,7 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
             known("blow_energies", shown(Some(blow.energy), energy, Dimension::ENERGY)),
             known("max_displacements", shown(blow.number("max_displacement"), travel, Dimension::LENGTH)),
             known("absorbed_energies", shown(blow.number("absorbed_energy"), energy, Dimension::ENERGY)),
-            known("residual_displacements", shown(rest, travel, Dimension::LENGTH)),
+            known(left, shown(rest, travel, Dimension::LENGTH)),
             Text::from(held),
         ]
     };
@@ -132,7 +135,7 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
         Column::numbers("Energy"),
         Column::numbers("Largest X"),
         Column::numbers("Absorbed"),
-        Column::numbers("At rest at"),
+        Column::numbers(if unloaded { "At rest at" } else { "Left at" }),
         Column::words("Condition", 1),
     ];
     Block::Table(Table { columns, rows: blows.iter().take(PRINTED).enumerate().map(row).collect() })

@@ -1,10 +1,11 @@
 //! Equipment and calibration: who answered, how it was reached, what its numbers are traced to, what it was held to. In: a
 //! run. Out: blocks. Where a port lies on the machine is no part of it.
 
+use super::super::days::last_day;
 use super::super::document::{Block, Column, Style, Table, Text};
-use super::super::{Run, number, standing};
+use super::super::{Run, number, particulars};
 use super::conditions::{range, settling};
-use super::{drift, pairs, particulars};
+use super::{drift, pairs};
 use crate::plan::{Behind, Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
@@ -62,7 +63,7 @@ fn calibration(run: &Run<'_>) -> Block {
 
 /// Whether a calibration held on the last day of the test.
 fn state(run: &Run<'_>, due: Option<&str>) -> Text {
-    match (due, standing::last_day(run)) {
+    match (due, last_day(run.provenance)) {
         (None, _) => Text::missing("no due date"),
         (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
         (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),

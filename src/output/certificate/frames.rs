@@ -195,7 +195,7 @@ pub(super) fn storey_table<S: Floors>(
         with_u("Largest displacement of its floor", displacement),
         with_u("Largest drift", "max_drift"),
         Column::numbers("Of its height"),
-        with_u("Drift at the end", "residual_drift"),
+        with_u("Drift at the end", "final_drift"),
         Column::numbers("Largest shear"),
     ];
     let height = |storey: usize| frame.and_then(|frame| frame.storeys.get(storey)).and_then(|storey| storey.height);
@@ -206,7 +206,7 @@ pub(super) fn storey_table<S: Floors>(
             cell(displacement, storey),
             cell("max_drift", storey),
             ratio.unwrap_or_else(|| "—".to_owned()).into(),
-            cell("residual_drift", storey),
+            cell("final_drift", storey),
             number::text_beside(shear[storey], whole(&shear), Dimension::FORCE).into(),
         ]
     };

@@ -133,6 +133,7 @@ impl RealRig {
     pub(super) fn set_off(&mut self) -> Result<(Vec<f64>, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
         let Proposed { going, targets, from } = self.proposed.take().ok_or_else(nothing)?;
+        self.moved = true;
         self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         (self.deaf, self.settled) = (false, None);
         for axis in &mut self.axes {

@@ -90,6 +90,10 @@ pub struct RigBody {
     pub own_speed: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_move: Option<LastMove>,
+    /// Of a real rig where the plan's zero lies in its own coordinate, m, one an axis; None in records of older versions, whose zero is
+    /// the rig's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub datum: Option<Vec<f64>>,
     /// The replies in which it said who it is, escaped; empty where the dialect has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub said: Vec<String>,
@@ -115,6 +119,9 @@ pub struct IntentBody {
     pub wire: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u64>,
+    /// The targets in the rig's own coordinate, as the bytes say, m, where its zero is another than the plan's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own: Option<Vec<f64>>,
     /// Of a smooth way without a stop: its ends, their velocities, and the time between them; `samples` stands beside it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<Vec<Path>>,

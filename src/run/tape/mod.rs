@@ -130,7 +130,9 @@ pub fn resume<'rig, E: From<Refusal> + 'rig>(
     }
     Err(match (recorded.mismatch, recorded.record.outcome) {
         (Some(mismatch), _) => mismatch.into(),
-        (None, Outcome::Aborted { reason } | Outcome::Faulted { reason }) => Refusal::EndsAgain { reason },
+        (None, Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason }) => {
+            Refusal::EndsAgain { reason }
+        }
         (None, Outcome::Completed) => Refusal::Ended,
     }
     .into())

@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use super::entry::{AxisBody, OperatorBody, OperatorEntry, StepBody};
+use super::older::is_recorded;
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
@@ -89,7 +90,7 @@ impl Observer for TapedObserver<'_, '_> {
         if self.playing() {
             let mut state = self.state.borrow_mut();
             if let Ok(recorded) = state.peek::<Event>(EntryKind::Event, &event.text) {
-                if recorded == *event {
+                if is_recorded(event, &recorded) {
                     state.consume();
                 } else {
                     state.disagrees(event.text.clone());

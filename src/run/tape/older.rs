@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use super::entry::OperatorBody;
 use super::played::{Played, body};
 use crate::plan::Plan;
+use crate::record::Event;
 use crate::record::journal::{EntryKind, Line};
 use crate::run::zero::READINGS;
 
@@ -35,4 +36,34 @@ fn serves_without_zeros(played: &Played) -> bool {
 
 fn is_request(line: &Line) -> bool {
     line.kind == EntryKind::Operator && matches!(body(line), Ok(OperatorBody::Asked { .. }))
+}
+
+/// Whether an event is the one on record. An input that cannot be used was said of in SI units, as a number without one.
+pub(super) fn is_recorded(event: &Event, recorded: &Event) -> bool {
+    const CAME_OUT: &str = " came out as ";
+    let field = |event: &Event| event.text.split_once(CAME_OUT).map(|(field, _)| field.to_owned());
+    let older = field(recorded).is_some() && recorded.text.contains(" in SI units, but must be ");
+    recorded == event
+        || older && field(recorded) == field(event) && Event { text: event.text.clone(), ..recorded.clone() } == *event
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::EventKind;
+
+    #[test]
+    fn an_input_that_was_told_in_si_units_is_the_one_on_record() {
+        let told = |text: &str| Event { time: 1.5, procedure: None, step: None, kind: EventKind::Fault, text: text.to_owned() };
+        let now = told("`damping` came out as \u{2212}0.33 N·s/m, but must be at least 0");
+        let older = told("`damping` came out as -0.3284410318426494 in SI units, but must be at least 0");
+        assert!(is_recorded(&now, &now) && is_recorded(&now, &older));
+        for other in [
+            told("`stiffness` came out as -0.3284410318426494 in SI units, but must be at least 0"),
+            told("`damping` came out as \u{2212}0.34 N·s/m, but must be at least 0"),
+            Event { time: 2.0, ..older.clone() },
+        ] {
+            assert!(!is_recorded(&now, &other), "{}", other.text);
+        }
+    }
 }

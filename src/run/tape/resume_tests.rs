@@ -283,11 +283,12 @@ fn a_restart_on_record_needs_a_reference_whatever_else_is_said() {
     let fault = DeviceFault::Rebooted { was: "running".to_owned(), is: "Grbl 1.1h".to_owned() };
     let of = |fault: &str| {
         let disk = PowerLoss::new();
-        let mut journal = Journal::create(Box::new(disk.clone()), Durability::Buffered);
+        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
         begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         journal.append(EntryKind::Rig, &RigBody::of(&Standing::new(&plan))).unwrap();
         let fault = RigFault::Device(format!("actuator on /dev/ttyUSB0: {fault}"));
         journal.append(EntryKind::Fault, &FaultBody { t: 0.0, call: Call::Execute, fault, wall: None }).unwrap();
+        journal.sync().unwrap();
         played(&disk.written()).1
     };
     let restarted = of(&fault.to_string());

@@ -193,12 +193,19 @@ impl Rig for TapedRig<'_> {
                 Some(self.played_intent(targets, speed, None)?)
             };
             // Of what was proposed and never sent, no bytes are on record.
-            let unsent = || Offer { targets: targets.to_vec(), speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None };
+            let unsent = || Offer {
+                targets: targets.to_vec(),
+                speed: speed.unwrap_or(0.0),
+                wire: Vec::new(),
+                move_id: None,
+                at_the_rig: None,
+            };
             let offer = intent.map_or_else(unsent, |intent| Offer {
                 targets: intent.said.clone().unwrap_or_else(|| intent.to.clone()),
                 speed: intent.rate,
                 wire: Vec::new(),
                 move_id: intent.id,
+                at_the_rig: intent.own.clone(),
             });
             self.pending = Some((targets.to_vec(), speed, offer.clone()));
             return Ok(offer);
@@ -317,6 +324,10 @@ impl Rig for TapedRig<'_> {
         self.about.noise
     }
 
+    fn datum(&self) -> Option<Vec<f64>> {
+        self.about.datum.clone()
+    }
+
     fn own_speed(&self) -> Option<f64> {
         self.about.own_speed
     }
@@ -350,6 +361,7 @@ impl RigBody {
             noise: rig.declared_noise(),
             own_speed: rig.own_speed(),
             last_move: rig.last_move(),
+            datum: rig.datum(),
             said: rig.introduction().iter().map(|reply| escaped(reply)).collect(),
         }
     }
@@ -360,7 +372,16 @@ fn nobody() -> RigBody {
     let unknown = String::new;
     let identity =
         Identity { name: unknown(), model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: true };
-    RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), own_speed: None, last_move: None, said: Vec::new() }
+    RigBody {
+        t: 0.0,
+        identity,
+        axes: 1,
+        noise: DeclaredNoise::default(),
+        own_speed: None,
+        last_move: None,
+        datum: None,
+        said: Vec::new(),
+    }
 }
 
 pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<usize>) -> IntentBody {
@@ -373,6 +394,7 @@ pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples
         rate: offer.speed,
         wire: (!offer.wire.is_empty()).then(|| escaped(&offer.wire)),
         id: offer.move_id,
+        own: offer.at_the_rig.clone(),
         path: None,
         samples,
         wall: None,

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::rigs::{CASES, Case, by_name};
-use super::{Process, ready, write_plan};
+use super::{ANSWERS, Process, SILENT, ready, write_plan};
 
 /// Exit code and everything said.
 struct Said {
@@ -51,7 +51,7 @@ fn every_dialect_is_probed_and_watched_and_nothing_moves() {
     each(&CASES.iter().collect::<Vec<_>>(), |case| {
         let folder = tempfile::tempdir().expect("a folder");
         let folder = folder.path();
-        write_plan(case, folder);
+        write_plan(case, folder, ANSWERS);
         let _simulator = stand_in(folder);
         let probed = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
         assert_eq!(probed.code, Some(0), "{}: {}", case.name, probed.told);
@@ -108,9 +108,9 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
             scope.spawn(move || {
                 let folder = tempfile::tempdir().expect("a folder");
                 let folder = folder.path();
-                write_plan(by_name(there), folder);
+                write_plan(by_name(there), folder, SILENT);
                 let _simulator = stand_in(folder);
-                write_plan(by_name(ours), folder);
+                write_plan(by_name(ours), folder, SILENT);
                 // A load cell of its own has a line, on which nobody talks: the actuator is met first.
                 let _nobody = psd::simulator::PseudoTerminal::linked(&folder.join("b")).expect("a line");
                 let said = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
@@ -126,7 +126,7 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
 fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    write_plan(by_name("native"), folder);
+    write_plan(by_name("native"), folder, SILENT);
     let dead = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
     not_understood(&dead, "link = serial(port: \"");
     assert!(dead.told.contains("there is no such port") && dead.told.contains("psd rig list"), "{}", dead.told);
@@ -140,10 +140,10 @@ fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
     assert!(silent.told.contains("no usable answer within"), "{}", silent.told);
 
     // The load cell's own port is the one that is told.
-    write_plan(by_name("grbl with hx711"), folder);
+    write_plan(by_name("grbl with hx711"), folder, SILENT);
     let other = tempfile::tempdir().expect("a folder");
     let other = other.path();
-    write_plan(by_name("grbl with hx711"), other);
+    write_plan(by_name("grbl with hx711"), other, SILENT);
     let _simulator = stand_in(other);
     fs::remove_file(other.join("b")).expect("the port is a link");
     let missing = psd(other, &["rig", "probe", "plan.psd", "--rig", "real"]);
@@ -155,7 +155,7 @@ fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
 fn an_address_where_nobody_listens_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    write_plan(by_name("nees"), folder);
+    write_plan(by_name("nees"), folder, SILENT);
     let dead = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
     not_understood(&dead, "link = tcp(address: \"127.0.0.1:");
     assert!(dead.told.contains("refused"), "{}", dead.told);

@@ -35,7 +35,7 @@ pub const CASES: &[Case] = &[
         ..serial(
             "grbl with hx711",
             "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: hx711)\n  \
-             force_per_count = 0.01 N\n  zero_count = 8123",
+             force_per_count = 0.01 N\n  zero_count = 8123\n  sign = negative\n  datum = here",
         )
     },
     // Hundredths of a kilogram, ten a second.
@@ -44,14 +44,14 @@ pub const CASES: &[Case] = &[
         duration: 4.0,
         ..serial(
             "grbl with indicator",
-            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)\n  sign = negative\n  datum = here",
         )
     },
     Case {
         force_error: 0.05,
         ..serial(
             "grbl with scpi",
-            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))\n  sign = negative\n  datum = here",
         )
     },
     // Eight decimals of 1 m and of 15 kN; it bears ten polls a second.
@@ -101,9 +101,11 @@ const fn serial(name: &'static str, devices: &'static str) -> Case {
 
 impl Case {
     /// The beam of the paper's section 5, in a plan that runs on this rig and on an ideal virtual one. Its velocities are
-    /// slow and its readings far apart: a machine under load must keep up with them.
-    pub fn plan(&self, folder: &Path, address: &str) -> String {
+    /// slow and its readings far apart: a machine under load must keep up with them. `reply_timeout` is in seconds.
+    pub fn plan(&self, folder: &Path, address: &str, reply_timeout: f64) -> String {
         let devices = self.devices.replace("FOLDER", &folder.display().to_string()).replace("ADDRESS", address);
+        let devices = devices.replace("dialect:", &format!("reply_timeout: {reply_timeout} s, dialect:"));
+        let watchdog = 10.0 * reply_timeout;
         let (speed, resolution, duration) = (self.speed, self.resolution * 1e6, self.duration);
         // Half a quantum of the target and half a one of the reading, and a little for the last bit.
         let band = resolution.max(1.0) * 1.5;
@@ -123,11 +125,11 @@ rig ideal {{
 
 rig real {{
   {devices}
-  settle      = within({band} um, 50 kN/s, timeout: 20 s)
+  settle      = within({band} um, 50 kN/s, timeout: 10 min)
   safe_state  = hold
   gate        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
   speed       = {speed} mm/s
-  watchdog    = 20 s
+  watchdog    = {watchdog} s
   rate        = 200 Hz
   samples     = 1
   resolution  = {resolution} um
