@@ -89,6 +89,14 @@ pub enum Source {
         procedure: ProcedureId,
         result: &'static str,
     },
+    /// The stiffness of the strokes of a damping sweep, which brings readings of a lagging actuator to one place.
+    StrokeStiffness {
+        procedure: ProcedureId,
+    },
+    /// The points of the loops of a procedure: what lies between them is not known.
+    LoopSampling {
+        procedure: ProcedureId,
+    },
     /// Times are told to a whole step.
     TimeStep {
         procedure: ProcedureId,

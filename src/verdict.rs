@@ -107,7 +107,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
         Outcome::Blocked { .. } => Verdict::Inconclusive,
         Outcome::Completed => Verdict::Completed,
-        Outcome::Aborted { .. } => Verdict::Aborted,
+        Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
     };
     let verdict = requirements.iter().map(|requirement| requirement.verdict).fold(run, Verdict::max);
@@ -172,7 +172,7 @@ fn off(procedure: &ProcedureRecord) -> bool {
     let found = |name| procedure.results.iter().find(|result| result.name == name).map(|result| &result.value);
     let beyond = |error: &f64| error.is_nan() || error.abs() > WORTHLESS;
     match found("energy_error").or_else(|| found("energy_errors")) {
-        Some(ResultValue::Number { value, .. }) => value.as_ref().is_some_and(beyond),
+        Some(ResultValue::Number { value, .. }) => value.as_ref().is_none_or(beyond),
         Some(ResultValue::List(errors)) => errors.iter().any(beyond),
         None => false,
     }

@@ -245,8 +245,8 @@ impl<'a> Checker<'a> {
             Some(_) => self.fail(types::block_wanted(kind, span, name)),
             None if self.may_be_lost(name) || self.scope.of_kind(kind).any(|(_, block)| block.lacks_its_name()) => None,
             None => {
-                let known: Vec<&str> =
-                    self.scope.of_kind(kind).filter_map(|(_, block)| block.name).map(|name| name.node.as_str()).collect();
+                let declared = self.scope.of_kind(kind).filter_map(|(_, block)| block.name).map(|name| name.node.as_str());
+                let known: Vec<&str> = declared.take(self.most_to_suggest()).collect();
                 self.fail(fault::unknown_block_name(kind, name, span, &known))
             }
         }

@@ -222,7 +222,7 @@ pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<
         let FieldType::Choice(variants) = checker.scope.blocks[block].kind.field("behaviour")?.ty else { return None };
         behaviour::behaviour(checker, &Written { field: "behaviour", variants, expr, place, material })
     });
-    checker.drop_repeated(known);
+    checker.drop_repeated(known, block);
     behaviour
 }
 

@@ -123,7 +123,7 @@ pub struct JogArguments {
     /// How fast, such as "0.5 mm/s" [default: the rig's own, within the plan's limits]
     #[arg(long, value_name = "SPEED")]
     pub speed: Option<String>,
-    /// Answers the question before a move with yes
+    /// Moves without asking: the rig MOVES at once
     #[arg(long)]
     pub yes: bool,
     /// Lets go of an axis that is found held, where it stands; it is recorded
@@ -195,7 +195,7 @@ pub struct ServeArguments {
     /// Run folder, new or empty [default: runs/PLAN-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Releases a real rig without asking: who starts this answers for it
+    /// Releases a real rig without asking: it MOVES as soon as it is open. Who starts this answers for it
     #[arg(long)]
     pub yes: bool,
     /// Who stands by at a real rig [default: the plan's `operator`]
@@ -234,7 +234,7 @@ pub struct RunArguments {
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub plan_settings: PlanSettings,
-    /// Answers routine questions with yes
+    /// Releases the rig without asking: it MOVES as soon as it is open, and goes on at every inspection
     #[arg(long)]
     pub yes: bool,
     /// Who runs the test and answers at inspections [default: the plan's `operator`]
@@ -285,7 +285,7 @@ pub struct ResumeArguments {
     /// The force changed beyond its band since, and someone has looked at the specimen; it is recorded
     #[arg(long)]
     pub accept_relaxation: bool,
-    /// Answers routine questions with yes
+    /// Releases the rig without asking: it MOVES as soon as it is open, and goes on at every inspection
     #[arg(long)]
     pub yes: bool,
 }

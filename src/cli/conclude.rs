@@ -7,16 +7,15 @@ use std::path::Path;
 use super::evidence::Folder;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
-use super::output::tell;
+use super::output::{tell, tell_words};
 use super::record_file::{self, journal_of};
-use super::rehearse;
 use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
+use super::{held, provenance, rehearse};
 use crate::diagnostic::excerpt::escape;
 use crate::output::{self, Listed, OutputError, Provenance, Run, Shelf};
 use crate::plan::Plan;
 use crate::record::{EventKind, Outcome, Record};
-use crate::run::UNLOADING;
 use crate::run::driven::DrivenStep;
 use crate::run::tape::Recorded;
 use crate::verdict::{self, Assessment};
@@ -35,8 +34,14 @@ pub fn conclude(
     })?;
     let assessment = verdict::assess(plan, &recorded.record);
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
-    tell(&output::console::verdict_text(&run, settings.color));
-    tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    if !held::is_held(&recorded.record) {
+        // Nothing comes before it, and nothing beside it says how to go on.
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    }
+    tell_words(&output::console::verdict_text(&run, settings.color), settings);
+    if held::is_held(&recorded.record) {
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    }
     let kept = Folder::digests(folder)?.kept();
     let shelf = FolderShelf::new(folder);
     write_made(shelf, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
@@ -56,7 +61,9 @@ pub fn conclude(
 
 /// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.
 fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings) -> String {
-    if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed {
+    // A rig that nobody released stands as it stood.
+    let unmoved = matches!(record.outcome, Outcome::NotReleased { .. }) && held::is_held(record);
+    if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed || unmoved {
         return String::new();
     }
     let last = record.events.iter().rev().find(|event| matches!(event.kind, EventKind::Held | EventKind::NotHeld));
@@ -64,8 +71,7 @@ fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings
         EventKind::NotHeld => format!("  {}\n", settings.paint_error(&escape(&event.text))),
         _ => format!("  the rig: {}\n", escape(&event.text)),
     });
-    let unloaded = record.events.iter().any(|event| event.kind == EventKind::Hold && event.text == UNLOADING);
-    if !record.procedures.is_empty() && !unloaded {
+    if held::is_held(record) && held::can_go_on(record) {
         let folder = folder.display();
         let _ = writeln!(text, "  to go on: psd resume {folder} --operator \"your name\" --reason \"why it stopped\"");
     }
@@ -82,6 +88,10 @@ pub fn made_of(
     driven: Option<&[DrivenStep]>,
     shelf: &mut dyn Shelf,
 ) -> Result<Vec<Listed>, OutputError> {
+    if matches!(record.outcome, Outcome::NotReleased { .. }) {
+        // Nothing moved: there is the record, and nothing to report.
+        return Ok(Vec::new());
+    }
     if let Some(steps) = driven {
         return output::put_driven(steps, record.drift.as_ref(), shelf);
     }
@@ -106,8 +116,11 @@ pub fn write_made(
     write_new(folder, &output::manifest_with(&[], &all))
 }
 
-/// The summary of results that are written.
-pub fn summary(folder: &Path) -> Result<String, Failure> {
+/// The summary of results that are written; of a rig that was not released, that alone.
+pub fn summary(folder: &Path, record: &Record) -> Result<String, Failure> {
+    if let Outcome::NotReleased { reason } = &record.outcome {
+        return Ok(format!("{}\n", serde_json::json!({ "outcome": "not released", "reason": reason })));
+    }
     let path = folder.join(output::SUMMARY);
     std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
 }
@@ -117,11 +130,11 @@ pub fn summary(folder: &Path) -> Result<String, Failure> {
 /// what was written, proves nothing: somebody has changed it under way, and no results are made of it.
 fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance, recorded: &Recorded) -> Result<Provenance, Failure> {
     if plan.rig.link.as_real().is_none() {
-        return Ok(began.clone());
+        return Ok(numbered(began.clone(), plan, recorded));
     }
     let read = record_file::read(folder);
     if recorded.fault.is_some() {
-        return Ok(read.map_or_else(|_| began.clone(), |read| read.provenance));
+        return Ok(read.map_or_else(|_| numbered(began.clone(), plan, recorded), |read| read.provenance));
     }
     let read = read?;
     let lies_there = (read.recovered.lines.len() as u64, read.recovered.head().to_owned());
@@ -130,4 +143,11 @@ fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance, recorded: &Record
             .help("look for who else writes there; `psd verify` says what is wrong with it"));
     }
     Ok(read.provenance)
+}
+
+/// With the number of the report, where the record gives one.
+pub fn numbered(provenance: Provenance, plan: &Plan, recorded: &Recorded) -> Provenance {
+    let head = recorded.sealed.as_ref().map(|(_, head)| head.as_str());
+    let ended = recorded.record.outcome == Outcome::Completed;
+    Provenance { number: provenance::report_number(&provenance.run_id, plan, ended, head), ..provenance }
 }

@@ -90,7 +90,7 @@ impl<'a> DryRun<'a> {
     pub fn exit(&self) -> Exit {
         match self.record.outcome {
             Outcome::Completed => Exit::Met,
-            Outcome::Aborted { .. } => Exit::Stopped,
+            Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
             Outcome::Blocked { .. } => Exit::Missed,
             Outcome::Faulted { .. } => Exit::Fault,
         }
@@ -257,7 +257,9 @@ impl<'a> DryRun<'a> {
     fn stopped(&self) -> Option<String> {
         match &self.record.outcome {
             Outcome::Completed => None,
-            Outcome::Aborted { reason } => Some(format!("The run would be stopped{}: {}", self.stopped_in(), escape(reason))),
+            Outcome::Aborted { reason } | Outcome::NotReleased { reason } => {
+                Some(format!("The run would be stopped{}: {}", self.stopped_in(), escape(reason)))
+            }
             Outcome::Blocked { reason } => Some(format!("The run could not go on: {}", escape(reason))),
             Outcome::Faulted { reason } => Some(format!("The rig would fail: {}", escape(reason))),
         }

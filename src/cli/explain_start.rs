@@ -51,8 +51,15 @@ mod tests {
     /// The rows of a real rig with this line in its block.
     fn told(line: &str) -> String {
         let text = format!(
-            "specimen beam {{ mass = 1 kg, behaviour = elastic(stiffness: 300 kN/m) }}
-            limits {{ displacement = 2 mm, force = 2 kN, speed = 2 mm/s }}
+            "specimen beam {{
+              mass      = 1 kg
+              behaviour = elastic(stiffness: 300 kN/m)
+            }}
+            limits {{
+              displacement = 2 mm
+              force        = 2 kN
+              speed        = 2 mm/s
+            }}
             rig frame {{
               link       = serial(port: \"/dev/none\", dialect: native)
               settle     = within(0.005 mm, 50 N/s, for: 0.3 s)

@@ -11,7 +11,7 @@ use super::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stand
 use super::exit::{Exit, Failure};
 use super::issue::amend;
 use super::loader::plain;
-use super::output::{give, tell};
+use super::output::{give, tell, tell_words};
 use super::record_file::{self, journal_of};
 use super::run_folder::{FolderShelf, RunFolder};
 use super::settings::Settings;
@@ -65,7 +65,7 @@ pub fn conclude_played(
 ) -> Result<Exit, Failure> {
     let PlayedBack { plan, provenance, record, assessment, mismatch, steps } = played;
     if steps.is_none() {
-        tell(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color));
+        tell_words(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color), settings);
     }
     write_made(FolderShelf::replacing(folder), beside, |shelf| played.results(shelf))?;
     let exit = Exit::from(assessment.verdict);

@@ -15,7 +15,7 @@ use super::provenance::{BUILD, TOOLCHAIN};
 use super::record_file::{self, ReadRecord, journal_of};
 use super::settings::Settings;
 use super::watch::{Attendance, Shared, Signals, Watcher};
-use super::{plan_file, provenance, real_rig, release, room};
+use super::{expected, held, plan_file, provenance, real_rig, release, room};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
@@ -62,6 +62,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     tape::not_restarted(&read.played, &assured(arguments))?;
     room::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
 
+    let steps = read.played.lines.iter().filter(|line| line.kind == EntryKind::Step).count() as u64;
+    let expected = expected::rest(expected::of(&plan), steps);
     let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
     let wish = Wish::default().letting_go(arguments.let_go);
     // Its zero is where it was when the run began, wherever the rig stands now.
@@ -78,6 +80,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         }
         let rig = &mut opened.insert(connect(&at_its_datum, &plan.limits, &wish)?).rig;
         watcher.borrow().watch(rig.live());
+        watcher.borrow_mut().expect(expected);
         let resumption = settle(arguments, &plan, &link, &read.played, rig, &mut watcher.borrow_mut())?;
 
         // From here on the run goes on: until now the record has not changed.
@@ -101,12 +104,22 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         Ok(GoesOn { rig, journal, played })
     };
     let recorded = tape::resume(&plan, &read.played, &mut Shared(&watcher), real_rig::wall_clock(), begin);
-    watcher.borrow_mut().finish();
+    let mut watcher = watcher.into_inner();
+    let wanted = match (&recorded, &mut connected) {
+        (Ok(recorded), Some(connected)) => held::stay(&mut connected.rig, &mut watcher, &recorded.record),
+        _ => None,
+    };
+    watcher.finish();
     // Nobody speaks with the rig while the results are written: it is left as it stands.
-    drop(connected);
+    drop((connected, watcher));
     let recorded = recorded?;
     if let Some(torn) = torn {
         tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
+    }
+    if let Some(reason) = wanted
+        && let Some(exit) = held::go_on(&arguments.run, &arguments.operator, reason, &recorded, settings)?
+    {
+        return Ok(exit);
     }
     let exit = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
     give(&format!("{}\n", arguments.run.display()))?;

@@ -71,6 +71,8 @@ impl Run<'_> {
 pub struct Provenance {
     /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
     pub run_id: String,
+    /// Of its report, where that is not the run's id: another record of the run has another one.
+    pub number: Option<String>,
     pub psd_version: String,
     /// Which program of that version.
     pub build: Build,
@@ -89,10 +91,11 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// The id of the report: that of its run, but of one that was issued or amended its own.
+    /// The id of the report: of its run or its record, but of one that was issued or amended its own.
     #[must_use]
     pub fn report_id(&self) -> &str {
-        self.issues.as_ref().map_or(&self.run_id, |issues| &issues.report_id)
+        let own = self.number.as_ref().unwrap_or(&self.run_id);
+        self.issues.as_ref().map_or(own, |issues| &issues.report_id)
     }
 
     /// What an issue of the report states of a particular; the last one counts.

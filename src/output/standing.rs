@@ -90,6 +90,9 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !channels.iter().all(|channel| told(channel.certificate.as_deref())) {
         missing.push("the calibration's reference".to_owned());
     }
+    for channel in channels.iter().filter(|channel| channel.calibrated.is_none()) {
+        missing.push(format!("the range over which the {} is calibrated", channel.measures.name()));
+    }
     // Where force and displacement hold until the same day, one calibration is spoken of.
     let days: BTreeSet<Option<&str>> = channels.iter().map(|channel| channel.due.as_deref()).collect();
     for channel in channels {

@@ -68,6 +68,8 @@ pub struct Plan {
     pub golden: Golden,
     /// Of the part that a rehearsal measures: the plan that is rehearsed.
     pub rehearses: Option<Box<Plan>>,
+    /// As records of older versions have it: an `unload` goes to where the load would be none in one move after the other.
+    pub unloads_at_once: bool,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of name.

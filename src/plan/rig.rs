@@ -177,10 +177,14 @@ pub struct Calibration {
     pub due: Option<String>,
     /// Class of the force measurement, as stated.
     pub force_class: Option<String>,
+    /// Forces, by size, over which the calibration holds, N.
+    pub force_calibrated: Option<Interval>,
     /// Of the displacement: its own reference and the day until which that holds, where it has one.
     pub displacement: Option<(String, Option<String>)>,
     /// Class of the displacement measurement, as stated.
     pub displacement_class: Option<String>,
+    /// Displacements, by size, over which the calibration holds, m.
+    pub displacement_calibrated: Option<Interval>,
     /// Of a cell that gives raw counts: N per count, its sign the cell's.
     pub newtons_per_count: Option<f64>,
     /// Count at no force.

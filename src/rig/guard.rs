@@ -141,29 +141,6 @@ impl<'rig> Guard<'rig> {
         Ok(())
     }
 
-    /// Reads once.
-    ///
-    /// # Errors
-    /// The reading lies outside a limit or is no number, or the rig fails.
-    pub fn read(&mut self) -> Result<Reading, RigFault> {
-        let reading = self.rig.read();
-        let reading = self.or_hold(reading)?;
-        self.heard = reading.time;
-        self.check_reading(&reading)?;
-        if self.settled {
-            let errors: Vec<f64> =
-                reading.displacement.iter().zip(&self.commanded).map(|(measured, target)| (measured - target).abs()).collect();
-            let limit = self.limits.tracking_error;
-            if let Some(place) = errors.iter().position(|error| !limit.contains(*error)) {
-                return Err(self.breach(LimitedQuantity::TrackingError, Some(place), limit, errors[place]));
-            }
-            if let Some(holds) = &mut self.holds {
-                holds.see(&self.commanded, &reading);
-            }
-        }
-        Ok(reading)
-    }
-
     /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way. The limit on the increment is not for
     /// it, since its target goes along evenly; the one on the tracking error is for settled readings.
     pub fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Traversed {
@@ -258,18 +235,12 @@ impl<'rig> Guard<'rig> {
         Err(self.breach(LimitedQuantity::TargetDisplacement, Some(place), limit, target))
     }
 
-    fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
-        let found = outside(&self.limits, &self.own, reading).filter(|_| on(Guarding::ReadingLimits));
-        let judged = found.map_or(Ok(()), Err);
-        self.or_hold(judged)
-    }
-
     pub(super) fn check(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> Result<(), RigFault> {
         if inside(limit, value) { Ok(()) } else { Err(self.breach(quantity, None, limit, value)) }
     }
 
     /// `place`: of the axis, where it is the quantity of one.
-    fn breach(&mut self, quantity: LimitedQuantity, place: Option<usize>, limit: Interval, value: f64) -> RigFault {
+    pub(super) fn breach(&mut self, quantity: LimitedQuantity, place: Option<usize>, limit: Interval, value: f64) -> RigFault {
         self.hold();
         let axis = place.and_then(|place| named_axis(place, self.commanded.len()));
         RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high, axis }

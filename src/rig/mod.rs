@@ -12,12 +12,14 @@ mod guard;
 mod guard_about;
 mod guard_glide;
 mod guard_halt;
+mod guard_read;
 mod guard_speed;
 mod guard_way;
 mod halted;
 mod holds;
 mod live;
 mod load_cell;
+mod moved;
 mod one_or_several;
 pub mod port;
 pub mod real;
@@ -284,6 +286,15 @@ pub trait Rig {
     /// # Errors
     /// The rig cannot be reached, or the reading is no number.
     fn read(&mut self) -> Result<Reading, RigFault>;
+
+    /// Reads once, and says when it went on its last move, where that was seen: begin and end of the even motion that stands for it, s of
+    /// rig time.
+    ///
+    /// # Errors
+    /// As `read`.
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        Ok((self.read()?, None))
+    }
 
     /// Moves at constant velocity (m/s, signed towards the target) to absolute targets, and reads at up to `samples` equal
     /// times on the way, the last at the end of the motion; no settling in between. A rig that cannot keep up reads as

@@ -2,6 +2,7 @@
 //! wrong sign, unit or scale and a dead sensor are found here, while nothing can be broken. In: the rig, what the plan
 //! expects. Out: what was found, as a note of the record, or why the run does not begin.
 
+use super::motion::Motion;
 use super::session::Session;
 use super::start;
 use super::stop::Stop;
@@ -25,7 +26,10 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
     let by = if axes == 1 { format!("by {ways}") } else { format!("each of its {axes} axes in turn, by {ways}") };
     // Nobody is asked to release a rig that stands elsewhere.
     start::check(plan, link, session, session.guard.found())?;
-    session.inspect(&format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name))?;
+    let note = format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name);
+    let does = format!("it moves {by} to check itself, then {afterwards}");
+    let stands = Some(start::told(session));
+    session.release(&note, &Motion { stands, ..Motion::of(plan, session.identity(), does) })?;
 
     let first = session.guard.read()?;
     session.guard.pause(REST)?;

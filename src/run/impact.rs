@@ -178,8 +178,12 @@ const SECONDS_PER_METRE: Dimension = Dimension {
 /// Says that the scheme made or lost more of the energy than a reader may take for the specimen's.
 pub(super) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
     if energy_error.is_nan() || energy_error.abs() > UNBALANCED {
-        let off = significant(100.0 * energy_error, 3);
-        let text = format!("the energy balance is off by {off} % of the energy put in: a shorter time step is needed");
+        let off = if energy_error.is_nan() {
+            "the energy balance cannot be computed: its energies are not finite".to_owned()
+        } else {
+            format!("the energy balance is off by {} % of the energy put in", significant(100.0 * energy_error, 3))
+        };
+        let text = format!("{off}: a shorter time step is needed");
         session.event(EventKind::Remark, text);
     }
 }

@@ -7,7 +7,7 @@ use super::followed::Followed;
 use super::frame_doubts::FrameDoubts;
 use super::impact::unbalanced;
 use super::inputs::Inputs;
-use super::session::Session;
+use super::session::{Session, of_base_shear};
 use super::shake_doubts;
 use super::shake_results::{ShakeSummary, results};
 use super::shaking::Shaking;
@@ -56,7 +56,7 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     let mut shaking = Shaking {
         setting: &setting,
         history,
-        summary: ShakeSummary::new(setting.frame.properties.matrices.order()),
+        summary: ShakeSummary::new(setting.frame.properties.matrices.order(), of_base_shear(session)),
         followed: Followed::default(),
     };
     let mut stop = shaking.run(plan, ground, session).err();

@@ -10,7 +10,7 @@ use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable, stated};
 use crate::record::EventKind;
 use crate::rig::failpoint::{self, Guarding};
-use crate::rig::named_axis;
+use crate::rig::{named_axis, place_and_force};
 
 /// Displacements of every axis, m, and forces, N.
 pub(super) type AtRest<'a> = (&'a [f64], &'a [f64]);
@@ -49,6 +49,18 @@ pub(super) fn check(plan: &Plan, link: &RealLink, session: &Session<'_>, (places
         });
     }
     Ok(())
+}
+
+/// Where the rig stands and what it feels there, and where that is of its own where the plan's zero is not.
+pub(super) fn told(session: &Session<'_>) -> String {
+    let (places, forces) = session.guard.found();
+    let stands = format!("at {}", place_and_force(places, forces));
+    let own = session.guard.datum().unwrap_or_default();
+    if own.iter().all(|place| *place == 0.0) {
+        return stands;
+    }
+    let own: Vec<String> = own.iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect();
+    format!("{stands}; the plan's zero is {} of the rig's own", own.join(", "))
 }
 
 /// Puts on record where the plan's zero lies, where that is not the rig's own.

@@ -34,7 +34,7 @@ pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_
         session.event(EventKind::Remark, text);
     }
     let readings = Readings { starts: ramp.starts, steps: ramp.steps };
-    let mut results = results(readings.direct(plan), &fits);
+    let mut results = results(readings.direct(plan, session.guard.declared_noise().force), &fits);
     ramp_doubts::propagate(&readings, plan, (whole, session.guard.declared_noise()), inputs.procedure(), &mut results);
     results.extend(told.results);
     let Fits { line: fit, bilinear, multilinear, .. } = fits;
@@ -107,7 +107,10 @@ impl Ramp {
         session: &mut Session<'_>,
     ) -> Result<Point, Stop> {
         session.guard.move_to(&[command], speed)?;
-        let settled = session.guard.read()?;
+        let (settled, moved) = match asked {
+            Some(_) => session.guard.read_moved()?,
+            None => (session.guard.read()?, None),
+        };
         let (_, settled_force) = first(&settled);
         let watched = match asked {
             Some(asked) => Some(hold::watched(&settled, pause, asked.readings, session)?),
@@ -119,7 +122,8 @@ impl Ramp {
         let step = self.steps.len() as u64 + 1;
         let wall_time = session.guard.time();
         if let Some((readings, last)) = watched {
-            self.holds.push(Hold { step, displacement, moved_for: settled.time - self.last_reading, readings });
+            let [waited_for, moved_for, settled_for] = hold::parts(self.last_reading, moved, settled.time);
+            self.holds.push(Hold { step, displacement, waited_for, moved_for, settled_for, readings });
             self.last_reading = last;
         }
         self.steps.push(RampStep {

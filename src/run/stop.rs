@@ -18,6 +18,10 @@ pub(super) enum Stop {
     Person {
         reason: String,
     },
+    /// Nobody released the rig: nothing has moved.
+    NotReleased {
+        reason: String,
+    },
     /// A real rig did not prove itself before the first step.
     Gate {
         reason: String,
@@ -44,6 +48,7 @@ impl Stop {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
             | Self::AtRest(_)
             | Self::Person { .. } => Outcome::Aborted { reason },
+            Self::NotReleased { .. } => Outcome::NotReleased { reason },
             Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Blocked { reason },
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::Gate { .. } => Outcome::Faulted { reason },
         }
@@ -55,18 +60,21 @@ impl Stop {
             self,
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
                 | Self::Gate { .. }
+                | Self::NotReleased { .. }
         )
     }
 
     /// Whether it was a person who ended the run.
     pub(super) const fn is_a_persons(&self) -> bool {
-        matches!(self, Self::Person { .. } | Self::Rig(RigFault::Interrupted))
+        matches!(self, Self::Person { .. } | Self::NotReleased { .. } | Self::Rig(RigFault::Interrupted))
     }
 
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) | Self::AtRest(_) => EventKind::LimitBreach,
-            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
+            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } | Self::NotReleased { .. } => {
+                EventKind::Hold
+            }
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
             | Self::NoInput { .. }
@@ -84,7 +92,7 @@ impl std::fmt::Display for Stop {
                 "{fault}; nothing has moved: look for a wrong unit, scale or word order, for load on the specimen, or for a zero \
                  that lies elsewhere (`datum`)"
             ),
-            Self::Person { reason } => f.write_str(reason),
+            Self::Person { reason } | Self::NotReleased { reason } => f.write_str(reason),
             Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
             Self::BadInput { field, value, dimension, wanted } => {

@@ -107,9 +107,18 @@ const AXIS: &[Variant] = &[Variant::with(
             .or_said("the rig's"),
         Field::text("calibration_due", "last day on which its calibration holds").or_said("the rig's"),
         Field::text("force_class", "class of its force measurement").or_said("the rig's"),
+        Field::bounds("force_calibration_range", Dimension::FORCE, false, "forces, by size, over which that holds")
+            .or_said("the rig's"),
         Field::text("displacement_calibration", "reference of the calibration of its displacement").or_said("the rig's"),
         Field::text("displacement_calibration_due", "last day on which that calibration holds").or_said("the rig's"),
         Field::text("displacement_class", "class of its displacement measurement").or_said("the rig's"),
+        Field::bounds(
+            "displacement_calibration_range",
+            Dimension::LENGTH,
+            false,
+            "displacements, by size, over which that holds",
+        )
+        .or_said("the rig's"),
         Field::quantity("force_uncertainty", Dimension::NUMBER, "standard uncertainty of its force calibration")
             .within(0.0, 0.2)
             .or_said("the rig's"),
@@ -208,9 +217,23 @@ pub(super) const RIG: BlockKind = BlockKind {
         Field::text("calibration", "reference of the calibration; of the force alone, where `displacement_calibration` is given"),
         Field::text("calibration_due", "last day on which the calibration holds, `YYYY-MM-DD`"),
         Field::text("force_class", "class of the force measurement, such as one of ISO 7500-1"),
+        Field::bounds(
+            "force_calibration_range",
+            Dimension::FORCE,
+            false,
+            "forces, by size, over which the calibration of the force holds; the certificate wants it",
+        )
+        .or_said("not stated"),
         Field::text("displacement_calibration", "reference of the calibration of the displacement, where it has one of its own"),
         Field::text("displacement_calibration_due", "last day on which that calibration holds, `YYYY-MM-DD`"),
         Field::text("displacement_class", "class of the displacement measurement, such as one of ISO 9513"),
+        Field::bounds(
+            "displacement_calibration_range",
+            Dimension::LENGTH,
+            false,
+            "displacements, by size, over which the calibration of the displacement holds; the certificate wants it",
+        )
+        .or_said("not stated"),
     ],
     exports: &[],
     results: &[],

@@ -58,12 +58,12 @@ impl Client<'_> {
 
 /// Whether one of the lines that were sent ahead is the last.
 fn takes_leave(ahead: &[u8]) -> bool {
-    let lines = ahead.split_inclusive(|byte| *byte == b'\n').filter(|line| line.ends_with(b"\n"));
+    let mut lines = ahead.split_inclusive(|byte| *byte == b'\n').filter(|line| line.ends_with(b"\n"));
     let is_leave = |line: &[u8]| {
         let text = String::from_utf8_lossy(line);
         matches!(nees_message::parse(text.trim_end_matches(['\r', '\n'])), Ok(Request::CloseSession))
     };
-    lines.map(is_leave).any(|leave| leave)
+    lines.any(is_leave)
 }
 
 /// An answer, and whether it is the last.

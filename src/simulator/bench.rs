@@ -106,7 +106,8 @@ impl Bench {
             view: 0,
             converters: Vec::new(),
         };
-        bench.restoring_force = bench.structure.bend(&vec![0.0; rams.len()]);
+        let at_rest = vec![0.0; rams.len()];
+        bench.restoring_force = bench.structure.bend(&at_rest, &at_rest, 0.0, 0.0);
         bench
     }
 
@@ -204,13 +205,12 @@ impl Bench {
             ram.advance(seconds);
         }
         let moved: Vec<f64> = self.rams.iter().zip(before).map(|(ram, before)| ram.settings.sign * (ram.at - before)).collect();
+        let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.bends()).collect();
+        let forces = self.structure.bend(&places, &moved, going, seconds);
         if moved.iter().any(|moved| *moved != 0.0) {
-            let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.bends()).collect();
-            let forces = self.structure.bend(&places);
             let felt = self.rams.iter_mut().zip(forces).map(|(ram, force)| ram.faults.specimen_force(ram.bends(), force));
             self.restoring_force = felt.collect();
         }
-        self.structure.relax(&moved, going, seconds);
     }
 
     /// Sets off to `target` (m) at `speed` (m/s).

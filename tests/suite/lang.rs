@@ -121,6 +121,7 @@ fn told(record: &Record, assessment: &Assessment) -> String {
     let mut text = match &record.outcome {
         Outcome::Completed => "the run completed\n".to_owned(),
         Outcome::Aborted { reason } => format!("the run was aborted: {reason}\n"),
+        Outcome::NotReleased { reason } => format!("the rig was not released: {reason}\n"),
         Outcome::Blocked { reason } => format!("the run could not go on: {reason}\n"),
         Outcome::Faulted { reason } => format!("the run failed: {reason}\n"),
     };

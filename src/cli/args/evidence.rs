@@ -12,10 +12,12 @@ use crate::diagnostic::excerpt::one_line;
 const REASON: usize = 1000;
 
 #[derive(Debug, Args)]
-#[command(after_help = "Says of record, targets, results, figures, certificate, plan, manifest and signature whether each is\n\
-    what it must be. A folder that nobody signed is told to be unsigned.\n\n\
+#[command(
+    after_help = "Says of record, targets, results, figures, certificate, plan, manifest, sidecars and signature whether\n\
+    each is what it must be. A folder that nobody signed is told to be unsigned.\n\n\
     Exit codes: 0 all is proven, 2 the command line is wrong, 3 something is not what it must be, or a key\n\
-    that was named did not sign.")]
+    that was named did not sign."
+)]
 pub struct VerifyArguments {
     /// The run folder
     #[arg(value_name = "RUN")]

@@ -135,10 +135,10 @@ impl IssueFile {
         self.issues.iter().any(|one| one.manifest_sha256 == manifest_sha256)
     }
 
-    /// The id of the report of a run with the first `count` issues.
-    fn id(&self, run_id: &str, count: usize) -> String {
+    /// The id of the report that is called `own` as it was made, with the first `count` issues.
+    fn id(&self, own: &str, count: usize) -> String {
         if count == 0 {
-            return run_id.to_owned();
+            return own.to_owned();
         }
         let issues = &self.issues[..count];
         // What an older version amended keeps the id that it was given.
@@ -147,7 +147,7 @@ impl IssueFile {
         } else {
             Self { schema: self.schema.clone(), issues: issues.to_vec() }.json()
         };
-        sha256(format!("{run_id}\n{text}").as_bytes())[..16].to_owned()
+        sha256(format!("{own}\n{text}").as_bytes())[..16].to_owned()
     }
 }
 
@@ -185,8 +185,11 @@ pub fn may_be_stated(field: &str) -> Result<&'static str, String> {
 /// Plan and provenance with what the issues state.
 pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> Result<(), String> {
     let mut all = Vec::new();
+    // Older versions called the first report as its run.
+    let by_run = file.issues.first().is_some_and(|first| first.replaces == provenance.run_id);
+    let own = if by_run { provenance.run_id.clone() } else { provenance.report_id().to_owned() };
     for (before, one) in file.issues.iter().enumerate() {
-        if one.replaces != file.id(&provenance.run_id, before) {
+        if one.replaces != file.id(&own, before) {
             return Err(format!("an issue takes the place of report {}, which is none of this run", one_line(&one.replaces)));
         }
         let issued = stated(plan, "issued");
@@ -221,7 +224,7 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
             changes,
         });
     }
-    provenance.issues = Some(Issues { report_id: file.id(&provenance.run_id, file.issues.len()), all });
+    provenance.issues = Some(Issues { report_id: file.id(&own, file.issues.len()), all });
     Ok(())
 }
 

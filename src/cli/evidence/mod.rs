@@ -8,6 +8,9 @@ mod header_tests;
 mod issues;
 pub mod keys;
 mod rebuilt;
+mod sidecar;
+#[cfg(test)]
+mod sidecar_tests;
 mod signature;
 mod standing;
 #[cfg(test)]

@@ -36,7 +36,7 @@ impl PlayedBack {
         // What is played is done with line by line: nobody else holds them.
         drop(recovered);
         let Replayed { mut record, mismatch, steps } = tape::replay(&plan, played);
-        if let Outcome::Faulted { reason } | Outcome::Aborted { reason } = &mut record.outcome
+        if let Outcome::Faulted { reason } | Outcome::Aborted { reason } | Outcome::NotReleased { reason } = &mut record.outcome
             && reason.contains(CUT_OFF)
         {
             *reason = format!("INCOMPLETE: {reason}");
@@ -133,7 +133,13 @@ impl Rebuilt {
                 Finding::wrong("targets", "the run came to its end, and the record has none".to_owned())
             }
             (None, _) if ended => Finding::wrong("targets", "the record has an end that the run does not come to".to_owned()),
-            (None, Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason }) => {
+            (
+                None,
+                Outcome::Aborted { reason }
+                | Outcome::NotReleased { reason }
+                | Outcome::Blocked { reason }
+                | Outcome::Faulted { reason },
+            ) => {
                 let told = if reason.contains("INCOMPLETE") { reason.clone() } else { format!("INCOMPLETE: {reason}") };
                 Finding::sound("targets", format!("{}; {told}{built}", again()))
             }

@@ -116,7 +116,13 @@ impl Served {
         let Self { folder, recorded, steps, mut exit, door, told } = self;
         let drift = recorded.record.drift.as_ref();
         let kept = Folder::digests(folder.path())?.kept();
-        write_made(FolderShelf::new(folder.path()), &kept, |shelf| output::put_driven(&steps, drift, shelf))?;
+        let shelf = FolderShelf::new(folder.path());
+        if let Outcome::NotReleased { reason } = &recorded.record.outcome {
+            tell(&format!("  NOT RELEASED: {}\n", escape(reason)));
+            write_made(shelf, &kept, |_| Ok(Vec::new()))?;
+        } else {
+            write_made(shelf, &kept, |shelf| output::put_driven(&steps, drift, shelf))?;
+        }
         for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
             let note = settings.paint_note("  note:");
             tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));
@@ -130,7 +136,7 @@ impl Served {
         }
         Ok(exit.max(match recorded.record.outcome {
             Outcome::Completed => Exit::Met,
-            Outcome::Aborted { .. } => Exit::Stopped,
+            Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
             Outcome::Blocked { .. } => Exit::Missed,
             Outcome::Faulted { .. } => Exit::Fault,
         }))

@@ -45,6 +45,10 @@ fn calibration(run: &Run<'_>) -> Block {
             Text::given(channel.class.as_deref()),
             factor(channel).into(),
             Text::given(certificate),
+            channel.calibrated.map_or_else(
+                || Text::given(None),
+                |[low, high]| range(Interval { low, high }, channel.measures.dimension()).into(),
+            ),
             Text::given(due),
             state(run, due),
         ]
@@ -55,6 +59,7 @@ fn calibration(run: &Run<'_>) -> Block {
         Column::words("Class", 2),
         Column::short("Factor"),
         Column::words("Calibration certificate", 3),
+        Column::short("Calibrated over, by size"),
         Column::short("Holds until"),
         Column::short("State"),
     ];

@@ -12,7 +12,10 @@ use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 pub(super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),
-        Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason } => {
+        Outcome::Aborted { reason }
+        | Outcome::NotReleased { reason }
+        | Outcome::Blocked { reason }
+        | Outcome::Faulted { reason } => {
             format!(" Reason: {}.", reason.trim_end_matches('.'))
         }
     };

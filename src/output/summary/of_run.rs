@@ -24,6 +24,7 @@ impl Summary {
         let (kind, reason) = match &record.outcome {
             Outcome::Completed => ("completed", None),
             Outcome::Aborted { reason } => ("aborted", Some(reason.clone())),
+            Outcome::NotReleased { reason } => ("not released", Some(reason.clone())),
             Outcome::Blocked { reason } => ("blocked", Some(reason.clone())),
             Outcome::Faulted { reason } => ("faulted", Some(reason.clone())),
         };

@@ -165,7 +165,10 @@ impl Ended {
     pub(super) fn reason(&self) -> &str {
         match &self.record.outcome {
             Outcome::Completed => "",
-            Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason } => reason,
+            Outcome::Aborted { reason }
+            | Outcome::NotReleased { reason }
+            | Outcome::Blocked { reason }
+            | Outcome::Faulted { reason } => reason,
         }
     }
 

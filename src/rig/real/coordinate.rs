@@ -20,7 +20,8 @@ impl Coordinate {
 
     /// A place of the device, m, as the plan has it.
     pub(super) fn in_plan(self, place: f64) -> f64 {
-        self.sign * (place - self.datum)
+        // Where the zero lies elsewhere, it is read as 0 and not as −0.
+        if self.datum == 0.0 { self.sign * place } else { self.sign * (place - self.datum) + 0.0 }
     }
 
     /// A place of the plan, m, as the device has it.
@@ -55,7 +56,7 @@ mod tests {
     fn a_turned_axis_with_its_zero_elsewhere_has_places_and_limits_of_its_own() {
         let axis = Coordinate { sign: -1.0, datum: -0.5 };
         assert_eq!((axis.at_device(0.25), axis.in_plan(-0.75)), (-0.75, 0.25));
-        assert_eq!((axis.in_plan(-0.5), axis.turned(3.0)), (0.0, -3.0));
+        assert_eq!((axis.in_plan(-0.5).to_bits(), axis.turned(3.0)), (0.0_f64.to_bits(), -3.0));
         let limits = Limits {
             displacement: Interval { low: -0.25, high: 2.0 },
             force: Interval { low: -1.0, high: f64::INFINITY },

@@ -18,6 +18,7 @@ use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle}
 
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
+use super::moved::of_places;
 use super::port::Clock;
 use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig, RigFault, Tally, Wish};
 use coordinate::Coordinate;
@@ -51,6 +52,8 @@ pub struct RealRig {
     rested: Vec<Option<(f64, f64)>>,
     /// Mean speed of the last move as it was seen, m/s.
     seen_speed: Option<f64>,
+    /// Times (s, by the clock) and places (m) of the first axis on the last move, as it was seen.
+    seen_places: Vec<(f64, f64)>,
     reread: u64,
     /// It was sent on a way since it was opened.
     moved: bool,
@@ -239,6 +242,11 @@ impl Rig for RealRig {
     fn read(&mut self) -> Result<Reading, RigFault> {
         let read = self.settled_reading();
         self.or_hold(read)
+    }
+
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        let moved = of_places(&self.seen_places).map(|ends| ends.map(|end| end - self.began));
+        Ok((self.read()?, moved))
     }
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {

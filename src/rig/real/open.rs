@@ -40,6 +40,7 @@ impl RealRig {
             settled: None,
             rested: Vec::new(),
             seen_speed: None,
+            seen_places: Vec::new(),
             reread: 0,
             moved: false,
             untrusted: None,

@@ -34,6 +34,7 @@ pub use entry::{
     StrokeBody,
 };
 pub use observer::TapedObserver;
+pub use older::RULES;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;
 pub use state::{CUT_OFF, GoesOn};
@@ -97,7 +98,7 @@ pub fn replay(plan: &Plan, played: Played) -> Replayed {
             driven.record
         })
     } else {
-        perform(None, &mut Unwatched, state, |rig, observer, _| run(plan, rig, observer))
+        perform(None, &mut Unwatched, state, |rig, observer, _| run(as_run.as_ref(), rig, observer))
     };
     Replayed { record, mismatch, steps }
 }
@@ -120,8 +121,9 @@ pub fn resume<'rig, E: From<Refusal> + 'rig>(
     let refused = Rc::new(RefCell::new(None));
     let refusal = Rc::clone(&refused);
     let begin: Begin<'rig> = Box::new(move || begin().map_err(|error| refusal.replace(Some(error))).ok());
+    let as_run = older::as_it_was_run(plan, played);
     let state = State::resuming(Played { lines: lines.into(), ..played.clone() }, begin, undecided, wall);
-    let recorded = perform(None, observer, state, |rig, observer, _| run(plan, rig, observer));
+    let recorded = perform(None, observer, state, |rig, observer, _| run(as_run.as_ref(), rig, observer));
     if let Some(error) = refused.take() {
         return Err(error);
     }
@@ -130,9 +132,13 @@ pub fn resume<'rig, E: From<Refusal> + 'rig>(
     }
     Err(match (recorded.mismatch, recorded.record.outcome) {
         (Some(mismatch), _) => mismatch.into(),
-        (None, Outcome::Aborted { reason } | Outcome::Blocked { reason } | Outcome::Faulted { reason }) => {
-            Refusal::EndsAgain { reason }
-        }
+        (
+            None,
+            Outcome::Aborted { reason }
+            | Outcome::NotReleased { reason }
+            | Outcome::Blocked { reason }
+            | Outcome::Faulted { reason },
+        ) => Refusal::EndsAgain { reason },
         (None, Outcome::Completed) => Refusal::Ended,
     }
     .into())

@@ -9,7 +9,7 @@ use super::older::is_recorded;
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
-use crate::run::{AxisReport, Inspection, Next, Observer, Request, StepReport, UNLOADING};
+use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepReport, UNLOADING};
 
 /// Who watches a run, with every word on record.
 pub struct TapedObserver<'run, 'rig> {
@@ -17,11 +17,13 @@ pub struct TapedObserver<'run, 'rig> {
     state: Rc<RefCell<State<'rig>>>,
     /// Whether a person was asked last, and has not answered.
     inspecting: bool,
+    /// The procedure that runs.
+    procedure: Option<String>,
 }
 
 impl<'run, 'rig> TapedObserver<'run, 'rig> {
     pub(super) fn new(inner: &'run mut dyn Observer, state: Rc<RefCell<State<'rig>>>) -> Self {
-        Self { inner, state, inspecting: false }
+        Self { inner, state, inspecting: false, procedure: None }
     }
 
     /// Whether answers still come from the record.
@@ -56,6 +58,7 @@ impl<'run, 'rig> TapedObserver<'run, 'rig> {
 
 impl Observer for TapedObserver<'_, '_> {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.procedure = Some(name.to_owned());
         self.inner.procedure_started(name, keyword, steps);
     }
 
@@ -153,7 +156,7 @@ impl Observer for TapedObserver<'_, '_> {
                     Ok(OperatorBody::AskedToStop) => Next::Wait,
                     _ => Next::GoOn,
                 },
-                Some(EntryKind::Fault) if state.front_is_pause_fault() => Next::Wait,
+                Some(EntryKind::Fault) if state.front_is_pause_fault_in(self.procedure.as_deref()) => Next::Wait,
                 _ => Next::GoOn,
             };
         }
@@ -167,7 +170,7 @@ impl Observer for TapedObserver<'_, '_> {
         next
     }
 
-    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
+    fn may_unload(&mut self, question: &str, motion: &Motion, declared: bool) -> Option<Inspection> {
         if self.playing() {
             let mut state = self.state.borrow_mut();
             return match state.next_kind() {
@@ -187,7 +190,7 @@ impl Observer for TapedObserver<'_, '_> {
                 _ => None,
             };
         }
-        let answer = self.state.borrow().goes_on().then(|| self.inner.may_unload(question)).flatten()?;
+        let answer = self.state.borrow().goes_on().then(|| self.inner.may_unload(question, motion, declared)).flatten()?;
         if answer != Inspection::Wait {
             self.append_said(OperatorBody::AnsweredToUnload { question: question.to_owned(), answer: answer.clone() });
         }
@@ -195,6 +198,17 @@ impl Observer for TapedObserver<'_, '_> {
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {
+        self.answer(note, |observer| observer.inspect(note))
+    }
+
+    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
+        self.answer(note, |observer| observer.release(note, motion))
+    }
+}
+
+impl TapedObserver<'_, '_> {
+    /// What a person answers to `note`: as the record has it, else as `ask` finds out.
+    fn answer(&mut self, note: &str, ask: impl FnOnce(&mut dyn Observer) -> Inspection) -> Inspection {
         if self.playing() {
             let mut state = self.state.borrow_mut();
             if state.front_is_pause_fault() {
@@ -216,7 +230,7 @@ impl Observer for TapedObserver<'_, '_> {
         if !self.state.borrow().goes_on() {
             return stopped(super::state::ended().to_string());
         }
-        let answer = self.inner.inspect(note);
+        let answer = ask(self.inner);
         self.inspecting = answer == Inspection::Wait;
         if answer != Inspection::Wait {
             self.append_said(OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });

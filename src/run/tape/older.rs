@@ -5,19 +5,43 @@ use std::borrow::Cow;
 
 use super::entry::OperatorBody;
 use super::played::{Played, body};
-use crate::plan::Plan;
+use crate::plan::{Plan, ProcedureKind};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line};
 use crate::run::zero::READINGS;
 
-/// A rig that says how far its zeros may drift has them read before the first client that drives it. The first versions that served a
-/// rig read none: their records go from the gate to the first request, and are played back so, with a drift that nobody looked at.
+/// The rules that this version computes a run by, as its records say in their header. 1: an `unload` may pass the place without load, and a
+/// `cycle` has ten targets a quarter unless it says another number. 2: neither.
+pub const RULES: u32 = 2;
+
+/// Targets between the middle and an amplitude where the plan gave no number, now and by the rules of 1.
+const POINTS: u32 = 25;
+const OLDER_POINTS: u32 = 10;
+
+/// The plan as the version ran it that wrote the record.
 pub(super) fn as_it_was_run<'a>(plan: &'a Plan, played: &Played) -> Cow<'a, Plan> {
-    if plan.rig.drift.is_none() || !serves_without_zeros(played) {
+    let without_zeros = plan.rig.drift.is_some() && serves_without_zeros(played);
+    if !without_zeros && played.header.rules >= RULES {
         return Cow::Borrowed(plan);
     }
     let mut plan = plan.clone();
-    plan.rig.drift = None;
+    // The first versions that served a rig which says how far its zeros may drift read none before the first client: their records go from
+    // the gate to the first request, and are played back so, with a drift that nobody looked at.
+    if without_zeros {
+        plan.rig.drift = None;
+    }
+    if played.header.rules < RULES {
+        plan.unloads_at_once = true;
+        let said = played.texts.iter().any(|text| text.contains("points"));
+        for procedure in &mut plan.procedures {
+            if let ProcedureKind::Cycle(cycle) = &mut procedure.kind
+                && cycle.points == POINTS
+                && !said
+            {
+                cycle.points = OLDER_POINTS;
+            }
+        }
+    }
     Cow::Owned(plan)
 }
 

@@ -118,14 +118,37 @@ impl<'rig> TapedRig<'rig> {
         Err(state.disagrees(format!("a target of {targets:?} m at {speed:?} m/s")))
     }
 
-    fn played_reading(&self) -> Result<Reading, RigFault> {
+    fn played_reading(&self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
         let mut state = self.state.borrow_mut();
         if let Some(fault) = state.played_fault(Call::Read) {
             return Err(fault);
         }
         let sample: SampleBody = state.peek(EntryKind::Sample, "a reading")?;
         state.consume();
-        Ok(Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() })
+        Ok((Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() }, sample.moved))
+    }
+
+    /// A reading, with when the rig went on its last move where that was asked for.
+    fn take_reading(
+        &mut self,
+        read: impl FnOnce(&mut dyn Rig) -> Result<(Reading, Option<[f64; 2]>), RigFault>,
+    ) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        if self.playing() {
+            return self.played_reading();
+        }
+        let read = read(self.rig()?);
+        let offset = self.offset.unwrap_or(0.0);
+        let checked = read.and_then(|(reading, moved)| {
+            let reading = finite(Reading { time: reading.time + offset, ..reading })?;
+            Ok((reading, moved.map(|ends| ends.map(|end| end + offset)).filter(|ends| ends.iter().all(|end| end.is_finite()))))
+        });
+        let (reading, moved) = checked.or_else(|fault| self.failed(Call::Read, fault))?;
+        self.count()?;
+        append_sample(&mut self.state.borrow_mut(), &reading, moved)?;
+        if failpoint::on(Guarding::SampleDurable) {
+            self.state.borrow_mut().promise()?;
+        }
+        Ok((reading, moved))
     }
 
     /// What the guard would not have is on record too, so that the run can be played back to here.
@@ -164,7 +187,7 @@ impl<'rig> TapedRig<'rig> {
                 return Err(self.state.borrow_mut().disagrees(format!("a stroke of at most {samples} readings")));
             }
             taken += 1;
-            each(self.played_reading()?)?;
+            each(self.played_reading()?.0)?;
         }
     }
 }
@@ -263,19 +286,11 @@ impl Rig for TapedRig<'_> {
     }
 
     fn read(&mut self) -> Result<Reading, RigFault> {
-        if self.playing() {
-            return self.played_reading();
-        }
-        let read = self.rig()?.read();
-        let offset = self.offset.unwrap_or(0.0);
-        let checked = read.and_then(|reading| finite(Reading { time: reading.time + offset, ..reading }));
-        let reading = checked.or_else(|fault| self.failed(Call::Read, fault))?;
-        self.count()?;
-        append_sample(&mut self.state.borrow_mut(), &reading)?;
-        if failpoint::on(Guarding::SampleDurable) {
-            self.state.borrow_mut().promise()?;
-        }
-        Ok(reading)
+        self.take_reading(|rig| Ok((rig.read()?, None))).map(|(reading, _)| reading)
+    }
+
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        self.take_reading(|rig| rig.read_moved())
     }
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
@@ -401,13 +416,14 @@ pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples
     }
 }
 
-pub(super) fn append_sample(state: &mut State, reading: &Reading) -> Result<(), RigFault> {
+pub(super) fn append_sample(state: &mut State, reading: &Reading, moved: Option<[f64; 2]>) -> Result<(), RigFault> {
     state.time = reading.time;
     let sample = SampleBody {
         t: reading.time,
         x: reading.displacement.clone(),
         r: reading.force.clone(),
         raw: reading.raw.iter().map(|raw| escaped(raw)).collect(),
+        moved,
         wall: state.wall(),
     };
     state.append(EntryKind::Sample, &sample)

@@ -101,7 +101,7 @@ impl TapedRig<'_> {
         let (mut refused, mut taken) = (false, done);
         let followed = goes(rig, &mut |reading| {
             let recorded = finite(Reading { time: reading.time + offset, ..reading }).and_then(|reading| {
-                append_sample(&mut state.borrow_mut(), &reading)?;
+                append_sample(&mut state.borrow_mut(), &reading, None)?;
                 Ok(reading)
             });
             recorded.and_then(|reading| {

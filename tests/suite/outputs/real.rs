@@ -52,8 +52,13 @@ fn real() -> Finished {
     ]
     .map(|(field, text)| (field, text.to_owned()))
     .to_vec();
-    finished.plan.rig.calibration =
-        Calibration { reference: Some("UKAS 4711".into()), due: Some("2027-03-01".into()), ..Calibration::default() };
+    finished.plan.rig.calibration = Calibration {
+        reference: Some("UKAS 4711".into()),
+        due: Some("2027-03-01".into()),
+        force_calibrated: Some(Interval { low: 10.0, high: 12e3 }),
+        displacement_calibrated: Some(Interval { low: 0.0, high: 0.2 }),
+        ..Calibration::default()
+    };
     finished.provenance.date = Some("2027-02-28".into());
     finished.record.rig.simulated = false;
     finished.record.rig.boot = Some("7F3A".into());
@@ -88,6 +93,7 @@ fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with()
         "7F3A",
         "UKAS 4711",
         "valid</span> on 2027-03-01",
+        "0.01 kN to 12 kN",
         "displacement to 1 µm",
         "median of 5 settled readings",
         "at most 20 N at rest; 250 kN/m to 350 kN/m in a move of 20 µm",
@@ -114,7 +120,9 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     assert_eq!(missing(&anonymous), ["the operator's name"]);
     let mut uncalibrated = real();
     uncalibrated.plan.rig.calibration = Calibration::default();
-    assert_eq!(missing(&uncalibrated), ["the calibration's reference", "the day until which the calibration holds"]);
+    let ranges = ["displacement", "force"].map(|channel| format!("the range over which the {channel} is calibrated"));
+    let lacks = ["the calibration's reference", &ranges[0], &ranges[1], "the day until which the calibration holds"];
+    assert_eq!(missing(&uncalibrated), lacks);
     // It held when the run began, and no more when it ended, a day later.
     let mut expired = real();
     expired.plan.rig.calibration.due = Some("2027-02-28".into());
@@ -132,6 +140,24 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     assert_eq!(missing(&undated), ["the day of the test"]);
     undated.provenance.date = Some("2027-02-28".into());
     assert_eq!(standing::of(&undated.run()), Standing::Certifiable);
+}
+
+#[test]
+fn what_lies_outside_the_range_of_its_calibration_is_told() {
+    let told = |force: [f64; 2], displacement: [f64; 2]| -> Vec<String> {
+        let mut finished = real();
+        let range = |[low, high]: [f64; 2]| Some(Interval { low, high });
+        finished.plan.rig.calibration.force_calibrated = range(force);
+        finished.plan.rig.calibration.displacement_calibrated = range(displacement);
+        let summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+        let deviations = summary["deviations"].as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned());
+        deviations.filter(|text| text.contains("calibrated")).collect()
+    };
+    // 157 mm and 51.6 N at most.
+    assert_eq!(told([10.0, 100.0], [0.0, 0.2]), [""; 0]);
+    let (weak, far) = (told([300.0, 15e3], [0.0, 0.2]), told([0.0, 100.0], [0.0, 0.1]));
+    assert!(weak.len() == 1 && weak[0].starts_with("The largest force, ") && weak[0].contains("is below the range"), "{weak:?}");
+    assert!(far.len() == 1 && far[0].starts_with("The largest displacement, ") && far[0].contains("is beyond"), "{far:?}");
 }
 
 fn particulars_missing(change: impl FnOnce(&mut Vec<(&'static str, String)>)) -> Vec<String> {
