@@ -13,6 +13,7 @@ use crate::output;
 use crate::record::journal::EntryKind;
 use crate::record::journal::testing::{Vandal, records, written};
 use crate::rig::Reading;
+use crate::run::Unwatched;
 use crate::run::tape::{self, Bands};
 
 /// All that `verify`, `report` and `resume` do with a record before they write or move anything; what is wrong with it.
@@ -20,7 +21,8 @@ fn played(journal: &[u8]) -> Result<(), String> {
     let read = record_file::from_bytes(Path::new(JOURNAL), journal).map_err(|failure| failure.to_string())?;
     let stands = standing::stands(&read);
     // A refusal is as good as none.
-    let _ = tape::rehearse(&read.plan, &read.played);
+    let no_rig = || Err(tape::Refusal::NothingRecorded);
+    let _ = tape::resume(&read.plan, &read.played, &mut Unwatched, Box::new(|| None), no_rig);
     if let (Some(link), Some(rig)) = (read.plan.rig.link.as_real(), &read.played.last_rig) {
         let nowhere = vec![0.0; read.plan.degrees_of_freedom()];
         let stands = Reading { time: 0.0, displacement: nowhere.clone(), force: nowhere, raw: Vec::new() };
