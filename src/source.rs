@@ -65,12 +65,16 @@ pub struct Position {
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<SourceFile>,
+    /// Of each file, where its lines end.
+    ends: Vec<Vec<usize>>,
 }
 
 impl Sources {
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
         let id = FileId(u32::try_from(self.files.len()).expect("at most 64 files are loaded"));
-        self.files.push(SourceFile { name: name.into(), text: text.into() });
+        let text: String = text.into();
+        self.ends.push(text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at).collect());
+        self.files.push(SourceFile { name: name.into(), text });
         id
     }
 
@@ -95,12 +99,11 @@ impl Sources {
     #[must_use]
     pub fn position(&self, span: Span) -> Position {
         let text = &self.file(span.file).text;
-        let before = &text[..text.floor_char_boundary(span.start as usize)];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Position {
-            line: before.bytes().filter(|byte| *byte == b'\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-        }
+        let at = text.floor_char_boundary(span.start as usize);
+        let ends = &self.ends[span.file.0 as usize];
+        let line = ends.partition_point(|end| *end < at);
+        let line_start = line.checked_sub(1).map_or(0, |before| ends[before] + 1);
+        Position { line: line + 1, column: text[line_start..at].chars().count() + 1 }
     }
 }
 

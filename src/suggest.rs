@@ -10,7 +10,11 @@ pub fn nearest<'a>(written: &str, candidates: impl IntoIterator<Item = &'a str>)
         .into_iter()
         // As many letters as they differ by in length are wrong at least: nothing longer is measured. A letter may become
         // three in lower case.
-        .filter(|candidate| candidate.chars().count() <= length + allowed && length <= 3 * candidate.chars().count() + allowed)
+        .filter(|candidate| {
+            let letters = if candidate.is_ascii() { candidate.len() } else { candidate.chars().count() };
+            let most = if candidate.is_ascii() { letters } else { 3 * letters };
+            letters <= length + allowed && length <= most + allowed
+        })
         .map(|candidate| (candidate.to_lowercase(), candidate))
         .filter(|(lower, _)| lower.chars().count().abs_diff(length) <= allowed)
         .map(|(lower, candidate)| (strsim::osa_distance(&written, &lower), candidate))

@@ -89,6 +89,14 @@ pub enum Source {
         procedure: ProcedureId,
         result: &'static str,
     },
+    /// The stiffness of the strokes of a damping sweep, which brings readings of a lagging actuator to one place.
+    StrokeStiffness {
+        procedure: ProcedureId,
+    },
+    /// The points of the loops of a procedure: what lies between them is not known.
+    LoopSampling {
+        procedure: ProcedureId,
+    },
     /// The time step of an integration, and that times are told to a whole one: the run is integrated again in finer steps.
     TimeStep {
         procedure: ProcedureId,

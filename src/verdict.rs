@@ -15,11 +15,14 @@ use crate::rig::failpoint::{self, Guarding};
 use crate::uncertainty::{FEW, Known, known};
 pub(crate) use partial::Declared;
 
-/// Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
+/// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
+    /// The run came to its end and nothing is required of it: there is nothing to pass.
+    Completed,
     Pass,
-    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it.
+    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it; a run that
+    /// could not go on with what it found.
     Inconclusive,
     Fail,
     /// Stopped by a limit or by a person.
@@ -33,6 +36,7 @@ impl Verdict {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Completed => "completed",
             Self::Pass => "pass",
             Self::Inconclusive => "inconclusive",
             Self::Fail => "fail",
@@ -113,8 +117,9 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         .collect();
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
-        Outcome::Completed => Verdict::Pass,
-        Outcome::Aborted { .. } => Verdict::Aborted,
+        Outcome::Blocked { .. } => Verdict::Inconclusive,
+        Outcome::Completed => Verdict::Completed,
+        Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Verdict::Aborted,
         Outcome::Faulted { .. } => Verdict::Error,
     };
     let verdict = requirements.iter().map(|requirement| requirement.verdict).fold(run, Verdict::max);
@@ -205,7 +210,7 @@ fn off(procedure: &ProcedureRecord) -> bool {
     let found = |name| procedure.results.iter().find(|result| result.name == name).map(|result| &result.value);
     let beyond = |error: &f64| error.is_nan() || error.abs() > WORTHLESS;
     match found("energy_error").or_else(|| found("energy_errors")) {
-        Some(ResultValue::Number { value, .. }) => value.as_ref().is_some_and(beyond),
+        Some(ResultValue::Number { value, .. }) => value.as_ref().is_none_or(beyond),
         Some(ResultValue::List(errors)) => errors.iter().any(beyond),
         None => false,
     }

@@ -86,6 +86,8 @@ fn calibration<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>,
     let (force, length) = (number("force_uncertainty"), number("displacement_uncertainty"));
     let zero = number("zero_uncertainty");
     let (newtons_per_count, zero_count) = (number("force_per_count"), number("zero_count"));
+    let mut range = |name: &str| checker.bounds_argument(chosen, name, place);
+    let (force_calibrated, displacement_calibrated) = (range("force_calibration_range"), range("displacement_calibration_range"));
     let (displacement, displacement_due) = (displacement?, displacement_due?);
     if let (None, None, Some((_, at))) = (&displacement, checker.given(block, "displacement_calibration"), &displacement_due) {
         return checker.fail(rigs::day_of_no_calibration("displacement_calibration_due", *at));
@@ -95,9 +97,11 @@ fn calibration<'a>(checker: &mut Checker<'a>, block: usize, chosen: &Chosen<'a>,
         reference: reference?,
         due: text(due?),
         force_class: force_class?,
+        force_calibrated: force_calibrated?,
         displacement,
         displacement_due: text(displacement_due),
         displacement_class: displacement_class?,
+        displacement_calibrated: displacement_calibrated?,
         newtons_per_count: newtons_per_count?,
         zero_count: zero_count?,
         force_uncertainty: force?,

@@ -76,6 +76,10 @@ pub struct Checker<'a> {
     pub names_lost: bool,
     /// Lines that could not be read: names on them may be declared there.
     pub unread: Vec<Span>,
+    /// Every word of those lines.
+    lost: BTreeSet<&'a str>,
+    /// What was reported of the behaviour of each block.
+    reported: BTreeMap<usize, Vec<Diagnostic>>,
     /// Places of which all is said.
     pub explained: Vec<Span>,
     pub known: BTreeMap<Node, Option<Typed>>,
@@ -99,6 +103,9 @@ pub const DEEPEST_VALUES: usize = 100;
 /// is copied wherever it is named, and `let b = a + a` doubles it.
 pub const MOST_TERMS: usize = 1_000;
 
+/// Faults after which no other name is suggested for an unknown one.
+const SUGGESTED: usize = 50;
+
 impl<'a> Checker<'a> {
     pub fn new(
         sources: &'a Sources,
@@ -110,6 +117,8 @@ impl<'a> Checker<'a> {
     ) -> Self {
         let (known, used, stack) = (BTreeMap::new(), BTreeSet::new(), Vec::new());
         let (data, frames) = (Vec::new(), BTreeMap::new());
+        let words = |span: &Span| sources.text(*span).split(|c: char| !c.is_alphanumeric() && c != '_');
+        let lost = unread.iter().flat_map(words).collect();
         Self {
             sources,
             scope,
@@ -119,6 +128,8 @@ impl<'a> Checker<'a> {
             faults,
             names_lost,
             unread,
+            lost,
+            reported: BTreeMap::new(),
             explained: Vec::new(),
             known,
             used,
@@ -185,14 +196,25 @@ impl<'a> Checker<'a> {
 
     /// Whether a name may have been declared where the text could not be read.
     pub fn may_be_lost(&self, name: &str) -> bool {
-        let is_word = |text: &str| text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name);
-        self.names_lost || self.unread.iter().any(|span| is_word(self.sources.text(*span)))
+        self.names_lost || self.lost.contains(name)
     }
 
-    /// Drops faults from `start` on that were reported before.
-    pub fn drop_repeated(&mut self, start: usize) {
+    /// Names of which one that is unknown may be a slip; none where many faults were found, for each name is looked at each time.
+    pub fn names_to_suggest(&self) -> impl Iterator<Item = &'a str> {
+        self.scope.names().take(self.most_to_suggest())
+    }
+
+    /// Of how many names one is suggested for one that is unknown.
+    pub const fn most_to_suggest(&self) -> usize {
+        if self.faults.len() <= SUGGESTED { usize::MAX } else { 0 }
+    }
+
+    /// Drops faults from `start` on that were reported of this block before.
+    pub fn drop_repeated(&mut self, start: usize, block: usize) {
+        let before = self.reported.entry(block).or_default();
         for fault in self.faults.split_off(start) {
-            if !self.faults.contains(&fault) {
+            if !before.contains(&fault) {
+                before.push(fault.clone());
                 self.faults.push(fault);
             }
         }

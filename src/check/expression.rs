@@ -139,11 +139,8 @@ impl<'a> Checker<'a> {
         if kind.kind != Kind::Shake && !of_storey.next().unwrap_or(false) {
             return None;
         }
-        let known = self.faults.len();
-        let specimen = self.specimen_block(block);
-        // What is wrong with the specimen is said in its place.
-        self.faults.truncate(known);
-        frame::frame(self, specimen?).map(|frame| frame.degrees_of_freedom())
+        let specimen = self.tested(block)?;
+        frame::frame(self, specimen).map(|frame| frame.degrees_of_freedom())
     }
 
     /// A number known before the run becomes a constant; one that is not finite is a fault.
@@ -173,7 +170,11 @@ impl<'a> Checker<'a> {
         } else if typed.bare && dimension != Dimension::NUMBER {
             fault::missing_unit(text, written.span, number, dimension, wanted_by)
         } else {
-            fault::wrong_dimension(text, written.span, number, typed.dimension, dimension, wanted_by)
+            let unit = literal(written).and_then(|expr| match &expr.kind {
+                ExprKind::Number { unit, .. } => unit.as_ref().map(|unit| unit.node.as_str()),
+                _ => None,
+            });
+            fault::wrong_dimension(text, written.span, (number, unit), (typed.dimension, dimension), wanted_by)
         };
         self.fail(fault)
     }

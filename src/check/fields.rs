@@ -3,6 +3,7 @@
 
 use super::checker::{Checker, Node, Place, Reads, Typed};
 use super::faults::{names as fault, types, values};
+use super::scope::Meaning;
 use crate::formula::Formula;
 use crate::schema::{Field, FieldType, Kind, Need, RigKind};
 use crate::source::Span;
@@ -125,6 +126,9 @@ impl<'a> Checker<'a> {
         let many = matches!(field.ty, FieldType::Quantities(_));
         let typed = if many { self.value(written, place)? } else { self.single(written, place)? };
         let typed = self.expect(typed, dimension, field.name, written)?;
+        if field.angle && !self.recorded && self.is_plain(&typed, written) {
+            return self.fail(types::angle_without_unit(self.text(written.span), written.span));
+        }
         let parts = typed.parts();
         for (index, part) in parts.iter().enumerate() {
             if let Some(value) = part.constant()
@@ -144,6 +148,19 @@ impl<'a> Checker<'a> {
             }
         }
         Some(typed)
+    }
+
+    /// Whether a number has neither `deg` nor `rad`, here or where its name was declared.
+    fn is_plain(&mut self, typed: &Typed, written: &'a Expr) -> bool {
+        let declared = match &written.kind {
+            ExprKind::Name(name) => match self.scope.meaning(name) {
+                Some(Meaning::Value(index)) => self.declared_value(index, written.span),
+                _ => None,
+            },
+            _ => None,
+        };
+        let typed = declared.as_ref().unwrap_or(typed);
+        typed.bare || typed.percent
     }
 
     /// One number: the entry, else the default. None where it is faulty or stands nowhere.
@@ -228,8 +245,8 @@ impl<'a> Checker<'a> {
             Some(_) => self.fail(types::block_wanted(kind, span, name)),
             None if self.may_be_lost(name) || self.scope.of_kind(kind).any(|(_, block)| block.lacks_its_name()) => None,
             None => {
-                let known: Vec<&str> =
-                    self.scope.of_kind(kind).filter_map(|(_, block)| block.name).map(|name| name.node.as_str()).collect();
+                let declared = self.scope.of_kind(kind).filter_map(|(_, block)| block.name).map(|name| name.node.as_str());
+                let known: Vec<&str> = declared.take(self.most_to_suggest()).collect();
                 self.fail(fault::unknown_block_name(kind, name, span, &known))
             }
         }

@@ -95,7 +95,7 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
             let block = match checker.scope.meaning(owner) {
                 Some(Meaning::Poisoned) => return None,
                 Some(Meaning::Block(block)) if checker.scope.blocks[block].procedure.is_some() => block,
-                None if checker.may_be_lost(owner) => return None,
+                None if checker.may_be_lost(owner) || checker.scope.nameless().any(|kind| kind.procedure) => return None,
                 _ => {
                     let known: Vec<&str> =
                         checker.scope.procedures().filter_map(|(_, block)| block.name).map(|n| &*n.node).collect();

@@ -6,7 +6,7 @@ use super::faults::values;
 use super::fields::whole;
 use super::{integrator, mode, specimen, stepping, storey_impact, warnings};
 use crate::diagnostic::Code;
-use crate::formula::{Formula, Part, ResultReference, ResultValue, Results};
+use crate::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
 use crate::plan::{Contact, Impact, InspectTrigger, MOST_STEPS, ProcedureKind, Specimen, Striker, Until, steps_in};
 use crate::schema::Kind;
 
@@ -68,9 +68,11 @@ pub fn until(checker: &mut Checker, block: usize) -> Option<Until> {
 }
 
 /// What the steps of a blow of this striker (of several, of the fastest) must be held against, as far as they are known before
-/// the run: their number, stability, the critical step, what a limit force needs.
+/// the run, a stiffness that is yet to be measured as it is foreseen: their number, stability, the critical step, what a limit force needs.
 pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Striker, specimen: Option<&Specimen>) {
-    if let (Some(time_step), Some(duration)) = (time_step_before_the_run(impact, striker), impact.duration.constant())
+    let critical = critical_foreseen(checker, impact, striker, specimen).map(|(critical, _)| critical);
+    let time_step = impact.stepping.time_step.evaluate(&NoResults, critical).ok().map(|step| step.value);
+    if let (Some(time_step), Some(duration)) = (time_step, impact.duration.constant())
         && steps_in(duration, time_step) > MOST_STEPS
     {
         let head = checker.scope.blocks[block].block.head;
@@ -81,7 +83,7 @@ pub fn judge(checker: &mut Checker, block: usize, impact: &Impact, striker: &Str
         return;
     }
     returns(checker, block, impact.until, striker);
-    beyond_duration(checker, block, time_step_before_the_run(impact, striker), impact.duration.constant());
+    beyond_duration(checker, block, time_step, impact.duration.constant());
     let before = checker.faults.len();
     mode::damping_twice(checker, block, impact, specimen);
     integrator::stable(checker, block, impact, striker, specimen);
@@ -145,7 +147,7 @@ impl Results for Foreseen {
 /// Δt, where it is known before the run.
 pub fn time_step_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
     let critical = critical_before_the_run(impact, striker);
-    impact.stepping.time_step.evaluate(&crate::formula::NoResults, critical).ok().map(|estimate| estimate.value)
+    impact.stepping.time_step.evaluate(&NoResults, critical).ok().map(|estimate| estimate.value)
 }
 
 pub fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {

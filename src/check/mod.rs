@@ -138,6 +138,7 @@ pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> 
     diagnostics.retain(|fault| fault.code != Code::UnknownName || !at(fault, &explained));
     diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
     let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
+    faults::cap(&mut diagnostics);
     Checked { plan, diagnostics, sources, rig_links }
 }
 
@@ -160,7 +161,8 @@ fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
         let last = text[end..].find('\n').map_or(text.len(), |newline| end + newline);
         Span::new(span.file, first, last)
     };
-    faults.iter().filter(|fault| is_of_the_text(fault)).filter_map(Diagnostic::span).map(line).collect()
+    let labels = faults.iter().filter(|fault| is_of_the_text(fault)).flat_map(|fault| &fault.labels);
+    labels.map(|label| line(label.span)).collect()
 }
 
 fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Options) -> Option<Plan> {
@@ -185,7 +187,8 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
     let procedures = procedures::procedures(checker);
     procedures::hold_specimen(checker, &procedures);
     procedures::hold_axes(checker, &procedures, &specimens, rig.as_ref());
-    if let Some(limits) = &limits {
+    // Of two `limits` nobody knows which holds.
+    if let Some(limits) = limits.as_ref().filter(|_| !checker.scope.twice.contains(&Kind::Limits)) {
         limits::hold_start(checker, limits);
         limits::hold_targets(checker, limits);
         limits::hold_cycles(checker, &procedures, limits);
@@ -269,6 +272,7 @@ fn plan(checker: &mut Checker, name: &str, files: Vec<PlanFile>, options: &Optio
         report: report?,
         golden: golden?,
         rehearses: None,
+        unloads_at_once: false,
         files: [files, checker.data_files()].concat(),
         settings: settings.into_iter().collect(),
     };

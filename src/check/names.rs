@@ -7,7 +7,7 @@ use super::scope::Meaning;
 use super::{frame, specimen, storey_impact, striker};
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::quantity::Dimension;
-use crate::schema::{self, Kind};
+use crate::schema::{self, BlockKind, Kind};
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 
@@ -54,8 +54,11 @@ impl<'a> Checker<'a> {
                     return self.fail(fault::result_without_procedure(name, &owner.node, span));
                 }
                 let siblings = place.entry.map_or(&[][..], |(block, _)| &self.scope.blocks[block].block.fields);
-                let known =
-                    siblings.iter().map(|entry| entry.key.node.as_str()).filter(|key| *key != name).chain(self.scope.names());
+                let known = siblings
+                    .iter()
+                    .map(|entry| entry.key.node.as_str())
+                    .filter(|key| *key != name)
+                    .chain(self.names_to_suggest());
                 // After a blow its results have names of their own.
                 let known: Vec<&str> = known.collect();
                 let (results, storey) = match place.reads {
@@ -97,10 +100,13 @@ impl<'a> Checker<'a> {
         if let ExprKind::Name(owner) = &base.kind {
             let is_sibling = place.entry.is_some_and(|(block, own)| self.sibling(block, own, owner).is_some());
             if !is_sibling {
-                if self.may_be_lost(owner) {
+                let has = |kind: &BlockKind| {
+                    kind.result(&name.node).is_some() || kind.export(&name.node).is_some() || kind.field(&name.node).is_some()
+                };
+                if self.may_be_lost(owner) || self.scope.nameless().any(has) {
                     return None;
                 }
-                let fault = fault::unknown_name(owner, base.span, self.before(base.span), self.scope.names());
+                let fault = fault::unknown_name(owner, base.span, self.before(base.span), self.names_to_suggest());
                 return self.fail(fault);
             }
         }
@@ -189,11 +195,7 @@ impl<'a> Checker<'a> {
 
     /// Whether what a block tests is a frame.
     fn tests_a_frame(&mut self, block: usize) -> bool {
-        let known = self.faults.len();
-        let specimen = self.specimen_block(block);
-        // What is wrong with the specimen is said in its place.
-        self.faults.truncate(known);
-        specimen.is_some_and(|specimen| frame::is_frame(self, specimen))
+        self.tested(block).is_some_and(|specimen| frame::is_frame(self, specimen))
     }
 
     /// Holds every result that a value reads against what may be read here.
@@ -220,7 +222,7 @@ impl<'a> Checker<'a> {
 
     /// The block of a procedure.
     pub fn procedure(&self, id: ProcedureId) -> Option<usize> {
-        self.scope.procedures().find(|(_, block)| block.procedure == Some(id)).map(|(index, _)| index)
+        self.scope.procedure(id)
     }
 
     /// The value of an entry of a block, as its field wants it.

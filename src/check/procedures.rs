@@ -3,11 +3,13 @@
 use super::checker::Checker;
 use super::faults::{axes as axis_faults, frames, names, whole as fault};
 use super::rig::CheckedRig;
+use super::scope::{DeclaredBlock, Meaning};
 use super::{axes, cycle, damping_sweep, escalate, impact, inspect, move_block, shake, stiffness_ramp, unload};
 use crate::diagnostic::Code;
 use crate::plan::{BlowOn, Escalate, Procedure, ProcedureKind, Specimen};
 use crate::schema::{self, Kind};
 use crate::source::Span;
+use crate::syntax::ast::ExprKind;
 
 /// Every procedure; None for those with a fault.
 pub fn procedures(checker: &mut Checker) -> Vec<(usize, Option<Procedure>)> {
@@ -102,20 +104,35 @@ impl Checker<'_> {
         if self.given(block, "specimen").is_some() {
             return self.reference(block, "specimen", Kind::Specimen);
         }
-        let declared: Vec<_> =
-            self.scope.of_kind(Kind::Specimen).map(|(index, block)| (index, block.name, block.block.head)).collect();
-        match declared.as_slice() {
-            [(only, ..)] => Some(*only),
-            [] => {
+        let mut declared = self.scope.of_kind(Kind::Specimen);
+        match (declared.len(), declared.next()) {
+            (1, Some((only, _))) => Some(only),
+            (_, None) => {
                 self.specimen_needed(block);
                 None
             }
-            several => {
+            (several, _) => {
                 let head = self.scope.blocks[block].block.head;
-                let names: Vec<_> =
-                    several.iter().filter_map(|(_, name, head)| name.map(|name| (name.node.as_str(), *head))).collect();
-                self.fail(fault::several_specimens(head, &names))
+                let named = |(_, specimen): (usize, &DeclaredBlock<'_>)| {
+                    (specimen.name.map(|name| name.node.clone()), specimen.block.head)
+                };
+                let declared = self.scope.of_kind(Kind::Specimen).map(named).filter_map(|(name, head)| Some((name?, head)));
+                let shown: Vec<_> = declared.take(fault::SHOWN).collect();
+                self.fail(fault::several_specimens(head, &shown, several))
             }
+        }
+    }
+
+    /// The same, where what is wrong with it is said by whoever reads the block.
+    pub fn tested(&self, block: usize) -> Option<usize> {
+        let mut declared = self.scope.of_kind(Kind::Specimen);
+        let Some((_, written)) = self.given(block, "specimen") else {
+            return declared.next().filter(|_| declared.len() == 0).map(|(only, _)| only);
+        };
+        let ExprKind::Name(name) = &written.value.kind else { return None };
+        match self.scope.meaning(name) {
+            Some(Meaning::Block(index)) if self.scope.blocks[index].kind.kind == Kind::Specimen => Some(index),
+            _ => None,
         }
     }
 

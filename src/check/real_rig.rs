@@ -11,7 +11,7 @@ use super::faults::{values, whole};
 use super::fields::whole as whole_number;
 use super::limits::CheckedLimits;
 use super::rig::{CheckedRig, kind, place_of};
-use crate::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
+use crate::plan::{Calibration, Datum, DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
 use crate::quantity::Dimension;
 use crate::schema::{Field, Kind, Need, RigKind};
 use crate::source::Span;
@@ -33,6 +33,7 @@ pub fn attended(checker: &mut Checker, particulars: &[(&'static str, String)]) {
 /// What a real rig says; None where something of it is faulty or missing, which [`complete`] says.
 pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     let safe_state = checker.choice(block, "safe_state").map(|chosen| chosen.variant.name);
+    let datum = checker.word(block, "datum", "machine");
     let axes = axes::axes(checker, block);
     let devices = devices(checker, block, axes.as_deref().unwrap_or_default());
     let gate = gate(checker, block, axes.as_deref().unwrap_or_default());
@@ -50,6 +51,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         actuator: actuator.link,
         load_cell: load_cell.map(|device| device.link),
         safe_state: if safe_state? == "unload" { SafeState::Unload } else { SafeState::Hold },
+        datum: if datum? == "here" { Datum::Here } else { Datum::Machine },
         gate: gate?,
         readings: readings?,
         watchdog: watchdog?,

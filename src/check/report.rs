@@ -100,7 +100,7 @@ fn drawn_of(
         Some(Meaning::Poisoned) => return None,
         Some(Meaning::Block(block)) => block,
         Some(Meaning::Value(_)) => return checker.fail(types::procedure_wanted(of, span)),
-        None if checker.may_be_lost(of) => return None,
+        None if checker.may_be_lost(of) || checker.scope.nameless().any(|kind| kind.procedure) => return None,
         None => {
             let known: Vec<&str> =
                 checker.scope.procedures().filter_map(|(_, block)| block.name).map(|name| name.node.as_str()).collect();

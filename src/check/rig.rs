@@ -222,12 +222,16 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
     let (force, displacement) =
         (checker.constant(block, "force_uncertainty"), checker.constant(block, "displacement_uncertainty"));
     let zero = checker.constant(block, "zero_uncertainty");
+    let mut range = |field| checker.bounds(block, field).map(|range| range.is_bounded().then_some(range));
+    let (force_calibrated, displacement_calibrated) = (range("force_calibration_range"), range("displacement_calibration_range"));
     Some(Calibration {
         reference: reference?,
         due: due?,
         force_class: force_class?,
+        force_calibrated: force_calibrated?,
         displacement: own.map(|reference| (reference, own_due)),
         displacement_class: displacement_class?,
+        displacement_calibrated: displacement_calibrated?,
         newtons_per_count: newtons_per_count?,
         zero_count: zero_count?,
         force_uncertainty: force?,

@@ -9,6 +9,7 @@ use crate::formula::ProcedureId;
 use crate::schema::{self, BlockKind, Kind, Naming};
 use crate::source::{FileId, Span, Spanned};
 use crate::syntax::ast::{Ast, Block, Expr, Ident, ItemKind};
+use crate::syntax::control;
 
 /// A block of a kind that this version knows.
 pub struct DeclaredBlock<'a> {
@@ -57,14 +58,26 @@ pub struct Scope<'a> {
     pub blocks: Vec<DeclaredBlock<'a>>,
     pub values: Vec<DeclaredValue<'a>>,
     pub requirements: Vec<DeclaredRequirement<'a>>,
+    /// Kinds of which there are more blocks than there may be, which is told.
+    pub twice: Vec<Kind>,
     names: BTreeMap<&'a str, (Meaning, Span)>,
-    procedures: usize,
+    /// The blocks of each kind, in order.
+    kinds: Vec<(Kind, Vec<usize>)>,
+    /// The place of each block among those of its kind.
+    places: Vec<usize>,
+    /// The blocks of the procedures, in order.
+    procedures: Vec<usize>,
+    nameless: Vec<&'static BlockKind>,
+    /// Faults of the text.
+    unread: Vec<Span>,
+    /// Where the first requirement of each name is.
+    labels: BTreeMap<&'a str, Span>,
 }
 
 impl<'a> Scope<'a> {
     /// Declares all that the files say; `settings` are the values given by `--set`, by name.
     pub fn collect(asts: &'a [Ast], settings: &'a BTreeMap<String, Expr>, faults: &mut Vec<Diagnostic>) -> Self {
-        let mut scope = Self::default();
+        let mut scope = Self { unread: faults.iter().filter_map(Diagnostic::span).collect(), ..Self::default() };
         for ast in asts {
             let library = ast.file != FileId(0);
             for item in &ast.items {
@@ -92,23 +105,34 @@ impl<'a> Scope<'a> {
         self.names.keys().copied()
     }
 
-    pub fn of_kind(&self, kind: Kind) -> impl Iterator<Item = (usize, &DeclaredBlock<'a>)> {
-        self.blocks.iter().enumerate().filter(move |(_, block)| block.kind.kind == kind)
+    pub fn of_kind(&self, kind: Kind) -> impl ExactSizeIterator<Item = (usize, &DeclaredBlock<'a>)> {
+        let found = self.kinds.iter().find(|(of, _)| *of == kind).map_or(&[][..], |(_, blocks)| blocks);
+        found.iter().map(|index| (*index, &self.blocks[*index]))
     }
 
     /// Place of a block among those of its own kind.
     pub fn place_in_kind(&self, block: usize) -> usize {
-        let kind = self.blocks[block].kind.kind;
-        self.blocks[..block].iter().filter(|other| other.kind.kind == kind).count()
+        self.places[block]
+    }
+
+    /// Kinds of blocks that should have a name and have none, which is told: what is called by an unknown name may be one of them.
+    pub fn nameless(&self) -> impl Iterator<Item = &'static BlockKind> {
+        self.nameless.iter().copied()
     }
 
     pub fn procedures(&self) -> impl Iterator<Item = (usize, &DeclaredBlock<'a>)> {
-        self.blocks.iter().enumerate().filter(|(_, block)| block.procedure.is_some())
+        self.procedures.iter().map(|index| (*index, &self.blocks[*index]))
+    }
+
+    /// The block of a procedure.
+    pub fn procedure(&self, id: ProcedureId) -> Option<usize> {
+        self.procedures.get(id.0).copied()
     }
 
     fn require(&mut self, label: &'a Spanned<String>, condition: &'a Expr, faults: &mut Vec<Diagnostic>) {
-        if let Some(first) = self.requirements.iter().find(|first| first.label.node == label.node) {
-            faults.push(fault::requirement_twice(&label.node, label.span, first.label.span));
+        let first = *self.labels.entry(&label.node).or_insert(label.span);
+        if first != label.span {
+            faults.push(fault::requirement_twice(&label.node, label.span, first));
         }
         self.requirements.push(DeclaredRequirement { label, condition });
     }
@@ -145,6 +169,10 @@ impl<'a> Scope<'a> {
         let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
         let Some(kind) = schema::block_of_words(&words) else {
             faults.push(fault::unknown_block(block));
+            // `if heavy {` declares nothing.
+            if words.first().is_some_and(|word| control::of_another_language(word).is_some()) {
+                return;
+            }
             // Kind and name may stand in each other's place.
             let turned = block.words.len() == 2 && schema::block_of_words(&[block.words[1].node.as_str(), "_"]).is_some();
             self.poison(if turned { &block.words[..1] } else { &block.words[1..] }, faults);
@@ -162,9 +190,9 @@ impl<'a> Scope<'a> {
             return;
         }
         // A head that could not be read to its end has more words than are known.
-        let cut_short = faults
+        let cut_short = self
+            .unread
             .iter()
-            .filter_map(Diagnostic::span)
             .any(|at| at.file == block.head.file && (block.head.start..=block.head.end + 1).contains(&at.start));
         if let Some(wrong) = fault::block_name(kind, block, rest).filter(|_| !cut_short) {
             faults.push(wrong);
@@ -172,20 +200,42 @@ impl<'a> Scope<'a> {
             && let Some(first) = self.unnamed(kind, span)
         {
             faults.push(fault::block_twice(kind, block.head, first));
+            if !self.twice.contains(&kind.kind) {
+                self.twice.push(kind.kind);
+            }
             return;
         }
         if let Some(name) = rest.first() {
             self.declare(name, Meaning::Block(self.blocks.len()), faults);
         }
-        let procedure = kind.procedure.then_some(ProcedureId(self.procedures));
-        self.procedures += usize::from(kind.procedure);
+        if rest.is_empty() && kind.naming == Naming::Named && !self.nameless.iter().any(|other| other.kind == kind.kind) {
+            self.nameless.push(kind);
+        }
+        let procedure = kind.procedure.then_some(ProcedureId(self.procedures.len()));
+        self.procedures.extend(procedure.map(|_| self.blocks.len()));
+        self.place(kind.kind);
         self.blocks.push(DeclaredBlock { kind, name: rest.first(), block, span, procedure });
+    }
+
+    /// Counts the block that comes next among those of its kind.
+    fn place(&mut self, kind: Kind) {
+        let block = self.blocks.len();
+        match self.kinds.iter_mut().find(|(of, _)| *of == kind) {
+            Some((_, blocks)) => {
+                self.places.push(blocks.len());
+                blocks.push(block);
+            }
+            None => {
+                self.places.push(0);
+                self.kinds.push((kind, vec![block]));
+            }
+        }
     }
 
     /// The block without a name of this kind that stands in the same file already.
     fn unnamed(&self, kind: &BlockKind, span: Span) -> Option<Span> {
-        let same = |other: &&DeclaredBlock| other.kind.kind == kind.kind && other.name.is_none() && other.span.file == span.file;
-        self.blocks.iter().find(same).map(|other| other.block.head)
+        let same = |(_, other): &(usize, &DeclaredBlock)| other.name.is_none() && other.span.file == span.file;
+        self.of_kind(kind.kind).find(same).map(|(_, other)| other.block.head)
     }
 
     fn poison(&mut self, words: &'a [Ident], faults: &mut Vec<Diagnostic>) {

@@ -11,7 +11,7 @@ use crate::mechanics::portal_limit::mechanism_limit;
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
 use crate::schema::{FieldType, Kind};
 use crate::source::Span;
-use crate::syntax::ast::ExprKind;
+use crate::syntax::ast::{Expr, ExprKind};
 use crate::uncertainty::Source;
 
 /// Standard, of the mass that an impact takes from its specimen, kg.
@@ -46,6 +46,7 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     {
         checker.faults.push(fault::mass_incomplete(name, head, missing));
     }
+    beam_says_its_mass(checker, block, mass);
     // Each number is looked at, also those that the mass does not need, so that all faults are seen at once.
     for field in ["length", "area", "density"] {
         checker.quantity(block, field);
@@ -68,6 +69,19 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         damping: damping?,
         coulomb: coulomb?,
     })
+}
+
+/// A `beam` has ends, and q·A·L/2 is made for two supports: which of its masses is meant the plan says. Recorded plans meant that one.
+fn beam_says_its_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
+    let declared = &checker.scope.blocks[block];
+    let beam = |written: &Expr| behaviour::names(written, "beam");
+    let named = checker.given(block, "behaviour").is_some_and(|(_, entry)| beam(&entry.value));
+    let (Some(half), Some(name)) = (half.filter(|_| named && !checker.recorded), declared.name) else { return };
+    if checker.given(block, "mass").is_some() {
+        return;
+    }
+    let masses = behaviour(checker, block, declared.block.head).and_then(|behaviour| behaviour.equivalent_masses());
+    checker.faults.push(specimens::beam_without_mass(&name.node, declared.block.head, half, masses.map(|masses| masses.elastic)));
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
@@ -208,7 +222,7 @@ pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<
         let FieldType::Choice(variants) = checker.scope.blocks[block].kind.field("behaviour")?.ty else { return None };
         behaviour::behaviour(checker, &Written { field: "behaviour", variants, expr, place, material })
     });
-    checker.drop_repeated(known);
+    checker.drop_repeated(known, block);
     behaviour
 }
 

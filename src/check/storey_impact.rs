@@ -15,11 +15,7 @@ use crate::schema::Kind;
 
 /// The frame that a block strikes one storey of; None where it strikes one degree of freedom, or nothing that is known.
 pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Option<Rc<Frame>>)> {
-    let known = checker.faults.len();
-    let specimen = checker.specimen_block(block);
-    // Whoever reads the block says what is wrong with its specimen.
-    checker.faults.truncate(known);
-    let specimen = specimen.filter(|specimen| frame::is_frame(checker, *specimen))?;
+    let specimen = checker.tested(block).filter(|specimen| frame::is_frame(checker, *specimen))?;
     let frame = frame::frame(checker, specimen);
     let several = frame.as_ref().is_none_or(|frame| frame.degrees_of_freedom() > 1);
     (several || checker.given(block, "storey").is_some()).then_some((specimen, frame))

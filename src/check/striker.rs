@@ -49,6 +49,11 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     let (velocity, gap, gravity) = (velocity(checker, block), checker.constant(block, "gap"), checker.constant(block, "gravity"));
     let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
     let velocity_uncertainty = uncertainty(checker, block, "velocity_uncertainty", velocity);
+    if let (Some(mass), Some(velocity)) = (mass, velocity)
+        && !(0.5 * mass * velocity * velocity).is_finite()
+    {
+        return checker.fail(values::energy_not_finite(forms.first().map_or(head, |(_, span)| *span)));
+    }
     Some(Striker {
         name: name?.node.clone(),
         mass: mass?,

@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::diagnostic::excerpt::escape;
 
-pub use evidence::{KeygenArguments, ReportArguments, SignArguments, VerifyArguments};
+pub use evidence::{IssueArguments, KeygenArguments, ReportArguments, SignArguments, VerifyArguments};
 
 /// Pseudo-dynamic structural tests, from a plan to a certificate.
 #[derive(Debug, Parser)]
@@ -30,6 +30,8 @@ pub enum Command {
     Run(RunArguments),
     /// Goes on with a run on a real rig that was stopped or cut off
     Resume(ResumeArguments),
+    /// Issues the report of a run: states who authorises it and what else is known only after the test; nothing moves
+    Issue(IssueArguments),
     /// Makes the results of a run anew, from its record alone; nothing moves and nothing is overwritten
     Report(ReportArguments),
     /// Proves that a run's record, targets and files belong together, and who signed them; nothing moves
@@ -121,12 +123,15 @@ pub struct JogArguments {
     /// How fast, such as "0.5 mm/s" [default: the rig's own, within the plan's limits]
     #[arg(long, value_name = "SPEED")]
     pub speed: Option<String>,
-    /// Answers the question before a move with yes
+    /// Moves without asking: the rig MOVES at once
     #[arg(long)]
     pub yes: bool,
     /// Lets go of an axis that is found held, where it stands; it is recorded
     #[arg(long)]
     pub let_go: bool,
+    /// Counts places from the zero of this run, on a rig with `datum = here`
+    #[arg(long, value_name = "RUN")]
+    pub datum: Option<PathBuf>,
     /// Whose hand it is [default: the plan's `operator`]
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,
@@ -190,7 +195,7 @@ pub struct ServeArguments {
     /// Run folder, new or empty [default: runs/PLAN-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Releases a real rig without asking: who starts this answers for it
+    /// Releases a real rig without asking: it MOVES as soon as it is open. Who starts this answers for it
     #[arg(long)]
     pub yes: bool,
     /// Who stands by at a real rig [default: the plan's `operator`]
@@ -229,7 +234,7 @@ pub struct RunArguments {
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub plan_settings: PlanSettings,
-    /// Answers routine questions with yes
+    /// Releases the rig without asking: it MOVES as soon as it is open, and goes on at every inspection
     #[arg(long)]
     pub yes: bool,
     /// Who runs the test and answers at inspections [default: the plan's `operator`]
@@ -280,7 +285,7 @@ pub struct ResumeArguments {
     /// The force changed beyond its band since, and someone has looked at the specimen; it is recorded
     #[arg(long)]
     pub accept_relaxation: bool,
-    /// Answers routine questions with yes
+    /// Releases the rig without asking: it MOVES as soon as it is open, and goes on at every inspection
     #[arg(long)]
     pub yes: bool,
 }
@@ -411,7 +416,7 @@ pub(super) fn name(text: &str) -> Result<String, String> {
 }
 
 /// A day of the calendar, in the one form that a certificate shows.
-fn date(text: &str) -> Result<String, String> {
+pub(super) fn date(text: &str) -> Result<String, String> {
     let day: jiff::civil::Date = text.parse().map_err(|_| "no such day; write it as 2026-05-31".to_owned())?;
     // The calendar's reader also takes times and other forms.
     if day.to_string() == text { Ok(text.to_owned()) } else { Err(format!("write it as {day}")) }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::args::CompareArguments;
 use super::bless::truth_in;
-use super::evidence::{AMENDMENT, AmendmentFile, Folder, PlayedBack};
+use super::evidence::{Folder, IssueFile, PlayedBack};
 use super::exit::{Exit, Failure};
 use super::output::give;
 use super::record_file::{self, journal_of};
@@ -45,9 +45,8 @@ fn side(run: &Path) -> Result<Side, Failure> {
 
 fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
     let kept = Folder::read(run)?;
-    let amendment = kept.bytes(AMENDMENT).map(AmendmentFile::read).transpose();
-    let amendment = amendment.map_err(|fault| Failure::file(run.join(AMENDMENT), fault))?;
-    let played = PlayedBack::of(record_file::read(run)?, amendment.as_ref()).map_err(|fault| Failure::file(run, fault))?;
+    let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
+    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
     if played.steps.is_some() {
         return Err(Failure::file(run, "is a run that a client drove: it has no results to compare"));
     }

@@ -7,15 +7,14 @@ use std::path::Path;
 use super::evidence::Folder;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
-use super::output::tell;
-use super::rehearse;
+use super::output::{tell, tell_words};
 use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
+use super::{held, provenance, rehearse};
 use crate::diagnostic::excerpt::escape;
 use crate::output::{self, Listed, OutputError, Provenance, Run, Shelf};
 use crate::plan::Plan;
 use crate::record::{EventKind, Outcome, Record};
-use crate::run::UNLOADING;
 use crate::run::driven::DrivenStep;
 use crate::run::tape::Recorded;
 use crate::verdict::{self, Assessment};
@@ -29,10 +28,16 @@ pub fn conclude(
     settings: Settings,
 ) -> Result<Exit, Failure> {
     let assessment = verdict::assess(plan, &recorded.record);
-    let provenance = &as_recorded(folder, plan, provenance);
+    let provenance = &as_recorded(folder, plan, provenance, recorded);
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
-    tell(&output::console::verdict_text(&run, settings.color));
-    tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    if !held::is_held(&recorded.record) {
+        // Nothing comes before it, and nothing beside it says how to go on.
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    }
+    tell_words(&output::console::verdict_text(&run, settings.color), settings);
+    if held::is_held(&recorded.record) {
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    }
     let kept = Folder::digests(folder)?.kept();
     write_made(folder, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
     let exit = Exit::from(assessment.verdict);
@@ -51,7 +56,9 @@ pub fn conclude(
 
 /// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.
 fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings) -> String {
-    if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed {
+    // A rig that nobody released stands as it stood.
+    let unmoved = matches!(record.outcome, Outcome::NotReleased { .. }) && held::is_held(record);
+    if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed || unmoved {
         return String::new();
     }
     let last = record.events.iter().rev().find(|event| matches!(event.kind, EventKind::Held | EventKind::NotHeld));
@@ -59,8 +66,7 @@ fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings
         EventKind::NotHeld => format!("  {}\n", settings.paint_error(&escape(&event.text))),
         _ => format!("  the rig: {}\n", escape(&event.text)),
     });
-    let unloaded = record.events.iter().any(|event| event.kind == EventKind::Hold && event.text == UNLOADING);
-    if !record.procedures.is_empty() && !unloaded {
+    if held::is_held(record) && held::can_go_on(record) {
         let folder = folder.display();
         let _ = writeln!(text, "  to go on: psd resume {folder} --operator \"your name\" --reason \"why it stopped\"");
     }
@@ -77,6 +83,10 @@ pub fn made_of(
     driven: Option<&[DrivenStep]>,
     shelf: &mut dyn Shelf,
 ) -> Result<Vec<Listed>, OutputError> {
+    if matches!(record.outcome, Outcome::NotReleased { .. }) {
+        // Nothing moved: there is the record, and nothing to report.
+        return Ok(Vec::new());
+    }
     if let Some(steps) = driven {
         return output::put_driven(steps, record.drift.as_ref(), shelf);
     }
@@ -100,15 +110,25 @@ pub fn write_made(
     write_new(folder, &output::manifest_with(&[], &all))
 }
 
-/// The summary of results that are written.
-pub fn summary(folder: &Path) -> Result<String, Failure> {
+/// The summary of results that are written; of a rig that was not released, that alone.
+pub fn summary(folder: &Path, record: &Record) -> Result<String, Failure> {
+    if let Outcome::NotReleased { reason } = &record.outcome {
+        return Ok(format!("{}\n", serde_json::json!({ "outcome": "not released", "reason": reason })));
+    }
     let path = folder.join(output::SUMMARY);
     std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
 }
 
 /// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where
 /// it cannot be read back, what the run began with is told, and no head of the record.
-fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance) -> Provenance {
+fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance, recorded: &Recorded) -> Provenance {
     let read = plan.rig.link.as_real().and_then(|_| super::record_file::read(folder).ok());
-    read.map_or_else(|| began.clone(), |read| read.provenance)
+    read.map_or_else(|| numbered(began.clone(), plan, recorded), |read| read.provenance)
+}
+
+/// With the number of the report, where the record gives one.
+pub fn numbered(provenance: Provenance, plan: &Plan, recorded: &Recorded) -> Provenance {
+    let head = recorded.sealed.as_ref().map(|(_, head)| head.as_str());
+    let ended = recorded.record.outcome == Outcome::Completed;
+    Provenance { number: provenance::report_number(&provenance.run_id, plan, ended, head), ..provenance }
 }

@@ -14,7 +14,7 @@ use crate::verdict::Verdict;
 /// An exit code, worst last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
-    /// 0: all requirements are met.
+    /// 0: all requirements are met, or there is none.
     Met,
     /// 1: a requirement failed or is inconclusive; a file is not formatted.
     Missed,
@@ -46,7 +46,7 @@ impl Exit {
 impl From<Verdict> for Exit {
     fn from(verdict: Verdict) -> Self {
         match verdict {
-            Verdict::Pass => Self::Met,
+            Verdict::Completed | Verdict::Pass => Self::Met,
             Verdict::Inconclusive | Verdict::Fail => Self::Missed,
             Verdict::Aborted => Self::Stopped,
             Verdict::Error => Self::Fault,
@@ -182,7 +182,8 @@ mod tests {
 
     #[test]
     fn verdicts_end_as_the_reference_says() {
-        let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Error, Verdict::Aborted];
-        assert_eq!(verdicts.map(|verdict| Exit::from(verdict).code()), [0, 1, 1, 3, 4]);
+        let verdicts =
+            [Verdict::Completed, Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Error, Verdict::Aborted];
+        assert_eq!(verdicts.map(|verdict| Exit::from(verdict).code()), [0, 0, 1, 1, 3, 4]);
     }
 }

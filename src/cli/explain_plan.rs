@@ -8,6 +8,7 @@ use super::dry_rig::{Reach, Watched};
 use super::exit::Exit;
 use super::explain_drift;
 use super::explain_shake;
+use super::explain_start;
 use super::explain_tracking;
 use super::settings::Settings;
 use crate::diagnostic::excerpt::escape;
@@ -89,7 +90,8 @@ impl<'a> DryRun<'a> {
     pub fn exit(&self) -> Exit {
         match self.record.outcome {
             Outcome::Completed => Exit::Met,
-            Outcome::Aborted { .. } => Exit::Stopped,
+            Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
+            Outcome::Blocked { .. } => Exit::Missed,
             Outcome::Faulted { .. } => Exit::Fault,
         }
     }
@@ -111,6 +113,7 @@ impl<'a> DryRun<'a> {
                 section(&format!("Specimen {}", specimen.name), rows);
             }
         }
+        section("Start", explain_start::rows(self.plan));
         section("What moves", self.motions());
         for (index, (procedure, planned)) in self.record.procedures.iter().zip(&self.plan.procedures).enumerate() {
             if let (History::Impact(history), ProcedureKind::Impact(blow)) = (&procedure.history, &planned.kind)
@@ -254,7 +257,10 @@ impl<'a> DryRun<'a> {
     fn stopped(&self) -> Option<String> {
         match &self.record.outcome {
             Outcome::Completed => None,
-            Outcome::Aborted { reason } => Some(format!("The run would be stopped{}: {}", self.stopped_in(), escape(reason))),
+            Outcome::Aborted { reason } | Outcome::NotReleased { reason } => {
+                Some(format!("The run would be stopped{}: {}", self.stopped_in(), escape(reason)))
+            }
+            Outcome::Blocked { reason } => Some(format!("The run could not go on: {}", escape(reason))),
             Outcome::Faulted { reason } => Some(format!("The rig would fail: {}", escape(reason))),
         }
     }

@@ -1,7 +1,6 @@
 //! The program around the pipeline: arguments → settings → one file a command → exit code. The only folder that
 //! reads files, the terminal and the environment, and that writes anything.
 
-mod amend;
 mod args;
 mod bless;
 mod check;
@@ -11,17 +10,22 @@ mod conclude;
 mod dry_rig;
 mod evidence;
 mod exit;
+mod expected;
 mod explain;
 mod explain_drift;
 mod explain_plan;
 mod explain_shake;
+mod explain_start;
 mod explain_tracking;
 mod fmt;
+mod held;
+mod issue;
 mod limits;
 mod loader;
 mod output;
 mod plan_file;
 mod provenance;
+mod question;
 mod real_rig;
 mod record_file;
 mod rehearse;
@@ -65,6 +69,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
     let outcome = match &arguments.command {
         args::Command::Run(arguments) => run::run(arguments, settings),
         args::Command::Resume(arguments) => resume::resume(arguments, settings),
+        args::Command::Issue(arguments) => issue::issue(arguments, settings),
         args::Command::Report(arguments) => report::report(arguments, settings),
         args::Command::Verify(arguments) => verify::verify(arguments, settings),
         args::Command::Sign(arguments) => sign::sign(arguments, settings),

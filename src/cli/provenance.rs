@@ -28,6 +28,7 @@ pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
     let text = plan.files.first().map_or("", |file| file.text.as_str());
     Provenance {
         run_id,
+        number: None,
         psd_version: version.to_owned(),
         build: this_build(),
         plan_sha256: sha256(text.as_bytes()),
@@ -35,8 +36,16 @@ pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
         real: None,
         equipment: None,
         prediction: None,
-        amends: None,
+        issues: None,
     }
+}
+
+/// The number of a run's report, where the plan alone does not give it: of a real rig, and of a run that did not come to its end, no two
+/// records are the same. The run's id, and the head of its record.
+pub fn report_number(run_id: &str, plan: &Plan, ended: bool, head: Option<&str>) -> Option<String> {
+    let follows_from_the_plan = plan.rig.link.as_real().is_none() && ended;
+    let head = head.and_then(|head| head.get(..8)).filter(|_| !follows_from_the_plan)?;
+    Some(format!("{run_id}-{head}"))
 }
 
 /// The provenance of a run on a real rig: no two are the same, so that who, where and when are part of its id.

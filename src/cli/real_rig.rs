@@ -5,7 +5,7 @@ use super::exit::Failure;
 use super::output::tell;
 use super::record_file::Circumstances;
 use super::settings::Settings;
-use super::watch::{Attendance, Signals, Watcher};
+use super::watch::{Attendance, Signals, Watcher, throw_away};
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, Wish, connect};
 use crate::run::tape::Wall;
@@ -23,6 +23,8 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
     }
     let nobody =
         || Failure::command_line("nobody is named who runs the test: nothing was opened").help("--operator \"A. Tester\"");
+    // What was typed before the question is no name.
+    throw_away();
     loop {
         tell("  who runs the test? [your name] ");
         let mut line = String::new();

@@ -15,7 +15,7 @@ use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, FileStorage, Journal, Line, OLDEST_FORMAT, Recovered, Storage, recover};
 use crate::rig::Rig;
 use crate::run::rehearsal;
-use crate::run::tape::{self, Header, HeaderFile, Played};
+use crate::run::tape::{self, Header, HeaderFile, Played, RULES};
 
 /// Name of the journal in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
@@ -52,6 +52,7 @@ pub fn header(
         run_id: provenance.run_id.clone(),
         psd: provenance.psd_version.clone(),
         build: provenance.build.sources.clone(),
+        rules: RULES,
         toolchain: provenance.build.toolchain.clone(),
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),
@@ -189,8 +190,10 @@ fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
 
 /// The provenance that the record gives; the plan's own date counts where none was given on the command line.
 fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
+    let number = super::provenance::report_number(&header.run_id, plan, recovered.ended, Some(recovered.head()));
     let stated = Provenance {
         run_id: header.run_id.clone(),
+        number,
         psd_version: header.psd.clone(),
         build: Build { sources: header.build.clone(), toolchain: header.toolchain.clone() },
         plan_sha256: header.files.first().map_or_else(String::new, |file| file.sha256.clone()),

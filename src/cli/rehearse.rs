@@ -22,7 +22,11 @@ use crate::run::rehearsal;
 /// Measures, predicts, and says with the exit code whether every limit would be kept.
 pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Exit, Failure> {
     let part = rehearsal::measured_part(plan)?;
-    let Ran { folder, provenance, recorded } = on_its_rig(&part, arguments, attendance, settings)?;
+    let ran = on_its_rig(&part, arguments, attendance, settings)?;
+    if let Some(exit) = ran.goes_on(&part, attendance, settings)? {
+        return Ok(exit);
+    }
+    let Ran { folder, provenance, recorded, .. } = ran;
     let exit = conclude(folder.path(), &part, &provenance, &recorded, settings)?;
     let predicted = if exit <= Exit::Missed {
         let stand_in = rehearsal::prediction(plan, &recorded.record)?;
@@ -39,7 +43,7 @@ pub fn rehearse(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, 
     };
     match arguments.format {
         Format::Human => give(&format!("{}\n", folder.path().display()))?,
-        Format::Json => give(&summary(folder.path())?)?,
+        Format::Json => give(&summary(folder.path(), &recorded.record)?)?,
     }
     Ok(exit.max(predicted))
 }

@@ -8,7 +8,7 @@ use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::rig::{Reading, Rig, place_and_force};
 use crate::run::tape::{Decision, Doubt};
-use crate::run::{Inspection, Observer as _};
+use crate::run::{Inspection, Motion, Observer as _};
 
 /// How long the rig is left alone between two looks at whether the person has decided, s.
 const BREATH: f64 = 0.05;
@@ -23,8 +23,9 @@ pub fn ask(
     watcher: &mut Watcher,
 ) -> Result<String, Failure> {
     let question = question(plan, link, found, decision);
+    let motion = Motion::of(plan, rig.identity(), next(link, found, decision));
     loop {
-        match watcher.inspect(&question) {
+        match watcher.release(&question, &motion) {
             Inspection::GoOn { note, by } => {
                 let by = by.unwrap_or_else(|| "nobody".to_owned());
                 return Ok(note.map_or_else(|| by.clone(), |note| format!("{by}: {note}")));
@@ -48,6 +49,10 @@ fn refused(watcher: &mut Watcher, reason: String) -> Failure {
 
 /// What was found, what would move, and how.
 fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &Decision) -> String {
+    format!("resume on rig {}: {}", plan.rig.name, next(link, found, decision))
+}
+
+fn next(link: &RealLink, found: &Reading, decision: &Decision) -> String {
     let places = |places: &[f64]| places.iter().map(|place| readable(*place, Dimension::LENGTH)).collect::<Vec<_>>().join(", ");
     let at = |speed: f64| plain(speed, Dimension::VELOCITY, 4);
     let own = at(link.own_speed);
@@ -69,5 +74,5 @@ fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &Decision) 
             format!("it stands where the record left it, and will move as the plan says, at {own} where that says nothing")
         }
     };
-    format!("resume on rig {}: found at {}; {next}", plan.rig.name, place_and_force(&found.displacement, &found.force))
+    format!("found at {}; {next}", place_and_force(&found.displacement, &found.force))
 }

@@ -5,13 +5,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::amend::amend;
 use super::args::ReportArguments;
 use super::conclude::write_made;
-use super::evidence::{AMENDMENT, AmendmentFile, Folder, PlayedBack};
+use super::evidence::{Folder, ISSUE, IssueFile, OLDER_ISSUE, PlayedBack, held_issue};
 use super::exit::{Exit, Failure};
+use super::issue::amend;
 use super::loader::plain;
-use super::output::{give, tell};
+use super::output::{give, tell, tell_words};
 use super::record_file::{self, JOURNAL, journal_of};
 use super::run_folder::RunFolder;
 use super::settings::Settings;
@@ -27,14 +27,13 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     let journal = journal_of(run);
     let _still = journal.exists().then(|| FileStorage::keep_still(&journal)).transpose()?;
     let kept = Folder::read(run)?;
-    let amendment = kept.bytes(AMENDMENT).map(AmendmentFile::read).transpose();
-    let amendment = amendment.map_err(|fault| Failure::file(run.join(AMENDMENT), fault))?;
-    let played = PlayedBack::of(record_file::read(run)?, amendment.as_ref()).map_err(|fault| Failure::file(run, fault))?;
+    let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
+    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,
     };
-    let beside = kept.files.get(AMENDMENT).map(|held| (AMENDMENT.to_owned(), held.digest.clone()));
+    let beside = held_issue(&kept).map(|(name, held)| (name.to_owned(), held.digest.clone()));
     let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
     // What a manifest lists lies beside it: another folder is a whole run folder, and verifies.
     if folder != *run {
@@ -64,7 +63,7 @@ pub fn conclude_played(
 ) -> Result<Exit, Failure> {
     let PlayedBack { plan, provenance, record, assessment, mismatch, steps } = played;
     if steps.is_none() {
-        tell(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color));
+        tell_words(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color), settings);
     }
     write_made(folder, beside, |shelf| played.results(shelf))?;
     let exit = Exit::from(assessment.verdict);
@@ -78,7 +77,7 @@ fn without_results(run: &Path) -> Result<PathBuf, Failure> {
     let failed = |error: std::io::Error| Failure::file(run, plain(&error));
     for entry in std::fs::read_dir(run).map_err(failed)? {
         let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
-        if !name.starts_with(JOURNAL) && !name.starts_with("before-resume-") && name != AMENDMENT {
+        if !name.starts_with(JOURNAL) && !name.starts_with("before-resume-") && name != ISSUE && name != OLDER_ISSUE {
             return Err(
                 Failure::file(run, format!("has results already, such as `{name}`")).help("name a new folder with `--out`")
             );

@@ -14,7 +14,7 @@ use super::real_rig::Opened;
 use super::record_file::{self, ReadRecord, journal_of};
 use super::settings::Settings;
 use super::watch::Attendance;
-use super::{plan_file, provenance, real_rig, release, room};
+use super::{expected, held, plan_file, provenance, real_rig, release, room};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
@@ -54,9 +54,15 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     tape::rehearse(&plan, &read.played)?;
     room::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
 
+    let steps = read.played.lines.iter().filter(|line| line.kind == EntryKind::Step).count() as u64;
+    let expected = expected::rest(expected::of(&plan), steps);
     let attendance = Attendance { yes: arguments.yes, operator: Some(arguments.operator.clone()) };
     let wish = Wish::default().letting_go(arguments.let_go);
-    let mut opened = real_rig::open(&plan, &attendance, &wish, settings)?;
+    // Its zero is where it was when the run began, wherever the rig stands now.
+    let datum = read.played.rig.as_ref().and_then(|rig| rig.datum.as_deref());
+    let at_its_datum = Plan { rig: plan.rig.with_recorded_datum(datum), ..plan.clone() };
+    let mut opened = real_rig::open(&at_its_datum, &attendance, &wish, settings)?;
+    opened.watcher.expect(expected);
     let resumption = settle(arguments, &plan, &link, &read.played, &mut opened)?;
 
     // From here on the run goes on: until now the record has not changed.
@@ -78,9 +84,16 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     put_results_aside(&arguments.run)?;
     let wall = real_rig::wall_clock();
     let recorded = tape::resume(&plan, played, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
+    let wanted = held::stay(&mut opened, &recorded.record);
     opened.watcher.finish();
+    drop(opened);
     if let Some(torn) = torn {
         tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
+    }
+    if let Some(reason) = wanted
+        && let Some(exit) = held::go_on(&arguments.run, &arguments.operator, reason, &recorded, settings)?
+    {
+        return Ok(exit);
     }
     let exit = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
     give(&format!("{}\n", arguments.run.display()))?;

@@ -12,7 +12,7 @@ use super::run_folder::RunFolder;
 use super::settings::Settings;
 use super::trial::{self, Extent};
 use super::watch::{Attendance, Signals, Watcher};
-use super::{plan_file, provenance, real_rig};
+use super::{expected, held, plan_file, provenance, real_rig};
 use crate::diagnostic::json;
 use crate::golden::{Outcome, Tested, console};
 use crate::output::Provenance;
@@ -46,7 +46,11 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         return Err(Failure::command_line("`--bless` is of the plan as it is written, on its virtual rig")
             .help("leave out `--set`, `--rig` and `--date`, or write them into the plan"));
     }
-    let Ran { folder, provenance, recorded } = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
+    let ran = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
+    if let Some(exit) = ran.goes_on(plan, &attendance, settings)? {
+        return Ok(exit);
+    }
+    let Ran { folder, provenance, recorded, .. } = ran;
     let exit = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         let trial = trial::of(&arguments.plan, Extent::All)?;
@@ -59,7 +63,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     }
     match arguments.format {
         Format::Human => give(&format!("{}\n", folder.path().display()))?,
-        Format::Json => give(&summary(folder.path())?)?,
+        Format::Json => give(&summary(folder.path(), &recorded.record)?)?,
     }
     Ok(exit)
 }
@@ -69,6 +73,17 @@ pub(super) struct Ran {
     pub(super) folder: RunFolder,
     pub(super) provenance: Provenance,
     pub(super) recorded: Recorded,
+    /// Why the person at the held rig wants the run to go on.
+    pub(super) resume: Option<String>,
+}
+
+impl Ran {
+    /// Goes on with a run that was held, where the person at it wants that; None: it ends here.
+    pub(super) fn goes_on(&self, plan: &Plan, attendance: &Attendance, settings: Settings) -> Result<Option<Exit>, Failure> {
+        let Some(reason) = self.resume.clone() else { return Ok(None) };
+        let operator = real_rig::operator(plan, attendance).unwrap_or_default();
+        held::go_on(self.folder.path(), &operator, reason, &self.recorded, settings)
+    }
 }
 
 /// Runs the plan on the rig that it names, and keeps the record.
@@ -97,12 +112,14 @@ fn on_a_virtual_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendan
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let recorded = tape::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None));
     watcher.finish();
-    Ok(Ran { folder, provenance, recorded })
+    Ok(Ran { folder, provenance, recorded, resume: None })
 }
 
 /// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
 fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance, settings: Settings) -> Result<Ran, Failure> {
+    let (expected, _) = expected::of(plan);
     let mut opened = real_rig::open(plan, attendance, &Wish::default(), settings)?;
+    opened.watcher.expect(expected);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     tell(&provenance::told_of_another_day(plan, circumstances.began.as_deref()));
@@ -113,6 +130,7 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let wall = real_rig::wall_clock();
     let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
+    let resume = held::stay(&mut opened, &recorded.record);
     opened.watcher.finish();
-    Ok(Ran { folder, provenance, recorded })
+    Ok(Ran { folder, provenance, recorded, resume })
 }

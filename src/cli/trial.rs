@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::args::PlanSettings;
-use super::conclude::made_of;
+use super::conclude::{made_of, numbered};
 use super::exit::Failure;
 use super::record_file::{self, Circumstances};
 use super::{plan_file, provenance};
@@ -54,6 +54,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     let provenance = Provenance { equipment: header.equipment.clone(), ..provenance };
     let journal = record_file::begin_nowhere(plan, &header)?;
     let recorded = tape::record(plan, rig.as_mut(), &mut Unattended { operator }, journal, Box::new(|| None));
+    let provenance = numbered(provenance, plan, &recorded);
     let record = recorded.record;
     let assessment = verdict::assess(plan, &record);
     let run = Run { plan, record: &record, assessment: &assessment, provenance: &provenance };

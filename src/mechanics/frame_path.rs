@@ -40,7 +40,13 @@ impl FrameDistortion {
     /// None, of so many axes.
     #[must_use]
     pub fn none(axes: usize) -> Self {
-        Self { force_scale: vec![1.0; axes], displacement_scale: vec![1.0; axes], zero: vec![0.0; axes], noise: Vec::new(), finer: 1 }
+        Self {
+            force_scale: vec![1.0; axes],
+            displacement_scale: vec![1.0; axes],
+            zero: vec![0.0; axes],
+            noise: Vec::new(),
+            finer: 1,
+        }
     }
 }
 

@@ -37,6 +37,24 @@ impl Travel {
         Self { start, fading: factor * self.fading, ..*self }
     }
 
+    /// How far it goes in the first `seconds`.
+    #[must_use]
+    pub fn way(&self, seconds: f64) -> f64 {
+        let Rate { velocity, acceleration, jerk } = self.start;
+        let faded = if self.fading == 0.0 { 0.0 } else { -self.fading * self.lag * (-seconds / self.lag).exp_m1() };
+        seconds * (velocity + seconds * (0.5 * acceleration + seconds * jerk / 6.0)) + faded
+    }
+
+    /// The part of it between two times, s.
+    #[must_use]
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        let Rate { velocity, acceleration, jerk } = self.start;
+        let velocity = velocity + from * (acceleration + 0.5 * from * jerk);
+        let start = Rate { velocity, acceleration: acceleration + from * jerk, jerk };
+        let fading = if self.fading == 0.0 { 0.0 } else { self.fading * (-from / self.lag).exp() };
+        Self { start, fading, lag: self.lag, seconds: to - from }
+    }
+
     /// Motion of this piston relative to one below it, over the same time and with the same lag.
     #[must_use]
     pub fn less(&self, below: &Self) -> Self {

@@ -144,11 +144,12 @@ pub fn fit_reached_of(
     Ok(ReachedFit { fits })
 }
 
-/// A move, and the instant of the first reading after it, s.
+/// A move, its end, and the instant of the first reading after it, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Move {
     took: f64,
     ended: f64,
+    read_from: f64,
 }
 
 /// Forces that were reached, in time.
@@ -161,7 +162,7 @@ struct State<'a> {
 impl State<'_> {
     /// Σ ΔR̂ⱼ·`of`(time since the end of move j, its length) over the moves up to `hold`, `seconds` after its first reading.
     fn sum(&self, hold: usize, seconds: f64, of: impl Fn(f64, f64) -> f64) -> f64 {
-        let now = self.moves[hold].ended + seconds;
+        let now = self.moves[hold].read_from + seconds;
         let steps = self.reached[..=hold].iter().scan(self.before, |last, reached| {
             let step = reached - *last;
             *last = *reached;
@@ -191,10 +192,10 @@ impl<'a> Problem<'a> {
         let mut now = 0.0;
         let moves = holds.iter().map(|hold| {
             let took = hold.moved_for.max(0.0);
-            now += took;
-            let ended = now;
-            now += hold.readings.last().map_or(0.0, |(time, _)| *time);
-            Move { took, ended }
+            let ended = now + hold.waited_for + took;
+            let read_from = ended + hold.settled_for;
+            now = read_from + hold.readings.last().map_or(0.0, |(time, _)| *time);
+            Move { took, ended, read_from }
         });
         let readings = || holds.iter().flat_map(|hold| &hold.readings);
         #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
@@ -238,7 +239,8 @@ impl<'a> Problem<'a> {
             reached.push(last);
             let state = State { reached: &reached, moves: &self.moves, before: self.before };
             let row = |(seconds, force): &(f64, f64)| {
-                let lost = law.lost(*seconds, self.moves[hold].took, time);
+                let Move { took, ended, read_from } = self.moves[hold];
+                let lost = law.lost(read_from - ended + seconds, took, time);
                 // The own step counts nothing yet: its R̂ stands at the last one.
                 let earlier = state.sum(hold, *seconds, |since, took| law.lost(since, took, time));
                 (1.0 - share * lost, force + share * (earlier - lost * last))

@@ -46,7 +46,14 @@ fn holds_with(law: RelaxationLaw, (share, time): (f64, f64), readings: u32) -> V
             let seconds = PAUSE * (f64::from(number) / f64::from(readings)).powi(2);
             (seconds, REACHED[index] - lost(began(index) + MOVED_FOR + seconds, index))
         };
-        Hold { step: index as u64 + 1, displacement: 0.0, moved_for: MOVED_FOR, readings: (0..=readings).map(reading).collect() }
+        Hold {
+            step: index as u64 + 1,
+            displacement: 0.0,
+            waited_for: 0.0,
+            moved_for: MOVED_FOR,
+            settled_for: 0.0,
+            readings: (0..=readings).map(reading).collect(),
+        }
     };
     (0..REACHED.len()).map(hold).collect()
 }
@@ -90,7 +97,14 @@ fn the_pause_that_it_needs_is_the_closed_form() {
             let seconds = PAUSE * (f64::from(number) / 20.0).powi(2);
             (seconds, 2000.0 * (1.0 - share * lost(seconds)))
         };
-        let one = [Hold { step: 1, displacement: 0.0, moved_for: 0.0, readings: (0..=20).map(reading).collect() }];
+        let one = [Hold {
+            step: 1,
+            displacement: 0.0,
+            waited_for: 0.0,
+            moved_for: 0.0,
+            settled_for: 0.0,
+            readings: (0..=20).map(reading).collect(),
+        }];
         let found = fit_reached(&one, 0.0, None, SLOW).expect("it relaxes");
         let fit = found.best();
         let (rate, needed) = match law {

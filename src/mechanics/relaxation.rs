@@ -14,8 +14,12 @@ pub struct Hold {
     pub step: u64,
     /// m
     pub displacement: f64,
-    /// s from the last reading before the move here to the first one after it.
+    /// s from the last reading before to the begin of the move here.
+    pub waited_for: f64,
+    /// s that the move took, evenly.
     pub moved_for: f64,
+    /// s from its end to the first reading: time at rest while the rig settled.
+    pub settled_for: f64,
     /// s since the first reading, N.
     pub readings: Vec<(f64, f64)>,
 }
@@ -25,7 +29,7 @@ pub struct Hold {
 pub enum RelaxationModel {
     /// R = R∞ + A e^(−t/τ) in every hold, with one τ for all.
     Exponential,
-    /// R = R₀ + K∞ X + q, q' = K₁ X' − q/τ through all moves and holds; a move is taken as even between its two readings.
+    /// R = R₀ + K∞ X + q, q' = K₁ X' − q/τ through all moves and holds; a move is taken as even from its begin to its end.
     StandardLinearSolid,
 }
 
@@ -406,7 +410,9 @@ pub(super) fn kernel(holds: &[Hold], start: f64, tau: f64) -> Vec<f64> {
         let moved = hold.displacement - at;
         at = hold.displacement;
         let seconds = hold.moved_for.max(1e-9);
+        branch.follow(&Travel::rest(hold.waited_for));
         branch.follow(&Travel::even(moved / seconds, seconds));
+        branch.follow(&Travel::rest(hold.settled_for));
         let force = branch.force();
         branch.follow(&Travel::rest(hold.readings.last().map_or(0.0, |(time, _)| *time)));
         force

@@ -24,7 +24,7 @@ fn holds(stiffness: f64, pause: f64, noise: &mut dyn FnMut() -> f64) -> Vec<Hold
             };
             let readings = (0..=20).map(reading).collect();
             branch.follow(&Travel::rest(pause));
-            Hold { step: u64::from(step), displacement, moved_for: 0.5, readings }
+            Hold { step: u64::from(step), displacement, waited_for: 0.0, moved_for: 0.5, settled_for: 0.0, readings }
         })
         .collect()
 }

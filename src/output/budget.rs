@@ -5,7 +5,7 @@ use super::Run;
 use crate::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Plan, ProcedureKind, ShakeDamping, Storey};
 use crate::quantity::Dimension;
-use crate::record::{NamedResult, ProcedureRecord};
+use crate::record::{History, NamedResult, ProcedureRecord};
 use crate::rig::named_axis;
 use crate::uncertainty::{Contribution, Known, Source, known};
 
@@ -192,7 +192,20 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             let name = run.record.procedures.get(procedure.0).map_or("", |procedure| procedure.name.as_str());
             (format!("noise and resolution of two readings of {name}"), From::Rig, None, None, Dimension::FORCE)
         }
-        Source::TimeStep { .. } => ("time step: integrated again in its half and quarter".to_owned(), From::Program, None, None, Dimension::TIME),
+        Source::StrokeStiffness { procedure } => {
+            let found = run.record.procedures.get(procedure.0);
+            let name = found.map_or("", |procedure| procedure.name.as_str());
+            let together = found.and_then(|procedure| match &procedure.history {
+                History::Sweep(sweep) => Some(sweep.together),
+                _ => None,
+            });
+            let (value, u) = (together.map(|found| found.stiffness), together.and_then(|found| found.error));
+            (format!("stiffness along the strokes of {name}"), From::Result, value, u, Dimension::STIFFNESS)
+        }
+        Source::LoopSampling { .. } => ("points of the loops".to_owned(), From::Program, None, None, Dimension::ENERGY),
+        Source::TimeStep { .. } => {
+            ("time step: integrated again in its half and quarter".to_owned(), From::Program, None, None, Dimension::TIME)
+        }
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
     let degrees = run.record.degrees(part.source);

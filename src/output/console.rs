@@ -6,12 +6,16 @@ use super::standing::Standing;
 use super::{Run, deviations, expansion, number, standing, summary};
 use crate::inert::one_line;
 use crate::plan::DecisionRule;
+use crate::record::Outcome;
 use crate::run::rehearsal;
 use crate::verdict::{ConditionOutcome, Verdict};
 
 /// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
 #[must_use]
 pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
+    if let Outcome::NotReleased { reason } = &run.record.outcome {
+        return format!("NOT RELEASED  {}: {}\n", one_line(&run.plan.title), one_line(reason));
+    }
     let mut text = String::new();
     let paint = |verdict: Verdict, words: &str| paint(verdict, words, coloured);
     let _ = writeln!(
@@ -19,7 +23,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         "{}  {}{}",
         paint(run.assessment.verdict, &run.assessment.verdict.name().to_uppercase()),
         one_line(&run.plan.title),
-        standing_text(&standing::of(run), rehearsal::told(run.plan).is_some())
+        standing_text(&standing::of(run), rehearsal::told(run.plan).is_some(), &one_line(&run.plan.rig.name))
     );
     if run.assessment.requirements.is_empty() {
         text.push_str("  no requirement\n");
@@ -53,7 +57,9 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     for deviation in deviations::of(run) {
         let _ = writeln!(text, "  note: {}", one_line(&deviation));
     }
-    let _ = writeln!(text, "  run {}", run.provenance.run_id);
+    let report = run.provenance.report_id();
+    let report = if report == run.provenance.run_id { String::new() } else { format!(", report {report}") };
+    let _ = writeln!(text, "  run {}{report}", run.provenance.run_id);
     text
 }
 
@@ -86,13 +92,16 @@ fn rule(run: &Run<'_>) -> String {
 }
 
 /// What the report may be taken for, where it is no certificate.
-fn standing_text(standing: &Standing, rehearsed: bool) -> String {
+fn standing_text(standing: &Standing, rehearsed: bool, rig: &str) -> String {
     match standing {
         Standing::Certifiable => String::new(),
         Standing::Rehearsal if rehearsed => "  (REHEARSAL: not the test of the plan)".to_owned(),
-        Standing::Rehearsal => "  (simulated rig: rehearsal)".to_owned(),
+        Standing::Rehearsal => format!("  (rig `{rig}`, simulated: a rehearsal)"),
         Standing::Incomplete => "  (INCOMPLETE)".to_owned(),
         Standing::NotCertifiable { missing } => format!("  (NOT CERTIFIABLE: lacks {})", one_line(&missing.join(", "))),
+        Standing::ParticularsMissing { missing } => {
+            format!("  (PARTICULARS MISSING: {}; see `psd issue`)", one_line(&missing.join(", ")))
+        }
     }
 }
 
@@ -102,6 +111,7 @@ fn padded(text: &str, width: usize) -> String {
 
 fn paint(verdict: Verdict, words: &str, coloured: bool) -> String {
     let code = match verdict {
+        Verdict::Completed => return words.to_owned(),
         Verdict::Pass => "32",
         Verdict::Inconclusive => "33",
         Verdict::Fail | Verdict::Aborted | Verdict::Error => "31",

@@ -4,6 +4,7 @@
 use super::{ClockJump, Run, number};
 use crate::quantity::Dimension;
 use crate::quantity::display::trimmed;
+use crate::record::equipment::Channel;
 use crate::record::{Drift, EventKind, Outcome};
 use crate::run::rehearsal;
 
@@ -19,12 +20,17 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
     match &run.record.outcome {
         Outcome::Completed => {}
         Outcome::Aborted { reason } => found.push(format!("The run was stopped: {reason}.")),
+        Outcome::NotReleased { reason } => found.push(format!("The rig was not released: {reason}.")),
+        Outcome::Blocked { reason } => found.push(format!("The run could not go on: {reason}.")),
         Outcome::Faulted { reason } => found.push(format!("The rig failed: {reason}.")),
     }
     // The event that ended the run says what the outcome has said already.
     let ending = match &run.record.outcome {
         Outcome::Completed => "",
-        Outcome::Aborted { reason } | Outcome::Faulted { reason } => reason,
+        Outcome::Aborted { reason }
+        | Outcome::NotReleased { reason }
+        | Outcome::Blocked { reason }
+        | Outcome::Faulted { reason } => reason,
     };
     for event in run.record.events.iter().filter(|event| event.text != ending) {
         let what = match event.kind {
@@ -44,6 +50,7 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
     }
     let drifted = run.record.drift.iter().flat_map(Drift::all_beyond);
     found.extend(drifted.map(|beyond| format!("Drift: {}; what its readings enter is not decided.", beyond.reason)));
+    found.extend(beyond_calibration(run));
     found.extend(run.provenance.real.iter().flat_map(|real| &real.jumps).map(jump));
     for (index, procedure) in run.plan.procedures.iter().enumerate() {
         match run.record.procedures.get(index) {
@@ -53,6 +60,29 @@ pub(super) fn of(run: &Run<'_>) -> Vec<String> {
         }
     }
     found
+}
+
+/// Channels whose largest reading lies outside the sizes over which their calibration holds. Every test begins near 0: what
+/// lies below the range for a time is no deviation.
+fn beyond_calibration(run: &Run<'_>) -> Vec<String> {
+    let equipment = run.equipment();
+    let several = equipment.channels.iter().any(|channel| channel.axis > 1);
+    let outside = |channel: &Channel| {
+        let ([low, high], dimension) = (channel.calibrated?, channel.measures.dimension());
+        let reached = run.record.reached(channel.measures, channel.axis.checked_sub(1)?)?;
+        let side = if reached > high {
+            "beyond"
+        } else if reached < low {
+            "below"
+        } else {
+            return None;
+        };
+        let axis = if several { format!(" of axis {}", channel.axis) } else { String::new() };
+        let (reached, [low, high]) = (number::text(reached, dimension), [low, high].map(|size| number::stated(size, dimension)));
+        let what = channel.measures.name();
+        Some(format!("The largest {what}{axis}, {reached}, is {side} the range over which it is calibrated, {low} to {high}."))
+    };
+    equipment.channels.iter().filter_map(outside).collect()
 }
 
 /// `The wall clock jumped by −365 d …`

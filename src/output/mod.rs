@@ -1,18 +1,20 @@
 //! Pure functions of (plan, record, assessment): tables, figures, summary, certificate, console text. They give
 //! bytes; only `cli` writes files. Knows no clock, no file, no environment: the same run gives the same bytes.
 
-mod amendment;
 pub mod behaviour;
 mod budget;
 mod certificate;
 pub mod comparison;
 pub mod console;
+pub(crate) mod days;
 mod deviations;
 mod document;
 mod expansion;
 mod figures;
+mod issue;
 mod manifest;
 mod number;
+mod particulars;
 mod prediction;
 mod shelf;
 pub mod standing;
@@ -34,7 +36,7 @@ use crate::verdict::Assessment;
 
 pub use prediction::{PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros, Prediction, REHEARSAL_FILE};
 
-pub use amendment::{Amendment, Amends, Change};
+pub use issue::{Change, Issue, IssueKind, Issues};
 
 pub use shelf::{Listed, Nowhere, Shelf};
 
@@ -69,6 +71,8 @@ impl Run<'_> {
 pub struct Provenance {
     /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
     pub run_id: String,
+    /// Of its report, where that is not the run's id: another record of the run has another one.
+    pub number: Option<String>,
     pub psd_version: String,
     /// Which program of that version.
     pub build: Build,
@@ -82,15 +86,22 @@ pub struct Provenance {
     pub equipment: Option<Equipment>,
     /// Of a rehearsal that came to its end: how the whole run would go.
     pub prediction: Option<Prediction>,
-    /// Of a report that takes the place of another.
-    pub amends: Option<Amends>,
+    /// Of a report that was issued or amended after the test.
+    pub issues: Option<Issues>,
 }
 
 impl Provenance {
-    /// The id of the report: that of its run, but of an amendment its own.
+    /// The id of the report: of its run or its record, but of one that was issued or amended its own.
     #[must_use]
     pub fn report_id(&self) -> &str {
-        self.amends.as_ref().map_or(&self.run_id, |amends| &amends.report_id)
+        let own = self.number.as_ref().unwrap_or(&self.run_id);
+        self.issues.as_ref().map_or(own, |issues| &issues.report_id)
+    }
+
+    /// What an issue of the report states of a particular; the last one counts.
+    fn restated(&self, field: &str) -> Option<&str> {
+        let changes = self.issues.iter().flat_map(|issues| &issues.all).flat_map(|issue| &issue.changes);
+        changes.filter(|change| change.field == field).last().map(|change| change.is.as_str())
     }
 
     /// Who stood by, as the record says.

@@ -218,7 +218,10 @@ fn between(target: f64, tolerance: f64) -> String {
             let mut ends = ends.map(|number| format!("{number:.decimals$}"));
             // Zeros that neither of them needs.
             while ends[0].contains('.') && ends.iter().all(|text| text.ends_with('0') || text.ends_with('.')) {
-                ends.iter_mut().for_each(|text| drop(text.pop()));
+                ends = ends.map(|mut text| {
+                    text.pop();
+                    text
+                });
             }
             ends.map(|text| minus(&text))
         }

@@ -3,7 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use super::Run;
+use super::days::last_day;
+use super::{Run, particulars};
 use crate::mechanics::self_test;
 use crate::record::Outcome;
 use crate::run::rehearsal;
@@ -17,8 +18,10 @@ pub enum Standing {
     Rehearsal,
     /// The run did not come to its end, or its record has none.
     Incomplete,
-    /// A test of a specimen that lacks what a certificate must state.
+    /// A test of a specimen that lacks what nobody can add after it.
     NotCertifiable { missing: Vec<String> },
+    /// A test of a specimen whose report does not state what ISO/IEC 17025, 7.8.2.1, wants: its issue may add it.
+    ParticularsMissing { missing: Vec<String> },
 }
 
 impl Standing {
@@ -30,6 +33,7 @@ impl Standing {
             Self::Rehearsal => "rehearsal",
             Self::Incomplete => "incomplete",
             Self::NotCertifiable { .. } => "not certifiable",
+            Self::ParticularsMissing { .. } => "particulars missing",
         }
     }
 }
@@ -45,7 +49,7 @@ pub fn of(run: &Run<'_>) -> Standing {
 pub fn grounds(run: &Run<'_>) -> Vec<Standing> {
     let missing = missing(run);
     let mut grounds = Vec::new();
-    if run.record.rig.simulated || rehearsal::told(run.plan).is_some() {
+    if is_rehearsal(run) {
         grounds.push(Standing::Rehearsal);
     }
     if run.record.outcome != Outcome::Completed {
@@ -54,7 +58,21 @@ pub fn grounds(run: &Run<'_>) -> Vec<Standing> {
     if !missing.is_empty() {
         grounds.push(Standing::NotCertifiable { missing });
     }
+    let missing = particulars_missing(run);
+    if !missing.is_empty() {
+        grounds.push(Standing::ParticularsMissing { missing });
+    }
     grounds
+}
+
+/// What the report of a test does not state and should. A rehearsal is none, and is issued by nobody.
+#[must_use]
+pub fn particulars_missing(run: &Run<'_>) -> Vec<String> {
+    if run.plan.rig.link.as_real().is_none() || is_rehearsal(run) { Vec::new() } else { particulars::missing(run) }
+}
+
+fn is_rehearsal(run: &Run<'_>) -> bool {
+    run.record.rig.simulated || rehearsal::told(run.plan).is_some()
 }
 
 /// What the certificate of a real rig must state and cannot. A virtual rig has neither operator nor calibration.
@@ -72,12 +90,15 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     if !channels.iter().all(|channel| told(channel.certificate.as_deref())) {
         missing.push("the calibration's reference".to_owned());
     }
+    for channel in channels.iter().filter(|channel| channel.calibrated.is_none()) {
+        missing.push(format!("the range over which the {} is calibrated", channel.measures.name()));
+    }
     // Where force and displacement hold until the same day, one calibration is spoken of.
     let days: BTreeSet<Option<&str>> = channels.iter().map(|channel| channel.due.as_deref()).collect();
     for channel in channels {
         let what =
             if days.len() > 1 { format!("calibration of the {}", channel.measures.name()) } else { "calibration".to_owned() };
-        match (channel.due.as_deref(), last_day(run)) {
+        match (channel.due.as_deref(), last_day(run.provenance)) {
             (None, _) => missing.push(format!("the day until which the {what} holds")),
             (Some(_), None) => missing.push("the day of the test".to_owned()),
             (Some(due), Some(day)) if due < day => {
@@ -93,19 +114,4 @@ pub fn missing(run: &Run<'_>) -> Vec<String> {
     let mut said = BTreeSet::new();
     missing.retain(|lack| said.insert(lack.clone()));
     missing
-}
-
-/// The last day of the test, as the record says; as the plan or the command line says, where the record has no times.
-#[must_use]
-pub fn last_day<'a>(run: &Run<'a>) -> Option<&'a str> {
-    let real = run.provenance.real.as_ref();
-    let stated = [real.and_then(|real| real.ended.as_deref()), real.and_then(|real| real.began.as_deref())];
-    stated.into_iter().flatten().chain(run.provenance.date.as_deref()).find_map(day)
-}
-
-/// The day at the start of an ISO 8601 time. Such days stand in order as texts.
-fn day(text: &str) -> Option<&str> {
-    let day = text.get(..10)?;
-    let fits = |(at, byte): (usize, u8)| if matches!(at, 4 | 7) { byte == b'-' } else { byte.is_ascii_digit() };
-    day.bytes().enumerate().all(fits).then_some(day)
 }

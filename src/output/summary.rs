@@ -37,16 +37,16 @@ pub struct Summary {
     /// Only of a rig that says how far its zeros may drift.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drift: Option<DriftSummary>,
-    /// The worst of all requirements, or how the run ended if that is worse.
-    #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
+    /// The worst of all requirements, or how the run ended if that is worse; `completed` where nothing is required.
+    #[schemars(extend("enum" = ["completed", "pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,
     /// By which every condition was decided.
     #[schemars(extend("enum" = ["simple", "guarded"]))]
     pub decision_rule: &'static str,
     /// What the report may be taken for: its gravest ground against a certificate.
-    #[schemars(extend("enum" = ["certifiable", "rehearsal", "incomplete", "not certifiable"]))]
+    #[schemars(extend("enum" = ["certifiable", "rehearsal", "incomplete", "not certifiable", "particulars missing"]))]
     pub standing: &'static str,
-    /// What the certificate of a real rig must state and cannot.
+    /// What the certificate of a real rig must state and does not: of how it was measured, then particulars.
     pub missing: Vec<String>,
     pub outcome: OutcomeSummary,
     /// By name, in the order run.
@@ -58,30 +58,35 @@ pub struct Summary {
     pub parameters: Ordered<ParameterSummary>,
     /// What departed from the plan as written.
     pub deviations: Vec<String>,
-    /// Only of a report that takes the place of another.
+    /// Only of a report that was issued or amended after the test.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub amends: Option<AmendsSummary>,
+    pub issues: Option<IssuesSummary>,
 }
 
-/// What makes a report an amendment.
+/// What was stated of a report after the test.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct AmendsSummary {
+pub struct IssuesSummary {
     /// Id of this report.
     pub report_id: String,
-    /// Every amendment up to this report, in order.
-    pub amendments: Vec<AmendmentSummary>,
+    /// Every issue up to this report, in order.
+    pub issues: Vec<IssueSummary>,
 }
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct AmendmentSummary {
-    /// Id of the report that it takes the place of.
+pub struct IssueSummary {
+    #[schemars(extend("enum" = ["issue", "amendment"]))]
+    pub kind: &'static str,
+    /// Id of the report that it is made from.
     pub replaces: String,
+    /// Null of an amendment by an older version.
+    pub date: Option<String>,
     pub by: String,
-    pub reason: String,
+    /// Of an amendment.
+    pub reason: Option<String>,
     pub changes: Vec<ChangeSummary>,
 }
 
-/// A particular of the plan that is told otherwise; empty: not given.
+/// A particular of the plan that an issue states; empty: not given.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ChangeSummary {
     pub field: &'static str,
@@ -125,7 +130,7 @@ pub struct RecordSummary {
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OutcomeSummary {
-    #[schemars(extend("enum" = ["completed", "aborted", "faulted"]))]
+    #[schemars(extend("enum" = ["completed", "aborted", "blocked", "faulted"]))]
     pub kind: &'static str,
     pub reason: Option<String>,
 }

@@ -31,11 +31,15 @@ pub struct AxisCalibration {
     /// `YYYY-MM-DD`
     pub due: Option<String>,
     pub force_class: Option<String>,
+    /// N, by size.
+    pub force_calibrated: Option<Interval>,
     /// Reference of the displacement alone.
     pub displacement: Option<String>,
     /// `YYYY-MM-DD`
     pub displacement_due: Option<String>,
     pub displacement_class: Option<String>,
+    /// m, by size.
+    pub displacement_calibrated: Option<Interval>,
     /// Of a cell that gives raw counts: N per count.
     pub newtons_per_count: Option<f64>,
     /// Count at no force.
@@ -59,8 +63,10 @@ impl AxisCalibration {
             reference: or(&self.reference, &all.reference),
             due: or(&self.due, &all.due),
             force_class: or(&self.force_class, &all.force_class),
+            force_calibrated: self.force_calibrated.or(all.force_calibrated),
             displacement: reference.map(|reference| (reference, day)),
             displacement_class: or(&self.displacement_class, &all.displacement_class),
+            displacement_calibrated: self.displacement_calibrated.or(all.displacement_calibrated),
             force_uncertainty: self.force_uncertainty.unwrap_or(all.force_uncertainty),
             displacement_uncertainty: self.displacement_uncertainty.unwrap_or(all.displacement_uncertainty),
             zero_uncertainty: self.zero_uncertainty.unwrap_or(all.zero_uncertainty),

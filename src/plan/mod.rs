@@ -41,8 +41,8 @@ pub use limits::{Interval, Limits};
 pub use portal::{ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses};
 pub use record_size::{Counts, FRAME, MOST_RECORD_BYTES, WALL};
 pub use rig::{
-    Calibration, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors, ReadingRules,
-    RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
+    Calibration, Datum, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors,
+    ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
 };
 pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use unload::{FrameUnload, Unload};
@@ -68,6 +68,8 @@ pub struct Plan {
     pub golden: Golden,
     /// Of the part that a rehearsal measures: the plan that is rehearsed.
     pub rehearses: Option<Box<Plan>>,
+    /// As records of older versions have it: an `unload` goes to where the load would be none in one move after the other.
+    pub unloads_at_once: bool,
     /// The plan first, then every file it used, by the name it was used under.
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of name.

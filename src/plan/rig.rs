@@ -24,6 +24,18 @@ impl RigPlan {
     }
 }
 
+impl RigPlan {
+    /// The same rig with the plan's zero where an earlier opening of it has put it on record, m, one an axis; None: as the plan says.
+    #[must_use]
+    pub fn with_recorded_datum(&self, places: Option<&[f64]>) -> Self {
+        let mut rig = self.clone();
+        if let (Link::Real(link), Some(places)) = (&mut rig.link, places) {
+            link.datum = Datum::At(places.to_vec());
+        }
+        rig
+    }
+}
+
 /// What stands behind the rig.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a plan has one")]
@@ -165,10 +177,14 @@ pub struct Calibration {
     pub due: Option<String>,
     /// Class of the force measurement, as stated.
     pub force_class: Option<String>,
+    /// Forces, by size, over which the calibration holds, N.
+    pub force_calibrated: Option<Interval>,
     /// Of the displacement: its own reference and the day until which that holds, where it has one.
     pub displacement: Option<(String, Option<String>)>,
     /// Class of the displacement measurement, as stated.
     pub displacement_class: Option<String>,
+    /// Displacements, by size, over which the calibration holds, m.
+    pub displacement_calibrated: Option<Interval>,
     /// Of a cell that gives raw counts: N per count, its sign the cell's.
     pub newtons_per_count: Option<f64>,
     /// Count at no force.
@@ -198,6 +214,7 @@ pub struct RealLink {
     pub actuator: DeviceLink,
     pub load_cell: Option<DeviceLink>,
     pub safe_state: SafeState,
+    pub datum: Datum,
     pub gate: Gate,
     pub readings: ReadingRules,
     /// Longest time without a sign of life between program and rig, s: past it the rig is to hold by itself, and the
@@ -399,6 +416,17 @@ impl SafeState {
             Self::Unload => "unload",
         }
     }
+}
+
+/// Where the zero of the plan's displacements lies. Targets, readings and limits count from it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Datum {
+    /// At the rig's own zero: the rig must stand there when a run begins.
+    Machine,
+    /// Where the rig stands when it is opened for a run.
+    Here,
+    /// At these places of the rig's own coordinate, m, one an axis: on record, of a run that goes on.
+    At(Vec<f64>),
 }
 
 /// What must be so before the first step: the readings at rest, and the stiffness that a tiny move shows.

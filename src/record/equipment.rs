@@ -90,6 +90,9 @@ pub struct Channel {
     /// Its ends, m or N, where they are stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
+    /// Sizes over which the calibration holds, m or N, where they are stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibrated: Option<[f64; 2]>,
 }
 
 /// What a device gives.
@@ -229,7 +232,9 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         due: calibration.due.clone(),
         class: None,
         range: None,
+        calibrated: None,
     };
+    let ends = |range: Option<Interval>| range.map(|Interval { low, high }| [low, high]);
     let cell = link.map(|link| link.readings_of(axis).force_range);
     let cell = cell.map(|Interval { low, high }| [low, high]).filter(|ends| ends.iter().all(|end| end.is_finite()));
     let displacement =
@@ -239,10 +244,17 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         .clone()
         .map_or((calibration.reference.clone(), calibration.due.clone()), |(own, due)| (Some(own), due));
     [
-        Channel { certificate, due, class: calibration.displacement_class.clone(), ..displacement },
+        Channel {
+            certificate,
+            due,
+            class: calibration.displacement_class.clone(),
+            calibrated: ends(calibration.displacement_calibrated),
+            ..displacement
+        },
         Channel {
             class: calibration.force_class.clone(),
             range: cell,
+            calibrated: ends(calibration.force_calibrated),
             ..channel(Measures::Force, force_given, force, zero, noise, calibration.force_uncertainty)
         },
     ]

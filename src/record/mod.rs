@@ -7,6 +7,7 @@ pub mod equipment;
 mod escalate;
 mod floors;
 pub mod journal;
+mod reached;
 mod unload;
 
 use serde::{Deserialize, Serialize};
@@ -50,6 +51,14 @@ pub enum Outcome {
     Completed,
     /// Stopped by a limit or by a person: exit 4.
     Aborted {
+        reason: String,
+    },
+    /// Nobody released the rig, and nothing moved: exit 4.
+    NotReleased {
+        reason: String,
+    },
+    /// A value of the plan, known only in the run, cannot be used: exit 1.
+    Blocked {
         reason: String,
     },
     /// The rig failed: exit 3.
@@ -224,10 +233,22 @@ pub struct SweepHistory {
     pub middles: Vec<[f64; 2]>,
     /// K that the damping forces were told with, N/m.
     pub stiffness: Option<f64>,
+    pub together: BroughtTogether,
     /// K of the strokes and its standard error, N/m, where it contradicts that one: the damping ratio is told with it.
     pub own_stiffness: Option<(f64, f64)>,
     /// F_d = intercept·sign v + slope·v: intercept is the Coulomb force.
     pub fit: Option<LineFit>,
+}
+
+/// How the two readings of each pair of a sweep, which an actuator that lags leaves apart, were brought to one place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BroughtTogether {
+    /// K of the strokes, N/m; that of the plan where they do not show it.
+    pub stiffness: f64,
+    /// Its standard error, N/m; None: it is the plan's.
+    pub error: Option<f64>,
+    /// ∂c/∂K (s) and ∂F_c/∂K (m): 0 where no pair is apart.
+    pub effects: [f64; 2],
 }
 
 /// One row of an impact's table; step 0 is the start.

@@ -29,6 +29,10 @@ pub enum Guarding {
     Checksum,
     Resend,
     Away,
+    /// A reading that cannot be, of a rig that has not moved.
+    AtRest,
+    /// Where a rig stands when a run begins.
+    GateStart,
     GateZero,
     GateSign,
     GateStiffness,

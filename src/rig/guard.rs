@@ -4,7 +4,7 @@
 
 use super::failpoint::{Guarding, on};
 use super::holds::Holds;
-use super::{DeclaredNoise, LimitedQuantity, Reading, Rig, RigFault, Tally, named_axis};
+use super::{LimitedQuantity, Reading, Rig, RigFault, named_axis};
 use crate::plan::{Interval, Limits};
 
 /// A rig and what nothing may drive it past.
@@ -29,6 +29,8 @@ pub struct Guard<'rig> {
     pub(super) holds: Option<Holds>,
     /// The reading that broke a limit last, if it is one.
     pub(super) broken: Option<Reading>,
+    /// The first reading: displacements, m, and forces, N.
+    pub(super) found: (Vec<f64>, Vec<f64>),
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -53,10 +55,24 @@ impl<'rig> Guard<'rig> {
     /// As [`Guard::new`].
     pub fn of_axes(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
         let heard = rig.time();
-        let (commanded, going) = (Vec::new(), Vec::new());
-        let mut guard =
-            Self { rig, limits, own, commanded, going, settled: false, proposed: None, speed: None, heard, holds: None, broken: None };
-        guard.commanded = guard.read()?.displacement;
+        let (commanded, going, found) = (Vec::new(), Vec::new(), (Vec::new(), Vec::new()));
+        let mut guard = Self {
+            rig,
+            limits,
+            own,
+            commanded,
+            going,
+            settled: false,
+            proposed: None,
+            speed: None,
+            heard,
+            holds: None,
+            broken: None,
+            found,
+        };
+        let Reading { displacement, force, .. } = guard.read()?;
+        guard.commanded.clone_from(&displacement);
+        guard.found = (displacement, force);
         Ok(guard)
     }
 
@@ -71,17 +87,6 @@ impl<'rig> Guard<'rig> {
     #[must_use]
     pub const fn time(&self) -> f64 {
         self.heard
-    }
-
-    #[must_use]
-    pub fn declared_noise(&self) -> DeclaredNoise {
-        self.rig.declared_noise()
-    }
-
-    /// What was mended on the lines of the rig so far.
-    #[must_use]
-    pub fn tally(&self) -> Tally {
-        self.rig.tally()
     }
 
     /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the rig's own, else the highest
@@ -150,43 +155,13 @@ impl<'rig> Guard<'rig> {
         Ok(())
     }
 
-    /// Reads once.
-    ///
-    /// # Errors
-    /// The reading lies outside a limit or is no number, or the rig fails.
-    pub fn read(&mut self) -> Result<Reading, RigFault> {
-        let reading = self.rig.read();
-        let reading = self.or_hold(reading)?;
-        self.heard = reading.time;
-        if let Err(fault) = self.judge_reading(&reading) {
-            self.broken = Some(reading).filter(is_finite);
-            return Err(fault);
-        }
-        Ok(reading)
-    }
-
-    fn judge_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
-        self.check_reading(reading)?;
-        if self.settled {
-            let errors: Vec<f64> =
-                reading.displacement.iter().zip(&self.commanded).map(|(measured, target)| (measured - target).abs()).collect();
-            let limit = self.limits.tracking_error;
-            if let Some(place) = errors.iter().position(|error| !limit.contains(*error)) {
-                return Err(self.breach(LimitedQuantity::TrackingError, Some(place), limit, errors[place]));
-            }
-            if let Some(holds) = &mut self.holds {
-                holds.see(&self.commanded, reading);
-            }
-        }
-        Ok(())
-    }
-
     /// The reading that broke a limit, once: it was made all the same.
     pub fn take_broken(&mut self) -> Option<Reading> {
         self.broken.take()
     }
 
-    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way; the last is the one that broke a limit, if any did. The limit on the increment is not for
+    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way; the last is the one that broke a limit, if any did.
+    /// The limit on the increment is not for
     /// it, since its target goes along evenly; the one on the tracking error is for settled readings.
     pub fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Traversed {
         let refused = |fault| Traversed { readings: Vec::new(), fault: Some(fault) };
@@ -289,18 +264,12 @@ impl<'rig> Guard<'rig> {
         Err(self.breach(LimitedQuantity::TargetDisplacement, Some(place), limit, target))
     }
 
-    fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
-        let found = outside(&self.limits, &self.own, reading).filter(|_| on(Guarding::ReadingLimits));
-        let judged = found.map_or(Ok(()), Err);
-        self.or_hold(judged)
-    }
-
     pub(super) fn check(&mut self, quantity: LimitedQuantity, limit: Interval, value: f64) -> Result<(), RigFault> {
         if inside(limit, value) { Ok(()) } else { Err(self.breach(quantity, None, limit, value)) }
     }
 
     /// `place`: of the axis, where it is the quantity of one.
-    fn breach(&mut self, quantity: LimitedQuantity, place: Option<usize>, limit: Interval, value: f64) -> RigFault {
+    pub(super) fn breach(&mut self, quantity: LimitedQuantity, place: Option<usize>, limit: Interval, value: f64) -> RigFault {
         self.hold();
         let axis = place.and_then(|place| named_axis(place, self.commanded.len()));
         RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high, axis }
@@ -349,7 +318,7 @@ pub(super) fn increment(from: f64, to: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::{EachReading, Identity, Offer};
+    use crate::rig::{DeclaredNoise, EachReading, Identity, Offer};
 
     /// Says what it is told to say, and remembers what it was asked.
     #[derive(Default)]
@@ -378,7 +347,7 @@ mod tests {
         fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
             self.proposed.push((targets[0], speed));
             let said = targets[0] + self.misspoken;
-            Ok(Offer { targets: vec![said], speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None })
+            Ok(Offer { targets: vec![said], speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None, at_the_rig: None })
         }
         fn execute(&mut self) -> Result<(), RigFault> {
             self.displacement = self.proposed.last().unwrap().0 + self.error;
@@ -488,9 +457,21 @@ mod tests {
             guard.move_to(&[0.001], None).unwrap();
             rig.force = force;
             let (commanded, own, going, holds, speed) = (vec![0.001], Vec::new(), Vec::new(), None, None);
-            let (settled, proposed, heard) = (true, None, 0.0);
-            let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled, proposed, speed, heard, holds, broken: None };
+            let (settled, proposed, heard, found) = (true, None, 0.0, (Vec::new(), Vec::new()));
+            let mut guard = Guard {
+                rig: &mut rig,
+                limits: LIMITS,
+                own,
+                commanded,
+                going,
+                settled,
+                proposed,
+                speed,
+                heard,
+                holds,
+                broken: None,
+                found,
+            };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

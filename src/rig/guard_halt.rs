@@ -13,10 +13,4 @@ impl Guard<'_> {
         }
         halted
     }
-
-    /// Speed of a move for which none is asked, m/s; None: as fast as the limits allow.
-    #[must_use]
-    pub fn own_speed(&self) -> Option<f64> {
-        self.rig.own_speed()
-    }
 }

@@ -9,14 +9,17 @@ pub mod failpoint;
 #[cfg(test)]
 pub(crate) mod fault_table;
 mod guard;
+mod guard_about;
 mod guard_glide;
 mod guard_halt;
+mod guard_read;
 mod guard_speed;
 mod guard_way;
 mod halted;
 mod holds;
 mod live;
 mod load_cell;
+mod moved;
 mod one_or_several;
 pub mod port;
 pub mod real;
@@ -95,6 +98,8 @@ pub struct Offer {
     pub wire: Vec<u8>,
     /// Number of the move, where the rig remembers the last one it was given.
     pub move_id: Option<u64>,
+    /// The targets in the rig's own coordinate, m, where its zero is another than the plan's.
+    pub at_the_rig: Option<Vec<f64>>,
 }
 
 /// The last move a rig remembers.
@@ -282,6 +287,15 @@ pub trait Rig {
     /// The rig cannot be reached, or the reading is no number.
     fn read(&mut self) -> Result<Reading, RigFault>;
 
+    /// Reads once, and says when it went on its last move, where that was seen: begin and end of the even motion that stands for it, s of
+    /// rig time.
+    ///
+    /// # Errors
+    /// As `read`.
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        Ok((self.read()?, None))
+    }
+
     /// Moves at constant velocity (m/s, signed towards the target) to absolute targets, and reads at up to `samples` equal
     /// times on the way, the last at the end of the motion; no settling in between. A rig that cannot keep up reads as
     /// often as it can, at least twice; every reading carries its own time and place. Each is given to `each` as it is
@@ -333,6 +347,12 @@ pub trait Rig {
     /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent
     /// stiffness.
     fn declared_noise(&self) -> DeclaredNoise;
+
+    /// Where the plan's zero lies in the rig's own coordinate, m, one an axis; None: it has no other coordinate than the plan's, or
+    /// the record, of an older version, does not say.
+    fn datum(&self) -> Option<Vec<f64>> {
+        None
+    }
 
     /// Speed of a move for which none is asked, m/s; None: as fast as the plan's limits allow.
     fn own_speed(&self) -> Option<f64> {

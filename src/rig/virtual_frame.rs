@@ -11,11 +11,10 @@ use super::virtual_rig::glide::Course;
 use super::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{SymmetricBand, drifts, floor_forces};
-use crate::mechanics::logarithmic::Went;
 use crate::mechanics::maxwell::{MaxwellBranch, Travel};
 use crate::mechanics::path::Path;
 use crate::mechanics::relaxing::Relaxing;
-use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
+use crate::mechanics::specimen::SpecimenModel;
 use crate::plan::{Frame, Settle, Storey, VirtualLink};
 
 /// Several degrees of freedom: floors from the ground up.
@@ -70,37 +69,23 @@ impl Structure {
         Self::Storeys { models, dampers, relaxing, drift: nothing.clone(), shear: nothing }
     }
 
-    fn move_to(&mut self, displacement: &[f64], restoring_force: &mut [f64]) {
+    /// The floors go to these places (m), each as its travel says.
+    fn bend(&mut self, travels: &[Travel], displacement: &[f64], restoring_force: &mut [f64]) {
         match self {
-            Self::Storeys { models, drift, shear, .. } => {
+            Self::Storeys { models, relaxing, drift, shear, .. } => {
+                let before = drift.clone();
                 drifts(displacement, drift);
-                for ((model, drift), shear) in models.iter_mut().zip(drift).zip(&mut *shear) {
-                    *shear = model.move_to(*drift);
+                let mut below = None;
+                let ways = before.into_iter().zip(drift.iter().copied());
+                let storeys = models.iter_mut().zip(relaxing).zip(travels).zip(ways).zip(&mut *shear);
+                for ((((model, relaxing), floor), way), shear) in storeys {
+                    let travel = below.map_or(*floor, |below| floor.less(below));
+                    *shear = relaxing.bend(model, &travel, way, *shear);
+                    below = Some(floor);
                 }
                 floor_forces(shear, restoring_force);
             }
             Self::Matrix(stiffness) => stiffness.mul_into(displacement, restoring_force),
-        }
-    }
-
-    /// What relaxes in the storeys follows the floors, from the ground up, once these have their forces: `before` are the drifts from
-    /// which they set out, m.
-    fn relax(&mut self, travels: &[Travel], before: &[f64]) {
-        let Self::Storeys { relaxing, drift, shear, .. } = self else { return };
-        let mut below = None;
-        let storeys = relaxing.iter_mut().zip(travels).zip(drift.iter().zip(before)).zip(shear);
-        for (((relaxing, floor), (drift, before)), shear) in storeys {
-            let travel = below.map_or(*floor, |below| floor.less(below));
-            relaxing.follow(&travel, Went { moved: drift - before, force: *shear });
-            below = Some(floor);
-        }
-    }
-
-    /// Drifts, m; none of a frame that is given by its matrix.
-    fn drifts(&self) -> Vec<f64> {
-        match self {
-            Self::Storeys { drift, .. } => drift.clone(),
-            Self::Matrix(_) => Vec::new(),
         }
     }
 
@@ -175,7 +160,7 @@ impl VirtualFrame {
         let at_rest = vec![0.0; axes.len()];
         let mut structure = Structure::of(frame);
         let mut restoring_force = at_rest.clone();
-        structure.move_to(&at_rest, &mut restoring_force);
+        structure.bend(&vec![Travel::rest(0.0); axes.len()], &at_rest, &mut restoring_force);
         Self {
             name: name.to_owned(),
             link,
@@ -193,7 +178,6 @@ impl VirtualFrame {
 
     /// The storeys, and what relaxes in them, follow the pistons.
     fn follow(&mut self, travels: &[Travel]) {
-        let before = self.structure.drifts();
         let mut moved = false;
         for (bent, axis) in self.bent.iter_mut().zip(&self.axes) {
             let position = axis.actuator.position();
@@ -203,9 +187,8 @@ impl VirtualFrame {
         if moved {
             let velocities = self.velocities();
             self.structure.slide(&velocities);
-            self.structure.move_to(&self.bent, &mut self.restoring_force);
         }
-        self.structure.relax(travels, &before);
+        self.structure.bend(travels, &self.bent, &mut self.restoring_force);
     }
 
     /// Of the pistons, m/s.
@@ -300,7 +283,7 @@ impl Rig for VirtualFrame {
             return refused(format!("a move at {speed} m/s never arrives"));
         }
         self.proposed = Some((targets.iter().map(|target| self.sign * target).collect(), speed));
-        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None })
+        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None, at_the_rig: None })
     }
 
     /// All axes arrive at once; the one with the farthest way goes at the speed that was asked for.

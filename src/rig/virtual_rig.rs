@@ -6,10 +6,10 @@ pub(super) mod glide;
 use self::glide::Course;
 use super::actuator::Actuator;
 use super::load_cell::{LoadCell, to_quantum};
+use super::moved::even;
 use super::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
 use super::{CutOff, DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
 use crate::mechanics::damping::CellDamping;
-use crate::mechanics::logarithmic::Went;
 use crate::mechanics::maxwell::Travel;
 use crate::mechanics::path::Path;
 use crate::mechanics::relaxing::Relaxing;
@@ -40,6 +40,8 @@ pub struct VirtualRig {
     restoring_force: f64,
     /// Target at the rig (m) and speed (m/s).
     proposed: Option<(f64, f64)>,
+    /// When it went on its last move.
+    moved: Option<[f64; 2]>,
     /// The path that it follows, or was stopped on.
     under_way: Option<Course>,
 }
@@ -68,6 +70,7 @@ impl VirtualRig {
             bent: 0.0,
             restoring_force,
             proposed: None,
+            moved: None,
             under_way: None,
         }
     }
@@ -99,13 +102,12 @@ impl VirtualRig {
     /// The specimen, what relaxes with it and the friction on it follow the piston.
     fn follow(&mut self, travel: &Travel) {
         let position = self.actuator.position();
-        let moved = position - self.bent;
         if position != self.bent {
             self.damping.force(self.actuator.velocity());
-            self.restoring_force = self.specimen.move_to(position);
-            self.bent = position;
         }
-        self.relaxing.follow(travel, Went { moved, force: self.restoring_force });
+        let way = (self.bent, position);
+        self.restoring_force = self.relaxing.bend(&mut self.specimen, travel, way, self.restoring_force);
+        self.bent = position;
     }
 
     /// `seconds` pass with the reference at rest.
@@ -190,7 +192,7 @@ impl Rig for VirtualRig {
             return Err(RigFault::Device(format!("a move at {speed} m/s never arrives")));
         }
         self.proposed = Some((target, speed));
-        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None })
+        Ok(Offer { targets: targets.to_vec(), speed, wire: Vec::new(), move_id: None, at_the_rig: None })
     }
 
     fn execute(&mut self) -> Result<(), RigFault> {
@@ -199,6 +201,9 @@ impl Rig for VirtualRig {
         let aim = self.actuator.aim(target);
         let seconds = (aim - self.actuator.reference()).abs() / speed;
         let travel = self.actuator.advance(aim, seconds);
+        // A first-order lag delays a motion by its time constant, and adds the square of it to the variance.
+        let lag = self.actuator.lag();
+        self.moved = Some(even(self.time, self.time + 0.5 * seconds + lag, seconds * seconds / 12.0 + lag * lag));
         self.time += seconds;
         self.follow(&travel);
         self.actuator.stop();
@@ -231,6 +236,10 @@ impl Rig for VirtualRig {
 
     fn read(&mut self) -> Result<Reading, RigFault> {
         Ok(self.reading())
+    }
+
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        Ok((self.reading(), self.moved))
     }
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {

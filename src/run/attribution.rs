@@ -10,7 +10,7 @@ use crate::mechanics::backbone::SHARED;
 use crate::mechanics::multilinear_fit::{CurveShares, MultilinearFit};
 use crate::plan::{Calibration, Plan, ProcedureKind};
 use crate::quantity::Dimension;
-use crate::record::{BilinearFit, History, NamedResult};
+use crate::record::{BilinearFit, BroughtTogether, History, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::{Contribution, Source, combined, share};
 
@@ -55,6 +55,7 @@ pub(super) fn attribute(
         secant_doubts::give((asked, ramp), (quanta(plan, declared, 0), calibration), procedure, results);
     }
     if let (ProcedureKind::DampingSweep(sweep), History::Sweep(found)) = (kind, history) {
+        of_stroke_stiffness(&found.together, &sweep.stiffness, inputs, results);
         let specimen = plan.specimens.get(sweep.specimen);
         let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);
         damping_ratio(
@@ -153,6 +154,20 @@ pub(super) fn of_calibration(result: &NamedResult, value: f64, calibration: &Cal
     parts.into_iter().filter(|(_, amount)| *amount != 0.0).map(|(source, amount)| Contribution::new(source, amount)).collect()
 }
 
+/// What the stiffness that brought the pairs of a sweep to one place makes of its line: that of the strokes, else that of the plan.
+fn of_stroke_stiffness(together: &BroughtTogether, planned: &Formula, inputs: &Inputs<'_>, results: &mut [NamedResult]) {
+    let of_strokes = |error| vec![Contribution::new(Source::StrokeStiffness { procedure: inputs.procedure() }, error)];
+    let of_plan = || planned.contributions(inputs.results(), None).unwrap_or_default();
+    let in_stiffness = together.error.map_or_else(of_plan, of_strokes);
+    for (name, effect) in ["damping", "coulomb_force"].into_iter().zip(together.effects) {
+        let Some(result) = results.iter_mut().find(|result| result.name == name) else { continue };
+        if matches!(result.value, ResultValue::Number { value: Some(_), .. }) {
+            let parts = in_stiffness.iter().map(|part| Contribution::new(part.source, effect * part.amount));
+            parts.filter(|part| part.amount != 0.0).for_each(|part| share(&mut result.contributions, part));
+        }
+    }
+}
+
 /// ζ = c/(2√(KM)): by first order, ζ/c of what is in c, −ζ/(2K) of what is in K and −ζ/(2M) of what is in M; `mass` is what
 /// the mass hangs on and its relative uncertainty.
 fn damping_ratio(
@@ -167,8 +182,7 @@ fn damping_ratio(
     };
     let (Some(ratio), Some(damping)) = (number("damping_ratio"), number("damping")) else { return };
     let (known, in_stiffness) = if let Some((stiffness, error)) = own {
-        let fitted = Source::Fit { procedure: inputs.procedure(), result: "damping_ratio" };
-        (stiffness, vec![Contribution::new(fitted, error)])
+        (stiffness, vec![Contribution::new(Source::StrokeStiffness { procedure: inputs.procedure() }, error)])
     } else {
         let found = (stiffness.evaluate(inputs.results(), None), stiffness.contributions(inputs.results(), None));
         let (Ok(known), Ok(in_stiffness)) = found else { return };

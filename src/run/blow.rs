@@ -11,6 +11,7 @@ use super::{impact, storey_impact, unload};
 use crate::mechanics::frame::Unloading;
 use crate::mechanics::impact::ImpactInput;
 use crate::plan::{BlowOn, Escalate, Impact, Plan, StoreyImpact, Striker};
+use crate::quantity::Dimension;
 use crate::record::{BlowHistory, NamedResult};
 
 /// What is struck again and again.
@@ -110,7 +111,9 @@ impl<'a> Struck<'a> {
 fn velocities(plan: &Escalate, inputs: &mut Inputs<'_>) -> Result<Vec<f64>, Stop> {
     let velocities = inputs.list("speeds", &plan.velocities)?;
     match velocities.iter().copied().find(|velocity| !(*velocity > 0.0 && velocity.is_finite())) {
-        Some(value) => Err(Stop::BadInput { field: "speeds", value, wanted: "greater than 0".into() }),
+        Some(value) => {
+            Err(Stop::BadInput { field: "speeds", value, dimension: Dimension::VELOCITY, wanted: "greater than 0".into() })
+        }
         None => Ok(velocities),
     }
 }

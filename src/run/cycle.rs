@@ -14,6 +14,7 @@ use super::session::{Session, first};
 use super::stop::Stop;
 use crate::formula::ResultValue;
 use crate::mechanics::cyclic::{LoopPoint, loop_of, work};
+use crate::mechanics::noisy_largest::NoisyLargest;
 use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
@@ -32,16 +33,44 @@ pub(super) fn perform(plan: &Cycle, whole: &Plan, inputs: &mut Inputs<'_>, sessi
             session.event(EventKind::Remark, text);
         }
     }
-    let mut results = results(&cycling.history);
-    cycle_doubts::propagate(
+    let declared = session.guard.declared_noise();
+    let noise = declared.force / f64::from(samples).sqrt();
+    let mut results = results(&cycling.history, noise);
+    let left_open = cycle_doubts::propagate(
         &cycling.history,
-        samples,
+        (samples, noise),
         &whole.rig.calibration_of(0),
         inputs,
-        quanta(whole, session.guard.declared_noise(), 0),
+        quanta(whole, declared, 0),
         &mut results,
     );
+    if let Some(text) = few_points(&cycling.history, &left_open).filter(|_| stop.is_none()) {
+        session.event(EventKind::Remark, text);
+    }
     Performed { history: History::Cycle(cycling.history), results, stop }
+}
+
+/// Of the energy of a cycle: more of it, left open between the points of its loop, is worth a word.
+const OPEN: f64 = 0.05;
+/// A loop with less energy than this share of its height times its width has none to speak of.
+const THIN: f64 = 1e-3;
+
+/// What a person should know of loops whose area their points leave open, by so many joules each.
+fn few_points(history: &CycleHistory, left_open: &[f64]) -> Option<String> {
+    let loops = history.cycles.iter().zip(left_open);
+    let share = |(cycle, open): (&WholeCycle, &f64)| {
+        let found = &cycle.found;
+        let thin = THIN * (found.max_force - found.min_force) * 2.0 * found.amplitude;
+        (cycle.cycle, if *open > thin { open / found.energy.abs() } else { 0.0 })
+    };
+    let (cycle, worst) = loops.map(share).max_by(|one, other| one.1.total_cmp(&other.1))?;
+    (worst > OPEN).then(|| {
+        let percent = 100.0 * worst;
+        format!(
+            "few points: between them cycle {cycle} may have {percent:.0} % more energy or less than its trapezia, and its damping ratio \
+             with it: more `points`, or a higher `rate`, tell more"
+        )
+    })
 }
 
 /// How one way is gone.
@@ -71,7 +100,12 @@ impl Cycling {
         let amplitudes = plan.levels.iter().map(|level| level.amplitude.clone()).collect::<Vec<_>>();
         let amplitudes = inputs.list("amplitudes", &amplitudes)?;
         if let Some(value) = amplitudes.iter().copied().find(|amplitude| !(*amplitude > 0.0 && amplitude.is_finite())) {
-            return Err(Stop::BadInput { field: "amplitudes", value, wanted: "greater than 0".into() });
+            return Err(Stop::BadInput {
+                field: "amplitudes",
+                value,
+                dimension: Dimension::LENGTH,
+                wanted: "greater than 0".into(),
+            });
         }
         let about = inputs.number("about", &plan.about, Dimension::LENGTH)?;
         let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
@@ -157,7 +191,7 @@ impl Cycling {
         let wanted = ((to - from).abs() / speed * rate).round().max(1.0);
         if wanted > MOST_TARGETS {
             let wanted_words = format!("at most {MOST_TARGETS} readings a way").into();
-            return Err(Stop::BadInput { field: "rate", value: wanted, wanted: wanted_words });
+            return Err(Stop::BadInput { field: "rate", value: wanted, dimension: Dimension::NUMBER, wanted: wanted_words });
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_TARGETS")]
         let samples = wanted as usize;
@@ -256,10 +290,10 @@ impl Looks {
     }
 }
 
-/// In the order of the reference.
-pub(super) fn results(history: &CycleHistory) -> Vec<NamedResult> {
+/// In the order of the reference; `noise` is the standard deviation of a force at its place, N.
+pub(super) fn results(history: &CycleHistory, noise: f64) -> Vec<NamedResult> {
     let cycles = &history.cycles;
-    let forces = || history.steps.iter().map(|step| step.restoring_force);
+    let largest = |sign: f64| NoisyLargest::of(noise, history.steps.iter().map(|step| sign * step.restoring_force)).value();
     let list = |name, dimension, read: fn(&WholeCycle) -> f64| NamedResult {
         name,
         value: ResultValue::List(cycles.iter().map(read).collect()),
@@ -271,8 +305,8 @@ pub(super) fn results(history: &CycleHistory) -> Vec<NamedResult> {
     let total = (!cycles.is_empty()).then(|| cycles.iter().map(|cycle| cycle.found.energy).sum());
     let mut results = vec![
         result("dissipated_energy", Dimension::ENERGY, total),
-        result("max_force", Dimension::FORCE, forces().reduce(f64::max)),
-        result("min_force", Dimension::FORCE, forces().reduce(f64::min)),
+        result("max_force", Dimension::FORCE, largest(1.0)),
+        result("min_force", Dimension::FORCE, largest(-1.0).map(|pull| -pull)),
         result("equivalent_damping_ratio", Dimension::NUMBER, cycles.last().and_then(|cycle| cycle.found.damping_ratio)),
         result("stiffness", Dimension::STIFFNESS, cycles.first().and_then(|cycle| cycle.found.stiffness)),
         result("last_stiffness", Dimension::STIFFNESS, cycles.last().and_then(|cycle| cycle.found.stiffness)),

@@ -1,12 +1,13 @@
 //! `damping sweep` (Melo et al. 2006, sec. 6 (b)): traverses of one stroke and back at rising constant velocities.
 //! In: velocities, stroke, the K of an earlier ramp. Out: c and the Coulomb force by `F_d = R − K·X = c·v + F_c·sign v`.
 //!
-//! X and R are as measured, X from the rig's zero. An offset of the cell, or an error of K, adds the same to both
-//! directions at one place: the fit is of half the difference between a reading and the one at the same place on the way
-//! back, so that neither reaches c, `F_c` or their standard errors. Nor does a specimen that flows: about a place, one stroke takes its
-//! flow before the first that is read, and one that flowed all the same is left out.
+//! X and R are as measured, X from the rig's zero. An offset of the cell adds the same to both directions at one place: the fit is
+//! of half the difference between a reading and the one at the same place on the way back, so that it does not reach c, `F_c` or
+//! their standard errors. Nor does the K of the plan: an actuator that lags reads behind on both ways, and what a pair is apart by
+//! is made up for with the stiffness that the strokes show themselves; its error is one of c. Nor does a specimen that flows: about
+//! a place, one stroke takes its flow before the first that is read, and one that flowed all the same is left out.
 //!
-//! A rig that reads at the times it was asked has the same places out and back. One that reads when it can has not: there
+//! A rig that reads at the times it was asked has nearly the same places out and back. One that reads when it can has not: there
 //! the measured share of the stroke says what is steady, and the sparser way is paired with the other one interpolated.
 
 use std::ops::Range;
@@ -19,11 +20,12 @@ use super::session::{Session, first};
 use super::stop::Stop;
 use crate::formula::Estimate;
 use crate::mechanics::identification::{damping_ratio, fit_damping, fit_line};
+use crate::mechanics::rounding::line_weights;
 use crate::mechanics::strokes::{OutAndBack, change_along, own_stiffness};
 use crate::plan::{DampingSweep, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
-use crate::record::{EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep};
+use crate::record::{BroughtTogether, EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep};
 
 /// Part of the stroke left out at either end: the actuator starts and stops there.
 const END: f64 = 0.1;
@@ -45,6 +47,9 @@ const OFF_SPEED: f64 = 0.05;
 const CONTRADICTS: f64 = 5.0;
 const OFF_STIFFNESS: f64 = 0.1;
 
+/// Of the largest force: what a stiffness makes of the way is rounding below it.
+const ROUNDING: f64 = 1e-9;
+
 /// Readings of one traverse, at most.
 pub const MOST_SAMPLES: f64 = 1e6;
 
@@ -56,9 +61,15 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     let stop = sweep.run(plan, inputs, session).err();
     let paired = sweep.paired();
     let told = sweep.told(&paired);
-    let kept = paired.iter().filter(|(stroke, _)| !told.left_out.contains(&stroke.out.start));
-    let of_history = |pair: &OutAndBack| ((pair.velocity, pair.half_difference), [pair.place, pair.mean]);
-    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = kept.flat_map(|(_, pairs)| pairs.iter().map(of_history)).unzip();
+    let kept = || paired.iter().filter(|(stroke, _)| !told.left_out.contains(&stroke.out.start));
+    let stiffness = told.stiffness.map_or_else(|| sweep.planned(), |(stiffness, _)| stiffness);
+    let of_history = |pair: &OutAndBack| ((pair.velocity, pair.damping_force(stiffness)), [pair.place, pair.mean]);
+    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = kept().flat_map(|(_, pairs)| pairs.iter().map(of_history)).unzip();
+    let together = BroughtTogether {
+        stiffness,
+        error: told.stiffness.map(|(_, error)| error),
+        effects: effects_of_stiffness(kept().flat_map(|(_, pairs)| pairs)),
+    };
     let foreseen = Foreseen::of(whole);
     let fit = fit_of(&pairs).map(|fit| widened(foreseen, fit, &pairs, &middles));
     if fit.is_none() && stop.is_none() {
@@ -69,10 +80,10 @@ pub(super) fn perform(plan: &DampingSweep, whole: &Plan, inputs: &mut Inputs<'_>
     for text in sweep.remarks(&paired).into_iter().chain(told.remarks).chain(fit.as_ref().and_then(negative)) {
         session.event(EventKind::Remark, text);
     }
-    let own_stiffness = told.own_stiffness;
-    let results = sweep.results(fit.as_ref(), own_stiffness, whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
+    let results = sweep.results(fit.as_ref(), told.ratio_of, whole.specimens.get(plan.specimen).map(|specimen| specimen.mass));
     let stiffness = sweep.stiffness.map(|stiffness| stiffness.value);
-    let history = SweepHistory { steps: sweep.steps, pairs, middles, stiffness, own_stiffness, fit };
+    let own_stiffness = if let RatioOf::Strokes(own) = told.ratio_of { Some(own) } else { None };
+    let history = SweepHistory { steps: sweep.steps, pairs, middles, stiffness, together, own_stiffness, fit };
     Performed { history: History::Sweep(history), results, stop }
 }
 
@@ -112,13 +123,36 @@ fn fit_of(pairs: &[(f64, f64)]) -> Option<LineFit> {
     fit_damping(&velocities, &forces)
 }
 
+/// ∂c/∂K (s) and ∂F_c/∂K (m), K the stiffness that brings the readings of each pair to one place.
+fn effects_of_stiffness<'a>(pairs: impl Iterator<Item = &'a OutAndBack>) -> [f64; 2] {
+    let moving = pairs.filter(|pair| pair.velocity != 0.0);
+    let (speeds, apart): (Vec<f64>, Vec<f64>) =
+        moving.map(|pair| (pair.velocity.abs(), pair.half_apart * pair.velocity.signum())).unzip();
+    line_weights(&speeds).map(|weights| {
+        let effect: f64 = weights.iter().zip(&apart).map(|(weight, apart)| -weight * apart).sum();
+        // Of strokes at one velocity there is no line.
+        if effect.is_finite() { effect } else { 0.0 }
+    })
+}
+
 /// What strokes tell beside c.
 struct Told {
+    /// K of the strokes that count and its standard error, N/m, where they show it.
+    stiffness: Option<(f64, f64)>,
     /// By their first steps: strokes that flowed, where others did not.
     left_out: Vec<usize>,
-    /// K and its standard error, N/m, where it is not the plan's.
-    own_stiffness: Option<(f64, f64)>,
+    ratio_of: RatioOf,
     remarks: Vec<String>,
+}
+
+/// The stiffness that a damping ratio is told with.
+#[derive(Clone, Copy)]
+enum RatioOf {
+    Plan,
+    /// K and its standard error, N/m: it is not the plan's.
+    Strokes((f64, f64)),
+    /// The strokes contradict the plan's, and show none.
+    Nothing,
 }
 
 /// Steps of one stroke, out and back.
@@ -162,7 +196,12 @@ impl Sweep {
         let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
         let rate = plan.rate.as_ref().map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY)).transpose()?;
         if stroke == 0.0 {
-            return Err(Stop::BadInput { field: "stroke", value: stroke, wanted: "other than 0".into() });
+            return Err(Stop::BadInput {
+                field: "stroke",
+                value: stroke,
+                dimension: Dimension::LENGTH,
+                wanted: "other than 0".into(),
+            });
         }
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
@@ -174,7 +213,12 @@ impl Sweep {
         let home = session.commanded();
         for velocity in velocities {
             if velocity == 0.0 {
-                return Err(Stop::BadInput { field: "velocities", value: velocity, wanted: "other than 0".into() });
+                return Err(Stop::BadInput {
+                    field: "velocities",
+                    value: velocity,
+                    dimension: Dimension::VELOCITY,
+                    wanted: "other than 0".into(),
+                });
             }
             let seconds = (stroke / velocity).abs();
             let samples = self.samples(seconds, rate)?;
@@ -201,6 +245,7 @@ impl Sweep {
             return Err(Stop::BadInput {
                 field: "rate",
                 value: wanted,
+                dimension: Dimension::NUMBER,
                 wanted: format!("at most {MOST_SAMPLES} readings a stroke").into(),
             });
         }
@@ -273,8 +318,10 @@ impl Sweep {
 
     /// What the strokes tell of the specimen beside its damping.
     fn told(&self, strokes: &[Paired<'_>]) -> Told {
+        let of_all = own_stiffness(&strokes.iter().map(|(_, pairs)| pairs.as_slice()));
+        let of_all = of_all.map_or_else(|| self.planned(), |(stiffness, _)| stiffness);
         let flowed: Vec<(&Stroke, f64)> =
-            strokes.iter().filter_map(|(stroke, pairs)| Some((*stroke, change_along(pairs)?))).collect();
+            strokes.iter().filter_map(|(stroke, pairs)| Some((*stroke, change_along(pairs, of_all)?))).collect();
         let all = flowed.len() == strokes.len();
         let mut remarks: Vec<String> = Vec::new();
         for (stroke, change) in &flowed {
@@ -287,25 +334,53 @@ impl Sweep {
         }
         let left_out: Vec<usize> = flowed.iter().filter(|_| !all).map(|(stroke, _)| stroke.out.start).collect();
         let kept = strokes.iter().filter(|(stroke, _)| !left_out.contains(&stroke.out.start));
-        let own_stiffness = own_stiffness(&kept.map(|(_, pairs)| pairs.as_slice())).filter(|own| self.contradicts(*own));
-        if let (Some((own, _)), Some(assumed)) = (own_stiffness, self.stiffness) {
-            let (own, assumed) = (readable(own, Dimension::STIFFNESS), readable(assumed.value, Dimension::STIFFNESS));
-            remarks.push(format!(
-                "the strokes run at {own}, not at the {assumed} of `stiffness`: the damping ratio is told with theirs"
-            ));
+        let stiffness = own_stiffness(&kept.map(|(_, pairs)| pairs.as_slice()));
+        let own_stiffness = stiffness.filter(|own| self.contradicts(*own));
+        let resists = |(own, error): (f64, f64)| {
+            let pairs = || strokes.iter().flat_map(|(_, pairs)| pairs);
+            let most = |read: fn(&OutAndBack) -> f64| pairs().map(read).fold(0.0, f64::max);
+            let force = most(|pair| pair.mean.abs() + pair.half_difference.abs());
+            own > CONTRADICTS * error && own * most(|pair| pair.place.abs()) > ROUNDING * force
+        };
+        let shown = |stiffness| readable(stiffness, Dimension::STIFFNESS);
+        let ratio_of = match own_stiffness.map(|own| (own, resists(own))) {
+            None => RatioOf::Plan,
+            Some((own, true)) => RatioOf::Strokes(own),
+            Some((_, false)) => RatioOf::Nothing,
+        };
+        let assumed = shown(self.planned());
+        match ratio_of {
+            RatioOf::Plan => {}
+            RatioOf::Strokes((own, _)) => remarks.push(format!(
+                "the strokes run at {}, not at the {assumed} of `stiffness`: the damping ratio is told with theirs",
+                shown(own)
+            )),
+            RatioOf::Nothing => {
+                remarks
+                    .push(format!("the strokes show no stiffness, not the {assumed} of `stiffness`: there is no damping ratio"));
+            }
         }
-        Told { left_out, own_stiffness, remarks }
+        Told { stiffness, left_out, ratio_of, remarks }
+    }
+
+    /// K of the plan, N/m.
+    fn planned(&self) -> f64 {
+        self.stiffness.map_or(0.0, |stiffness| stiffness.value)
     }
 
     /// Whether the K of the strokes (N/m, with its standard error) is another than the plan's.
     fn contradicts(&self, (own, error): (f64, f64)) -> bool {
         let Some(assumed) = self.stiffness else { return false };
         let sure = CONTRADICTS * error.hypot(assumed.uncertainty.unwrap_or(0.0));
-        own > 0.0 && (own - assumed.value).abs() > sure.max(OFF_STIFFNESS * assumed.value)
+        (own - assumed.value).abs() > sure.max(OFF_STIFFNESS * assumed.value)
     }
 
-    fn results(&self, fit: Option<&LineFit>, own: Option<(f64, f64)>, mass: Option<f64>) -> Vec<NamedResult> {
-        let stiffness = own.map(|(value, error)| Estimate { value, uncertainty: Some(error) }).or(self.stiffness);
+    fn results(&self, fit: Option<&LineFit>, ratio_of: RatioOf, mass: Option<f64>) -> Vec<NamedResult> {
+        let stiffness = match ratio_of {
+            RatioOf::Plan => self.stiffness,
+            RatioOf::Strokes((value, error)) => Some(Estimate { value, uncertainty: Some(error) }),
+            RatioOf::Nothing => None,
+        };
         let ratio = fit.zip(stiffness).zip(mass).map(|((fit, stiffness), mass)| {
             let ratio = damping_ratio(fit.slope, stiffness.value, mass);
             // ζ = c/(2√(KM)): u(ζ)² = (u(c)/(2√(KM)))² + (ζ·u(K)/(2K))².
@@ -323,7 +398,7 @@ impl Sweep {
     }
 }
 
-/// A stroke with its pairs of readings; the half difference is that of `F_d`.
+/// A stroke with its pairs of readings.
 type Paired<'a> = (&'a Stroke, Vec<OutAndBack>);
 
 /// Pairs of readings at the same place by their times: the last reading of a way is where the next one starts, and has no
@@ -333,7 +408,8 @@ fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAndBack> {
     let pair = |(out, back): (&SweepStep, &SweepStep)| OutAndBack {
         velocity: out.velocity,
         place: 0.5 * (out.displacement + back.displacement),
-        half_difference: 0.5 * (out.damping_force - back.damping_force),
+        half_apart: 0.5 * (out.displacement - back.displacement),
+        half_difference: 0.5 * (out.restoring_force - back.restoring_force),
         mean: 0.5 * (out.restoring_force + back.restoring_force),
     };
     steady.map(pair).collect()
@@ -349,24 +425,28 @@ fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAndBack> {
     let (out, back) = (steady(out), steady(back));
     let (sparse, dense) = if out.len() <= back.len() { (out, back) } else { (back, out) };
     let pair = |step: &SweepStep| {
-        let half_difference = 0.5 * (step.damping_force - interpolated(&dense, step.displacement)?);
-        // At one place the elastic force is the same.
-        let mean = step.restoring_force - half_difference;
-        Some(OutAndBack { velocity: step.velocity, place: step.displacement, half_difference, mean })
+        let other = interpolated(&dense, step.displacement)?;
+        Some(OutAndBack {
+            velocity: step.velocity,
+            place: step.displacement,
+            half_apart: 0.0,
+            half_difference: 0.5 * (step.restoring_force - other),
+            mean: 0.5 * (step.restoring_force + other),
+        })
     };
     sparse.iter().filter_map(pair).collect()
 }
 
-/// `F_d` at `place` (m) between the two readings about it, which are sorted by place.
+/// Force (N) at `place` (m) between the two readings about it, which are sorted by place.
 fn interpolated(steps: &[SweepStep], place: f64) -> Option<f64> {
     let after = steps.iter().position(|step| step.displacement >= place)?;
     let above = steps[after];
     if above.displacement == place {
-        return Some(above.damping_force);
+        return Some(above.restoring_force);
     }
     let below = steps[after.checked_sub(1)?];
     let share = (place - below.displacement) / (above.displacement - below.displacement);
-    Some(below.damping_force + share * (above.damping_force - below.damping_force))
+    Some(below.restoring_force + share * (above.restoring_force - below.restoring_force))
 }
 
 /// Measured place over time on the steady part: its slope is the velocity, m/s.

@@ -3,20 +3,24 @@
 
 use super::session::{Session, signed};
 use super::stop::Stop;
-use super::{Inspection, UNLOADING};
-use crate::plan::{Plan, SafeState};
+use super::{Extent, Inspection, Motion, UNLOADING};
+use crate::plan::{Interval, Plan, SafeState};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::record::{EventKind, Outcome};
 use crate::rig::Halted;
 
 impl Session<'_> {
-    /// Holds the rig, and takes the load off where that is its safe state and may be.
+    /// Holds the rig, and takes the load off: where that is its safe state and nobody stands at it, or where a person wants it.
     pub(super) fn end_as_declared(&mut self, stop: &Stop, plan: &Plan) -> Outcome {
         let halted = self.end(stop);
-        let unload = plan.rig.link.as_real().is_some_and(|link| link.safe_state == SafeState::Unload);
+        let Some(link) = plan.rig.link.as_real() else { return stop.outcome() };
         let held = halted.as_ref().is_none_or(Halted::is_held);
-        if unload && held && stop.leaves_the_rig_sound() && self.may_unload(stop, halted.as_ref()) {
+        let declared = link.safe_state == SafeState::Unload && stop.leaves_the_rig_sound();
+        let alone = declared && !self.attended && !stop.is_a_persons();
+        // A rig that a person held in the middle of a move was seen at rest since: it may move again for who sees it.
+        let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
+        if held && sound && (alone || self.may_unload(plan, halted.as_ref(), declared)) {
             self.unload();
         }
         stop.outcome()
@@ -39,21 +43,19 @@ impl Session<'_> {
         }
     }
 
-    /// A limit or an input that stops a rig nobody stands at lets it do as its plan says. A person is asked.
-    fn may_unload(&mut self, stop: &Stop, halted: Option<&Halted>) -> bool {
-        if !self.attended && !stop.is_a_persons() {
-            return true;
-        }
+    /// Whether a person wants the load off.
+    fn may_unload(&mut self, plan: &Plan, halted: Option<&Halted>, declared: bool) -> bool {
         let place =
             |places: &[f64]| places.iter().map(|place| readable(*place, Dimension::LENGTH)).collect::<Vec<_>>().join(", ");
         let found = halted.and_then(|halted| halted.found.as_ref());
         let at = place(found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice()));
         let home = place(&self.home);
+        let motion = self.unloading(plan, halted);
         let speed = self.guard.own_speed();
         let speed = speed.map_or_else(String::new, |speed| format!(" at {}", plain(speed, Dimension::VELOCITY, 4)));
         let question = format!("unload? The rig holds at {at}; with a yes it moves to {home}{speed}, where the run began");
         loop {
-            match self.observer.may_unload(&question) {
+            match self.observer.may_unload(&question, &motion, declared) {
                 None => return false,
                 Some(Inspection::GoOn { note, by }) => {
                     // Older versions asked nobody.
@@ -77,6 +79,27 @@ impl Session<'_> {
                 }
             }
         }
+    }
+
+    /// The motion that takes the load off.
+    fn unloading(&self, plan: &Plan, halted: Option<&Halted>) -> Motion {
+        let found = halted.and_then(|halted| halted.found.as_ref());
+        let from = found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice());
+        let over = |values: &mut dyn Iterator<Item = f64>| {
+            values
+                .map(|value| Interval { low: value, high: value })
+                .reduce(|a, b| Interval { low: a.low.min(b.low), high: a.high.max(b.high) })
+        };
+        let way = from.iter().zip(&self.home).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+        let speed = self.guard.own_speed();
+        let expected = Extent {
+            travel: over(&mut from.iter().chain(&self.home).copied()),
+            force: found.and_then(|(_, force)| over(&mut force.iter().copied().chain([0.0]))),
+            speed,
+            duration: speed.map(|speed| way / speed),
+        };
+        let does = "it goes back to where the run began".to_owned();
+        Motion { expected, ..Motion::of(plan, self.identity(), does) }
     }
 
     /// Takes the load off after a stop, inside the same limits; what stands in the way is one more event.

@@ -68,7 +68,7 @@ pub(super) fn close(found: &[f64], wanted: &[f64], within: f64) {
 }
 
 /// A bilinear storey beyond its yield drift δy has the shear Fy + hk(δ − δy), and comes back along k: what stays is its
-/// plastic drift, (1 − h)(δ − δy), whatever the other storeys do. One move is enough.
+/// plastic drift, (1 − h)(δ − δy), whatever the other storeys do. Three moves are enough: a short one, most of the way, the rest.
 #[test]
 fn what_stays_of_a_bilinear_storey_is_its_plastic_drift() {
     for hardening in [0.0, 0.05, 0.2] {
@@ -76,7 +76,7 @@ fn what_stays_of_a_bilinear_storey_is_its_plastic_drift() {
         let stays = [(1.0 - hardening) * 0.015, -(1.0 - hardening) * 0.02, 0.0];
         close(&rest.drift(), &stays, 1e-15);
         close(&rest.shear(), &[0.0; 3], 1e-9);
-        assert_eq!(steps.len(), 2);
+        assert_eq!(steps.len(), 4);
         close(&[steps[1].tangent_stiffness[0].unwrap(), steps[1].tangent_stiffness[2].unwrap()], &[4e6, 1e6], 1e-4);
         assert_eq!(rest.largest().0, rest.displacement[0]);
     }
@@ -105,7 +105,7 @@ fn all_floors_move_together_inside_the_limits() {
     plan.limits.increment = Interval { low: 0.0, high: 1e-3 };
     let (found, steps) = unloaded(&plan, [0.025, 0.03, 0.015], None);
     close(&found.displacement, &wanted.displacement, 1e-15);
-    assert_eq!(steps.len(), 2);
+    assert_eq!(steps.len(), 4);
     // Pushed beyond yield and half the way back, it springs out again: beyond a limit it is not let.
     let mut rig = virtual_rig(&plan);
     plan.limits.increment = Interval::ALL;
@@ -123,7 +123,7 @@ fn all_floors_move_together_inside_the_limits() {
     let mut steps = Vec::new();
     let stop = to_rest(unloading, None, None, 0, &mut session, &mut steps).unwrap_err();
     assert!(matches!(stop.outcome(), Outcome::Aborted { .. }), "{stop}");
-    assert!(steps.len() == 1 && session.guard.commanded() == [0.03; 3]);
+    assert!(steps.len() == 2 && session.guard.commanded().iter().all(|place| (0.03..0.033).contains(place)));
 }
 
 /// With noise the frame rests within what its cells can tell, and is not chased any further.
@@ -136,13 +136,14 @@ fn noise_is_not_mistaken_for_load() {
         let (found, steps) = unloaded(&plan, [0.02, 0.02, 0.02], None);
         // Rows of |K| are 8, 6 and 2 MN/m at most: a quantum of 1 µm is 9 N at the second floor, 3σ are 60 N.
         assert!(found.force.iter().all(|force| force.abs() <= 60.0), "{found:?}");
-        assert!(steps.len() <= 3, "{}", steps.len());
+        // Three moves, and one more where noise is in the slope of the last.
+        assert!(steps.len() <= 5, "{}", steps.len());
         let off = found.drift().iter().zip(ideal.drift()).map(|(found, ideal)| (found - ideal).abs()).fold(0.0, f64::max);
         assert!(off < 3.0 * 3.0 * 20.0 / 1e6 + 2e-6, "{off} m");
     }
 }
 
-/// A frame given by its matrices is no shear building: K⁻¹ takes it home in one move.
+/// A frame given by its matrices is no shear building: K⁻¹ takes it home, all floors together.
 #[test]
 fn a_frame_of_matrices_is_unloaded_as_a_whole() {
     let mut plan = three(0.05);
@@ -151,7 +152,7 @@ fn a_frame_of_matrices_is_unloaded_as_a_whole() {
     frame.stiffness = vec![vec![6e6, -2e6, 1e5], vec![-2e6, 3e6, -1e6], vec![1e5, -1e6, 1.2e6]];
     let (rest, steps) = unloaded(&plan, [0.01, 0.02, -0.01], None);
     close(&rest.displacement, &[0.0; 3], 1e-16);
-    assert!(steps.len() == 2 && steps[1].tangent_stiffness == [None; 3]);
+    assert!(steps.len() == 4 && steps[1].tangent_stiffness == [None; 3]);
 }
 
 /// Of one storey it is the unloading of one degree of freedom, to the last bit.

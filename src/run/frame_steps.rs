@@ -17,6 +17,7 @@ use super::triggers::Triggers;
 use crate::mechanics::frame::{FrameInput, FrameState};
 use crate::mechanics::monitor::Tracking;
 use crate::plan::{Mode, Stepping};
+use crate::quantity::Dimension;
 use crate::rig::{DeclaredNoise, Reading};
 
 /// What is known when the first step begins.
@@ -50,7 +51,8 @@ impl Start {
 
 /// Why a frame that cannot be stepped by `time_step` (s) is not.
 pub(super) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
-    Stop::BadInput { field: "time_step", value: time_step, wanted: format!("one that can be stepped: {error}").into() }
+    let wanted = format!("one that can be stepped: {error}").into();
+    Stop::BadInput { field: "time_step", value: time_step, dimension: Dimension::TIME, wanted }
 }
 
 /// The energy of a test at the end of a step, J.

@@ -2,7 +2,9 @@
 //! wrong sign, unit or scale and a dead sensor are found here, while nothing can be broken. In: the rig, what the plan
 //! expects. Out: what was found, as a note of the record, or why the run does not begin.
 
+use super::motion::Motion;
 use super::session::Session;
+use super::start;
 use super::stop::Stop;
 use crate::plan::{Gate, Plan, RealLink};
 use crate::quantity::Dimension;
@@ -22,11 +24,20 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
     ways.dedup();
     let ways = ways.join(", ");
     let by = if axes == 1 { format!("by {ways}") } else { format!("each of its {axes} axes in turn, by {ways}") };
-    session.inspect(&format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name))?;
+    // Nobody is asked to release a rig that stands elsewhere.
+    start::check(plan, link, session, session.guard.found())?;
+    let note = format!("release rig {}: it will move {by} to prove itself, then {afterwards}", plan.rig.name);
+    let does = format!("it moves {by} to check itself, then {afterwards}");
+    let stands = Some(start::told(session));
+    session.release(&note, &Motion { stands, ..Motion::of(plan, session.identity(), does) })?;
 
     let first = session.guard.read()?;
     session.guard.pause(REST)?;
     let at_rest = session.guard.read()?;
+    for reading in [&first, &at_rest] {
+        start::check(plan, link, session, (&reading.displacement, &reading.force))?;
+    }
+    start::tell(link, session);
     for (axis, (gate, force)) in gates.iter().zip(&at_rest.force).enumerate() {
         if failpoint::on(Guarding::GateZero) && !within(force.abs(), 0.0, gate.zero) {
             return refuse(format!(
@@ -59,7 +70,7 @@ pub(super) fn pass(plan: &Plan, link: &RealLink, afterwards: &str, session: &mut
 }
 
 /// What to do about a force at rest: a rig that stands where its specimen would carry about as much was left there by a run.
-fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
+pub(super) fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
     let carried = force / displacement;
     let bent = within(carried, 0.5 * gate.stiffness.low, 2.0 * gate.stiffness.high) && displacement.abs() > gate.probe;
     if bent {
@@ -115,7 +126,7 @@ fn others(column: &[f64], axis: usize) -> String {
 }
 
 /// NaN is within nothing.
-fn within(value: f64, low: f64, high: f64) -> bool {
+pub(super) fn within(value: f64, low: f64, high: f64) -> bool {
     low <= value && value <= high
 }
 

@@ -33,6 +33,15 @@ pub(super) fn watched(
     Ok((taken, last))
 }
 
+/// s that a rig waited, moved and settled between a reading before a move and one after it, which is seen to have gone from one instant to
+/// another. Where it was not seen, as in the records of older versions, all of it counts as moved.
+pub(super) fn parts(before: f64, moved: Option<[f64; 2]>, after: f64) -> [f64; 3] {
+    let [from, to] = moved.unwrap_or([before, after]);
+    let from = from.max(before).min(after);
+    let to = to.max(from).min(after);
+    [from - before, to - from, after - to].map(|seconds| seconds.max(0.0))
+}
+
 /// What the holds of a ramp tell.
 #[derive(Default)]
 pub(super) struct Told {

@@ -107,6 +107,7 @@ impl Setting {
             return Err(Stop::BadInput {
                 field: "time_step",
                 value: time_step,
+                dimension: Dimension::TIME,
                 wanted: format!("long enough for at most {MOST_STEPS} steps").into(),
             });
         }
@@ -147,7 +148,12 @@ pub(super) fn law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactL
         Contact::Restitution { coefficient } => {
             let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
             if coefficient > 1.0 {
-                return Err(Stop::BadInput { field: "restitution", value: coefficient, wanted: "at most 1".into() });
+                return Err(Stop::BadInput {
+                    field: "restitution",
+                    value: coefficient,
+                    dimension: Dimension::NUMBER,
+                    wanted: "at most 1".into(),
+                });
             }
             ContactLaw::Restitution { coefficient }
         }
@@ -172,8 +178,12 @@ const SECONDS_PER_METRE: Dimension = Dimension {
 /// Says that the scheme made or lost more of the energy than a reader may take for the specimen's.
 pub(super) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
     if energy_error.is_nan() || energy_error.abs() > UNBALANCED {
-        let off = significant(100.0 * energy_error, 3);
-        let text = format!("the energy balance is off by {off} % of the energy put in: a shorter time step is needed");
+        let off = if energy_error.is_nan() {
+            "the energy balance cannot be computed: its energies are not finite".to_owned()
+        } else {
+            format!("the energy balance is off by {} % of the energy put in", significant(100.0 * energy_error, 3))
+        };
+        let text = format!("{off}: a shorter time step is needed");
         session.event(EventKind::Remark, text);
     }
 }

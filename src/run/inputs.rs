@@ -76,7 +76,7 @@ impl<'record> Inputs<'record> {
     pub(super) fn not_negative(&mut self, field: &'static str, formula: &Formula, dimension: Dimension) -> Result<f64, Stop> {
         match self.number(field, formula, dimension)? {
             value if value >= 0.0 => Ok(value),
-            value => Err(Stop::BadInput { field, value, wanted: "at least 0".into() }),
+            value => Err(Stop::BadInput { field, value, dimension, wanted: "at least 0".into() }),
         }
     }
 
@@ -87,7 +87,7 @@ impl<'record> Inputs<'record> {
         if value >= 0.0 {
             return Ok(value);
         }
-        let bad = |wanted: &'static str| Stop::BadInput { field, value, wanted: wanted.into() };
+        let bad = |wanted: &'static str| Stop::BadInput { field, value, dimension, wanted: wanted.into() };
         let parts = formula.contributions(self.results, None).map_err(|error| Stop::NoInput { field, error })?;
         let Some(known) = known(&parts, self.results).filter(|known| !self.moved && known.standard > 0.0) else {
             return Err(bad("at least 0"));
@@ -100,7 +100,8 @@ impl<'record> Inputs<'record> {
             estimate.value = 0.0;
         }
         let (value, expanded) = (readable(value, dimension), readable(known.expanded(), dimension));
-        let text = format!("`{field}` was measured as {value}, U = {expanded}, which is not significantly below 0: it is taken as 0");
+        let text =
+            format!("`{field}` was measured as {value}, U = {expanded}, which is not significantly below 0: it is taken as 0");
         self.observations.push(text);
         Ok(0.0)
     }
@@ -117,7 +118,7 @@ impl<'record> Inputs<'record> {
         if estimate.value > 0.0 {
             Ok(estimate)
         } else {
-            Err(Stop::BadInput { field, value: estimate.value, wanted: "greater than 0".into() })
+            Err(Stop::BadInput { field, value: estimate.value, dimension, wanted: "greater than 0".into() })
         }
     }
 

@@ -60,6 +60,7 @@ mod inputs;
 mod inspect;
 #[cfg(test)]
 mod matrix_doubts_tests;
+mod motion;
 mod move_to;
 pub mod need;
 #[cfg(test)]
@@ -86,10 +87,13 @@ mod secant_doubts;
 #[cfg(test)]
 mod sequence_tests;
 mod session;
+#[cfg(test)]
+mod settled_hold_tests;
 mod shake;
 mod shake_doubts;
 mod shake_results;
 mod shaking;
+pub mod start;
 mod stepping;
 mod stiffer;
 #[cfg(test)]
@@ -103,6 +107,8 @@ mod storey_summary;
 mod strike;
 mod striking;
 mod study;
+#[cfg(test)]
+mod sweep_lag_tests;
 pub mod tape;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -112,10 +118,13 @@ mod tests;
 mod time_step_tests;
 mod triggers;
 mod unload;
+#[cfg(test)]
+mod unload_tests;
 mod watch;
 mod zero;
 
 pub use damping_sweep::MOST_SAMPLES;
+pub use motion::{Extent, Motion};
 pub use request::{Parting, Request};
 pub use study::MOST_DRAWS;
 
@@ -145,9 +154,14 @@ pub trait Observer {
     /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
-    /// A person stopped the run, or stands at the specimen, and the plan's safe state is to unload: whether that may be. None: nobody
-    /// is asked, and the rig stays held. Asked again while it is [`Inspection::Wait`].
-    fn may_unload(&mut self, _question: &str) -> Option<Inspection> {
+    /// A real rig is about to move for the first time: whether a person releases it for this motion. `note` is the record's word for
+    /// it. Asked again while it is [`Inspection::Wait`].
+    fn release(&mut self, note: &str, _motion: &Motion) -> Inspection {
+        self.inspect(note)
+    }
+    /// The run has ended early, and the rig holds: whether it may take the load off. `declared`: the plan's safe state is to unload.
+    /// None: nobody wants it, and the rig stays held. Asked again while it is [`Inspection::Wait`].
+    fn may_unload(&mut self, _question: &str, _motion: &Motion, _declared: bool) -> Option<Inspection> {
         None
     }
     /// What a person wants between two steps. Asked until it is [`Next::GoOn`].

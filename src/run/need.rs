@@ -161,7 +161,10 @@ impl Reckoner<'_> {
     fn ramp(&self, ramp: &StiffnessRamp) -> Counts {
         let once = rounded(ramp.displacements.len() as u64) * if ramp.return_path { 2.0 } else { 1.0 };
         let readings = once * (1.0 + f64::from(ramp.samples.max(1))) + 1.0;
-        Counts { targets: once + self.way, readings, steps: once, ways: 0.0 }.times(f64::from(ramp.repeats))
+        let all = Counts { targets: once + self.way, readings, steps: once, ways: 0.0 }.times(f64::from(ramp.repeats));
+        // Those of watched pauses, and as long as one what the first of each says of the move before it.
+        let watched = ramp.relaxation.map_or(0.0, |watched| once * (1.0 + f64::from(watched.readings)));
+        all.plus(Counts { readings: watched, ..Counts::default() })
     }
 
     fn sweep(&self, sweep: &DampingSweep) -> Option<Counts> {

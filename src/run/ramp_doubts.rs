@@ -9,6 +9,7 @@ use super::stiffness_ramp::{Point, point, secant};
 use super::study::{draws_of, give};
 use crate::formula::{ProcedureId, ResultValue};
 use crate::mechanics::identification::loop_energy;
+use crate::mechanics::noisy_largest::NoisyLargest;
 use crate::mechanics::recorded_path::Noise;
 use crate::plan::{Plan, StiffnessRamp};
 use crate::record::{NamedResult, RampStep};
@@ -31,14 +32,15 @@ pub(super) struct Readings {
 }
 
 impl Readings {
-    /// In the order of [`DIRECT`]; None of what there is not.
-    pub(super) fn direct(&self, plan: &StiffnessRamp) -> [Option<f64>; DIRECT.len()] {
+    /// In the order of [`DIRECT`]; None of what there is not. `noise` is that of one reading of the cell, N.
+    pub(super) fn direct(&self, plan: &StiffnessRamp, noise: f64) -> [Option<f64>; DIRECT.len()] {
         let Self { starts, steps } = self;
         let targets = plan.displacements.len();
         let a_repeat = if plan.return_path { 2 * targets } else { targets };
         let last = steps.iter().rposition(|step| !step.returning);
         let before = last.filter(|last| last % a_repeat != 0).map(|last| point(&steps[last - 1]));
         let tangent = before.zip(last).and_then(|(before, last)| secant(before, point(&steps[last])));
+        let sizes = steps.iter().map(|step| step.restoring_force.abs());
         let first_secant = starts.first().zip(steps.first()).and_then(|(start, step)| secant(*start, point(step)));
         let whole = steps.chunks_exact(a_repeat.max(1)).zip(starts).filter(|_| plan.return_path);
         let loops: Vec<f64> = whole
@@ -49,7 +51,7 @@ impl Readings {
             .collect();
         [
             first_secant,
-            largest(steps.iter().map(|step| step.restoring_force)),
+            NoisyLargest::of(noise / f64::from(plan.samples.max(1)).sqrt(), sizes).value(),
             largest(steps.iter().map(|step| step.displacement)),
             (!loops.is_empty()).then(|| mean(loops.iter().copied())),
             (!steps.is_empty()).then(|| mean(steps.iter().map(|step| step.relaxation))),
@@ -100,8 +102,8 @@ pub(super) fn propagate(
 ) {
     let calibration = &whole.rig.calibration_of(0);
     let (force, zero, displacement) = (calibration.force_uncertainty, calibration.zero(), calibration.displacement_uncertainty);
-    let values = |readings: &Readings| readings.direct(plan).map(|value| value.unwrap_or(f64::NAN));
-    let nominal = values(readings);
+    let values = |readings: &Readings, noise| readings.direct(plan, noise).map(|value| value.unwrap_or(f64::NAN));
+    let nominal = values(readings, declared.force);
     let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); DIRECT.len()];
     let sources = [
         (Source::ForceScale(0), force, [force, 0.0, 0.0]),
@@ -109,8 +111,8 @@ pub(super) fn propagate(
         (Source::ForceZero(0), zero, [0.0, zero, 0.0]),
     ];
     for (source, _, [force, zero, displacement]) in sources.into_iter().filter(|(_, uncertainty, _)| *uncertainty > 0.0) {
-        let up = values(&readings.by_another(1.0 + force, zero, 1.0 + displacement));
-        let down = values(&readings.by_another(1.0 - force, -zero, 1.0 - displacement));
+        let up = values(&readings.by_another(1.0 + force, zero, 1.0 + displacement), declared.force);
+        let down = values(&readings.by_another(1.0 - force, -zero, 1.0 - displacement), declared.force);
         for (parts, (up, down)) in contributions.iter_mut().zip(up.into_iter().zip(down)) {
             parts.push(Contribution::new(source, 0.5 * (up - down)));
         }
@@ -123,7 +125,7 @@ pub(super) fn propagate(
     if alone.0 > 0.0 || alone.1 > 0.0 {
         let draws = draws_of(readings.steps.len() as u64);
         for draw in 0..draws {
-            let found = values(&readings.erring(draw, alone, averaged));
+            let found = values(&readings.erring(draw, alone, averaged), quanta.noise);
             for ((parts, found), nominal) in contributions.iter_mut().zip(found).zip(nominal) {
                 let amount = (found - nominal) / f64::from(draws).sqrt();
                 parts.push(Contribution::new(Source::Readings { procedure, draw }, amount));
@@ -207,6 +209,25 @@ mod tests {
         }
         // Nothing was rounded of the displacements, and nothing calibrated.
         assert_eq!(number(&record, 0, "max_displacement").1, None);
+    }
+
+    /// Sixty readings of a force that stays: the largest of them is 2.3σ too large, and of sixty runs U would hold two.
+    #[test]
+    fn the_largest_of_many_noisy_readings_is_that_of_the_force() {
+        let (noise, mut sum, mut held) = (4.0, 0.0, 0);
+        for seed in 1..=60 {
+            let displacements = (1..=60).map(|index| Constant(5e-4 * f64::from(index))).collect();
+            let mut plan =
+                elastic_plan(STIFFNESS, vec![ProcedureKind::StiffnessRamp(StiffnessRamp { displacements, ..ramp(1.0) })]);
+            plan.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 9e4, yield_force: 420.0, hardening: 0.0 });
+            plan.rig.link = Link::Virtual(VirtualLink { noise, seed, ..VirtualLink::default() });
+            let (value, u) = number(&run_unwatched(&plan), 0, "max_force");
+            let error = value.unwrap() - 420.0;
+            sum += error / 60.0;
+            held += u32::from(error.abs() <= 2.0 * u.unwrap());
+        }
+        assert!(sum.abs() < 3.0 * noise / 60.0_f64.sqrt(), "{sum} N off on the average");
+        assert!(held >= 53, "{held} of 60");
     }
 
     /// A line through a yielding ramp is the stiffness of nothing, and says so; through a straight one, and one that noise bends, not.

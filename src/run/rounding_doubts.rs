@@ -175,7 +175,9 @@ impl Doubts {
         let faster = along(&speeds);
         force.open.push(both(&|pair| faster[pair], -1.0));
         displacement.noise = f64::INFINITY;
-        let of_displacement = if real { (sweep.stiffness.unwrap_or(0.0) * metres).powi(2) } else { 0.0 };
+        // Behind by a lag, it reads other places out than back.
+        let apart = real || sweep.together.effects != [0.0; 2];
+        let of_displacement = if apart { (sweep.together.stiffness * metres).powi(2) } else { 0.0 };
         plus(
             times(newtons * newtons, force.covariance(&slope, &intercept)),
             times(of_displacement, displacement.covariance(&slope, &intercept)),

@@ -4,10 +4,10 @@
 use super::escalate::most_moves;
 use super::stop::Stop;
 use super::study::Unknown;
-use super::{AxisReport, Inspection, Next, Observer, StepReport};
+use super::{AxisReport, Inspection, Motion, Next, Observer, StepReport};
 use crate::plan::{BlowOn, Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
-use crate::rig::{Guard, Reading, Rig, RigFault, Tally};
+use crate::rig::{Guard, Identity, Reading, Rig, RigFault, Tally};
 
 /// How long a real rig stays where it is between two looks at whether the person has decided, s of rig time: it takes a
 /// sign of life at least this often.
@@ -16,6 +16,8 @@ const BREATH: f64 = 0.01;
 pub(super) struct Session<'run> {
     pub(super) guard: Guard<'run>,
     pub(super) observer: &'run mut dyn Observer,
+    /// Who the rig says it is.
+    identity: Identity,
     events: Vec<Event>,
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
@@ -24,6 +26,8 @@ pub(super) struct Session<'run> {
     remarks: Vec<(String, usize)>,
     /// Where the rig was found, m.
     pub(super) home: Vec<f64>,
+    /// [`Plan::unloads_at_once`]
+    pub(super) unloads_at_once: bool,
     /// A person was asked to look, or has paused the run: somebody may stand at the specimen.
     pub(super) attended: bool,
     /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
@@ -40,7 +44,9 @@ impl<'run> Session<'run> {
     ) -> Result<Self, Box<(Event, Stop)>> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
-        let reckoned = rig.identity().simulated && plan.rig.link.as_real().is_none();
+        let identity = rig.identity();
+        let reckoned = identity.simulated && plan.rig.link.as_real().is_none();
+        let datum = rig.datum().is_some();
         let wanted = plan.degrees_of_freedom();
         let guard = if axes == wanted {
             Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
@@ -56,17 +62,23 @@ impl<'run> Session<'run> {
                 Ok(Self {
                     guard,
                     observer,
+                    identity,
                     events: Vec::new(),
                     procedure: None,
                     step: None,
                     remarks: Vec::new(),
                     home,
+                    unloads_at_once: plan.unloads_at_once,
                     attended: false,
                     reckoned,
                 })
             }
             Err(fault) => {
-                let stop = Stop::Rig(fault);
+                // Records of older versions have the fault alone.
+                let stop = match fault {
+                    RigFault::LimitBreached { .. } if datum => Stop::AtRest(fault),
+                    fault => Stop::Rig(fault),
+                };
                 let event = Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() };
                 observer.event(&event);
                 Err(Box::new((event, stop)))
@@ -154,10 +166,22 @@ impl<'run> Session<'run> {
 
     /// Lets a person look at the specimen; what was said, and by whom, is an event.
     pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+        self.ask(note, &mut |observer| observer.inspect(note))
+    }
+
+    /// Asks for the release of a rig that has not moved yet. Whoever does not give it stops nothing: nothing was begun.
+    pub(super) fn release(&mut self, note: &str, motion: &Motion) -> Result<(), Stop> {
+        self.ask(note, &mut |observer| observer.release(note, motion)).map_err(|stop| match stop {
+            Stop::Person { reason } => Stop::NotReleased { reason },
+            stop => stop,
+        })
+    }
+
+    fn ask(&mut self, note: &str, ask: &mut dyn FnMut(&mut dyn Observer) -> Inspection) -> Result<(), Stop> {
         self.attended = true;
         self.look_at_a_hold()?;
         loop {
-            match self.observer.inspect(note) {
+            match ask(self.observer) {
                 Inspection::GoOn { note: said, by } => {
                     let said = said.map_or_else(String::new, |said| format!(": {said}"));
                     self.event(EventKind::Inspection, format!("{note}{said}{}", signed(by.as_deref())));
@@ -184,6 +208,11 @@ impl<'run> Session<'run> {
             self.guard.read()?;
         }
         Ok(())
+    }
+
+    /// Who the rig says it is.
+    pub(super) fn identity(&self) -> Identity {
+        self.identity.clone()
     }
 
     /// Whether nothing real is moved, so that what the plan says of the specimen is what the specimen does.
@@ -277,10 +306,15 @@ impl<'run> Session<'run> {
     pub(super) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
         match self.guard.read() {
             Ok(reading) => Ok((reading, None)),
-            Err(fault) => match self.guard.take_broken() {
-                Some(reading) => Ok((reading, Some(fault.into()))),
-                None => Err(fault.into()),
-            },
+            Err(fault) => self.kept(fault).map(|(reading, stop)| (reading, Some(stop))),
+        }
+    }
+
+    /// The reading that broke a limit, with the end that it makes; the end alone of a fault that is none of a reading's.
+    pub(super) fn kept(&mut self, fault: RigFault) -> Result<(Reading, Stop), Stop> {
+        match self.guard.take_broken() {
+            Some(reading) => Ok((reading, fault.into())),
+            None => Err(fault.into()),
         }
     }
 
@@ -300,6 +334,13 @@ impl<'run> Session<'run> {
 
 pub(super) fn signed(by: Option<&str>) -> String {
     by.map_or_else(String::new, |name| format!(" ({name})"))
+}
+
+/// Standard deviation of the base shear as the cells of all floors read it, N.
+pub(super) fn of_base_shear(session: &Session<'_>) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+    let floors = session.guard.commanded().len() as f64;
+    session.guard.declared_noise().force * floors.sqrt()
 }
 
 /// Displacement (m) and force (N) of the one degree of freedom.

@@ -7,7 +7,7 @@ use super::followed::Followed;
 use super::frame_doubts::FrameDoubts;
 use super::impact::unbalanced;
 use super::inputs::Inputs;
-use super::session::Session;
+use super::session::{Session, of_base_shear};
 use super::shake_doubts;
 use super::shake_results::{ShakeSummary, results};
 use super::shaking::Shaking;
@@ -25,7 +25,14 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
     let setting = frame.map_or_else(
-        || Err(Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }),
+        || {
+            Err(Stop::BadInput {
+                field: "specimen",
+                value: 0.0,
+                dimension: Dimension::NUMBER,
+                wanted: "a frame of storeys".into(),
+            })
+        },
         |frame| Setting::evaluate(plan, frame, ground, inputs, session),
     );
     let setting = match setting {
@@ -49,7 +56,7 @@ pub(super) fn perform(plan: &Shake, whole: &Plan, inputs: &mut Inputs<'_>, sessi
     let mut shaking = Shaking {
         setting: &setting,
         history,
-        summary: ShakeSummary::new(setting.frame.properties.matrices.order()),
+        summary: ShakeSummary::new(setting.frame.properties.matrices.order(), of_base_shear(session)),
         followed: Followed::default(),
     };
     let mut stop = shaking.run(plan, ground, session).err();
@@ -101,7 +108,9 @@ impl Setting {
 pub(super) fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
     let known = |ratio: f64| match ratio {
         ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
-        value => Err(Stop::BadInput { field: "damping_ratio", value, wanted: "between 0 and 1".into() }),
+        value => {
+            Err(Stop::BadInput { field: "damping_ratio", value, dimension: Dimension::NUMBER, wanted: "between 0 and 1".into() })
+        }
     };
     Ok(match plan {
         ShakeDamping::Rayleigh(ratio) => {

@@ -5,6 +5,7 @@ use super::followed::Followed;
 use super::results::result;
 use crate::formula::ResultValue;
 use crate::mechanics::frame::{FrameState, Modes, drifts};
+use crate::mechanics::noisy_largest::NoisyLargest;
 use crate::quantity::Dimension;
 use crate::record::NamedResult;
 
@@ -13,7 +14,7 @@ pub(super) struct ShakeSummary {
     max_displacement: Vec<f64>,
     max_drift: Vec<f64>,
     drift: Vec<f64>,
-    max_base_shear: f64,
+    base_shear: NoisyLargest,
     /// J, of the input or of what it became.
     largest_energy: f64,
     energy_error: f64,
@@ -21,13 +22,14 @@ pub(super) struct ShakeSummary {
 }
 
 impl ShakeSummary {
-    pub(super) fn new(floors: usize) -> Self {
+    /// `noise`: standard deviation of the base shear as it is read, N.
+    pub(super) fn new(floors: usize, noise: f64) -> Self {
         let nothing = vec![0.0; floors];
         Self {
             max_displacement: nothing.clone(),
             max_drift: nothing.clone(),
             drift: nothing,
-            max_base_shear: 0.0,
+            base_shear: NoisyLargest::new(noise),
             largest_energy: 0.0,
             energy_error: 0.0,
             steps: 0,
@@ -44,7 +46,7 @@ impl ShakeSummary {
         };
         widen(&mut self.max_displacement, &state.displacement);
         widen(&mut self.max_drift, &self.drift);
-        self.max_base_shear = self.max_base_shear.max(state.restoring_force.iter().sum::<f64>().abs());
+        self.base_shear.push(state.restoring_force.iter().sum::<f64>().abs());
         let e = &state.energies;
         self.largest_energy = self.largest_energy.max(e.input.abs()).max(e.kinetic);
         self.energy_error = if e.error == 0.0 { 0.0 } else { e.error / self.largest_energy };
@@ -75,7 +77,7 @@ pub(super) fn results(modes: Option<&Modes>, summary: Option<&ShakeSummary>, fol
         list("max_drift", Dimension::LENGTH, summary.map(|summary| &summary.max_drift)),
         list("final_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
         list("periods", Dimension::TIME, modes.map(|modes| &modes.periods)),
-        result("max_base_shear", Dimension::FORCE, summary.map(|summary| summary.max_base_shear)),
+        result("max_base_shear", Dimension::FORCE, summary.and_then(|summary| summary.base_shear.value())),
         result("energy_error", Dimension::NUMBER, summary.map(|summary| summary.energy_error)),
         result("steps", Dimension::NUMBER, steps),
     ];

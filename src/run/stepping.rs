@@ -34,6 +34,7 @@ pub(super) fn properties(frame: &Frame, plan: &ShakeDamping, inputs: &mut Inputs
     FrameProperties::of(frame, &damping).map_err(|reason| Stop::BadInput {
         field: "damping_ratio",
         value,
+        dimension: Dimension::NUMBER,
         wanted: format!("other: {reason}").into(),
     })
 }
@@ -67,7 +68,7 @@ pub(super) fn holds_a_step(time_step: f64, duration: f64) -> Result<(), Stop> {
         return Ok(());
     }
     let wanted = format!("no longer than the run, {}", stated(duration, Dimension::TIME));
-    Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
+    Err(Stop::BadInput { field: "time_step", value: time_step, dimension: Dimension::TIME, wanted: wanted.into() })
 }
 
 /// Whether a plan may take a time step, `limit` the longest that is stable (s).
@@ -76,7 +77,7 @@ pub(super) fn stable(plan: &Stepping, time_step: f64, limit: f64) -> Result<(), 
         return Ok(());
     }
     let wanted = format!("at most {}, the stability limit of `{}`", stated(limit, Dimension::TIME), plan.integrator.name());
-    Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() })
+    Err(Stop::BadInput { field: "time_step", value: time_step, dimension: Dimension::TIME, wanted: wanted.into() })
 }
 
 impl FrameSteps {
@@ -94,7 +95,12 @@ impl FrameSteps {
         let floors = properties.matrices.order() as f64;
         if steps_in(duration, time_step) * floors > MOST_STEPS {
             let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
-            return Err(Stop::BadInput { field: "time_step", value: time_step, wanted: wanted.into() });
+            return Err(Stop::BadInput {
+                field: "time_step",
+                value: time_step,
+                dimension: Dimension::TIME,
+                wanted: wanted.into(),
+            });
         }
         let tangents = match storeys_of(&properties.matrices.stiffness) {
             Some(_) => Tangents::Storeys { largest_ratio: max_tangent_ratio },

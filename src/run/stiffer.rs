@@ -37,6 +37,9 @@ pub(super) struct Judged {
     pub moving: bool,
 }
 
+/// Of a reading: what is lost of it to rounding, in the numerics as on the way to them.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 #[derive(Debug)]
 pub(super) struct Stiffer {
     judged: Judged,
@@ -100,8 +103,12 @@ impl Stiffer {
         if measured - operator_stiffness <= SURE * spread + rounding {
             return None;
         }
-        self.said = true;
         let limit = limit(measured);
+        // One that takes it up with damping of its own is stable all the same.
+        if limit == f64::INFINITY {
+            return None;
+        }
+        self.said = true;
         let so = if time_step > limit { "which it is beyond" } else { "which it is within" };
         Some(format!(
             "{}: {what} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
@@ -130,7 +137,10 @@ impl Stiffer {
         let tells = if alternates { way * moved > 0.0 && way.abs() > GROWN * moved.abs() } else { !turned };
         let measured = (reading.1 - from.1) / way;
         (self.before, self.last, self.moved, self.turned) = (self.last, reading, moved, turned && !first);
-        let spread = std::f64::consts::SQRT_2 * noise.0.hypot(measured * noise.1) / way.abs();
+        // A reading is no better than its last digits.
+        let rounded = |noise: f64, read: f64, other: f64| noise.max(ROUNDING * read.abs().max(other.abs()));
+        let force = rounded(noise.0, reading.1, from.1);
+        let spread = std::f64::consts::SQRT_2 * force.hypot(measured * rounded(noise.1, reading.0, from.0)) / way.abs();
         (tells && measured.is_finite() && way.abs() > SURE * noise.1).then_some((measured, spread))
     }
 }
@@ -241,6 +251,19 @@ mod tests {
             [(splitting, 1.3, 300.0), (Integrator::Explicit, 1.3, 790.0), (splitting, 1.01, 900.0), (splitting, 0.9, 900.0)]
         {
             assert_eq!(of(integrator, growth, stiffness), Vec::<String>::new(), "{integrator:?}, {growth}, {stiffness} N/m");
+        }
+    }
+
+    /// Beside friction of 10 kN an increment of 0.1 µm has rounding of 10⁻¹² N/0.1 µm = 10⁻⁵ N/m in its secant, more than 10⁻⁹ of `K_I`.
+    #[test]
+    fn rounding_is_no_stiffness() {
+        for from in [0.1, 0.3, 1.7] {
+            let friction = 1e4;
+            let read = |place: f64| (place, 300.0 * place + friction);
+            let mut stiffer = Stiffer::new(judged((0.0, 0.0)), read(from));
+            for step in 1..2000 {
+                assert_eq!(stiffer.judge(read(from + 1e-7 * f64::from(step)), "the specimen"), None, "step {step} from {from} m");
+            }
         }
     }
 

@@ -34,7 +34,7 @@ pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_
         session.event(EventKind::Remark, text);
     }
     let (before, readings) = (ramp.before, Readings { starts: ramp.starts, steps: ramp.steps });
-    let mut results = results(readings.direct(plan), &fits);
+    let mut results = results(readings.direct(plan, session.guard.declared_noise().force), &fits);
     ramp_doubts::propagate(&readings, plan, (whole, session.guard.declared_noise()), inputs.procedure(), &mut results);
     results.extend(told.results);
     let Fits { line: fit, bilinear, multilinear, .. } = fits;
@@ -110,7 +110,19 @@ impl Ramp {
         session: &mut Session<'_>,
     ) -> Result<Point, Stop> {
         session.guard.move_to(&[command], speed)?;
-        let (settled, mut broken) = session.read_kept()?;
+        let (settled, moved, mut broken) = match asked {
+            Some(_) => match session.guard.read_moved() {
+                Ok((settled, moved)) => (settled, moved, None),
+                Err(fault) => {
+                    let (settled, stop) = session.kept(fault)?;
+                    (settled, None, Some(stop))
+                }
+            },
+            None => {
+                let (settled, stop) = session.read_kept()?;
+                (settled, None, stop)
+            }
+        };
         let (_, settled_force) = first(&settled);
         let mut readings = Vec::new();
         let watched = match asked {
@@ -133,7 +145,8 @@ impl Ramp {
         let step = self.steps.len() as u64 + 1;
         let wall_time = session.guard.time();
         if let Some((readings, last)) = watched {
-            self.holds.push(Hold { step, displacement, moved_for: settled.time - self.last_reading, readings });
+            let [waited_for, moved_for, settled_for] = hold::parts(self.last_reading, moved, settled.time);
+            self.holds.push(Hold { step, displacement, waited_for, moved_for, settled_for, readings });
             self.last_reading = last;
         }
         self.steps.push(RampStep {

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 
 use crate::formula::FormulaError;
+use crate::quantity::Dimension;
+use crate::quantity::display::stated;
 use crate::record::{EventKind, Outcome};
 use crate::rig::RigFault;
 
@@ -10,8 +12,14 @@ use crate::rig::RigFault;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Stop {
     Rig(RigFault),
+    /// A reading outside its limit before anything was told to move.
+    AtRest(RigFault),
     /// A person said so, or asked the program to end.
     Person {
+        reason: String,
+    },
+    /// Nobody released the rig: nothing has moved.
+    NotReleased {
         reason: String,
     },
     /// A real rig did not prove itself before the first step.
@@ -27,21 +35,22 @@ pub(super) enum Stop {
     BadInput {
         field: &'static str,
         value: f64,
+        dimension: Dimension,
         wanted: Cow<'static, str>,
     },
 }
 
 impl Stop {
-    /// Limits and people abort a run; a rig that fails, or a procedure that cannot begin, is a fault.
+    /// Limits and people abort a run; an input that cannot be used blocks it; a rig that fails is a fault.
     pub(super) fn outcome(&self) -> Outcome {
         let reason = self.to_string();
         match self {
             Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
+            | Self::AtRest(_)
             | Self::Person { .. } => Outcome::Aborted { reason },
-            Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
-            | Self::Gate { .. }
-            | Self::NoInput { .. }
-            | Self::BadInput { .. } => Outcome::Faulted { reason },
+            Self::NotReleased { .. } => Outcome::NotReleased { reason },
+            Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Blocked { reason },
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::Gate { .. } => Outcome::Faulted { reason },
         }
     }
 
@@ -51,18 +60,21 @@ impl Stop {
             self,
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
                 | Self::Gate { .. }
+                | Self::NotReleased { .. }
         )
     }
 
     /// Whether it was a person who ended the run.
     pub(super) const fn is_a_persons(&self) -> bool {
-        matches!(self, Self::Person { .. } | Self::Rig(RigFault::Interrupted))
+        matches!(self, Self::Person { .. } | Self::NotReleased { .. } | Self::Rig(RigFault::Interrupted))
     }
 
     pub(super) const fn event_kind(&self) -> EventKind {
         match self {
-            Self::Rig(RigFault::LimitBreached { .. }) => EventKind::LimitBreach,
-            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } => EventKind::Hold,
+            Self::Rig(RigFault::LimitBreached { .. }) | Self::AtRest(_) => EventKind::LimitBreach,
+            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } | Self::NotReleased { .. } => {
+                EventKind::Hold
+            }
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
             | Self::NoInput { .. }
@@ -75,11 +87,16 @@ impl std::fmt::Display for Stop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Rig(fault) => write!(f, "{fault}"),
-            Self::Person { reason } => f.write_str(reason),
+            Self::AtRest(fault) => write!(
+                f,
+                "{fault}; nothing has moved: look for a wrong unit, scale or word order, for load on the specimen, or for a zero \
+                 that lies elsewhere (`datum`)"
+            ),
+            Self::Person { reason } | Self::NotReleased { reason } => f.write_str(reason),
             Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
-            Self::BadInput { field, value, wanted } => {
-                write!(f, "`{field}` came out as {value} in SI units, but must be {wanted}")
+            Self::BadInput { field, value, dimension, wanted } => {
+                write!(f, "`{field}` came out as {}, but must be {wanted}", stated(*value, *dimension))
             }
         }
     }

@@ -70,7 +70,12 @@ pub(super) fn propagate(
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))
     };
     let rules = path.rules();
-    let study = doubts.study(&sources, doubts.effort(history.floors.len(), rules.len(), &sources), numbers_told(&layout, results), job)?;
+    let study = doubts.study(
+        &sources,
+        doubts.effort(history.floors.len(), rules.len(), &sources),
+        numbers_told(&layout, results),
+        job,
+    )?;
     let far = |found: &BlowOutcome| farthest(found.floors.between.max_displacement.iter().copied());
     let runs = Bounded::new(far(&found), numbers(&as_it_was, &found).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {

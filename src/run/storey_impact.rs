@@ -7,7 +7,7 @@ use super::followed::Followed;
 use super::frame_doubts::FrameDoubts;
 use super::impact::{law, remark};
 use super::inputs::Inputs;
-use super::session::Session;
+use super::session::{Session, of_base_shear};
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
 use super::storey_doubts;
@@ -46,7 +46,7 @@ pub(super) fn perform(plan: &StoreyImpact, whole: &Plan, inputs: &mut Inputs<'_>
 }
 
 pub(super) fn no_frame() -> Stop {
-    Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }
+    Stop::BadInput { field: "specimen", value: 0.0, dimension: Dimension::NUMBER, wanted: "a frame of storeys".into() }
 }
 
 /// One blow, as far as it went.
@@ -65,7 +65,7 @@ pub(super) fn blow(
     session: &mut Session<'_>,
 ) -> Blown {
     let history = history_of(plan, Some(setting));
-    let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order());
+    let summary = StoreySummary::new(&setting.body, setting.frame.properties.matrices.order(), of_base_shear(session));
     let mut striking = Striking { setting, before, history, summary, followed: Followed::default() };
     let mut stop = striking.run(plan, session).err();
     let Striking { history, summary, followed, .. } = striking;

@@ -9,6 +9,7 @@ use crate::mechanics::contact::StepState;
 use crate::mechanics::frame::{FrameState, drifts, shears};
 pub(super) use crate::mechanics::frame_rerun::of_floor;
 use crate::mechanics::impact::{ImpactInput, ImpactState};
+use crate::mechanics::noisy_largest::NoisyLargest;
 use crate::mechanics::summary::{ImpactSummary, SummaryBuilder};
 use crate::quantity::Dimension;
 use crate::record::{NamedResult, StoreyImpactHistory};
@@ -23,15 +24,15 @@ pub(super) struct StoreySummary {
     drift: Vec<f64>,
     shear: Vec<f64>,
     storey_energy: Vec<f64>,
-    max_base_shear: f64,
+    base_shear: NoisyLargest,
     first_blow: u64,
     first_is_over: bool,
     striker_velocity: f64,
 }
 
 impl StoreySummary {
-    /// `body` is the struck floor with the striker.
-    pub(super) fn new(body: &ImpactInput, floors: usize) -> Self {
+    /// `body` is the struck floor with the striker; `noise` the standard deviation of the base shear as it is read, N.
+    pub(super) fn new(body: &ImpactInput, floors: usize, noise: f64) -> Self {
         let nothing = || vec![0.0; floors];
         Self {
             blow: SummaryBuilder::new(body),
@@ -41,7 +42,7 @@ impl StoreySummary {
             drift: nothing(),
             shear: nothing(),
             storey_energy: nothing(),
-            max_base_shear: 0.0,
+            base_shear: NoisyLargest::new(noise),
             first_blow: 0,
             first_is_over: false,
             striker_velocity: body.striker_velocity,
@@ -69,7 +70,7 @@ impl StoreySummary {
         };
         widen(&mut self.floor_displacement, &state.displacement);
         widen(&mut self.max_drift, &self.drift);
-        self.max_base_shear = self.max_base_shear.max(state.restoring_force.iter().sum::<f64>().abs());
+        self.base_shear.push(state.restoring_force.iter().sum::<f64>().abs());
         match floor.state {
             StepState::Free => self.first_is_over |= self.first_blow > 0,
             _ if !self.first_is_over => self.first_blow += 1,
@@ -111,7 +112,7 @@ pub(super) fn results(summary: Option<&StoreySummary>, followed: &Followed, hist
         list("max_drift", Dimension::LENGTH, summary.map(|summary| &summary.max_drift)),
         list("final_drift", Dimension::LENGTH, summary.map(|summary| &summary.drift)),
         list("storey_energy", Dimension::ENERGY, summary.map(|summary| &summary.storey_energy)),
-        result("max_base_shear", Dimension::FORCE, summary.map(|summary| summary.max_base_shear)),
+        result("max_base_shear", Dimension::FORCE, summary.and_then(|summary| summary.base_shear.value())),
         list("periods", Dimension::TIME, history.modes.as_ref().map(|modes| &modes.periods)),
     ]);
     results.extend(followed.of_each());

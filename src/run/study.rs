@@ -183,9 +183,7 @@ impl<J: Sync> Study<J> {
                 let both = |[up, down]: [Option<f64>; 2]| one_sided(*nominal, [up, down]);
                 let half = match halves {
                     // To the sides that the whole move went to.
-                    [half_up, half_down] => {
-                        Some(both([up.as_ref().and(at(half_up)), down.as_ref().and(at(half_down))]))
-                    }
+                    [half_up, half_down] => Some(both([up.as_ref().and(at(half_up)), down.as_ref().and(at(half_down))])),
                     _ => None,
                 };
                 let (amount, smooth) = effect(*nominal, both([at(up), at(down)]), half);

@@ -8,7 +8,7 @@ use crate::plan::{
 };
 use crate::record::{NamedResult, Record};
 use crate::rig::virtual_rig;
-use crate::run::tape::{Header, HeaderFile};
+use crate::run::tape::{Header, HeaderFile, RULES};
 use crate::uncertainty::Source;
 
 /// Nothing but an ideal virtual rig.
@@ -35,6 +35,7 @@ pub(crate) fn empty_plan() -> Plan {
         report: Report { title: None, figures: Vec::new(), formats: Vec::new(), sign: Vec::new() },
         golden: crate::plan::Golden::default(),
         rehearses: None,
+        unloads_at_once: false,
         files: Vec::new(),
         settings: Vec::new(),
     }
@@ -160,6 +161,7 @@ pub(crate) fn header() -> Header {
         run_id: "0123456789abcdef".to_owned(),
         psd: "0".to_owned(),
         build: "0".to_owned(),
+        rules: RULES,
         toolchain: String::new(),
         files: vec![HeaderFile { name: "a.psd".to_owned(), sha256: String::new() }],
         settings: Vec::new(),

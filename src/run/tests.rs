@@ -236,7 +236,7 @@ fn an_input_that_does_not_exist_is_a_fault_of_the_run() {
     let two = StiffnessRamp { displacements: vec![constant(1e-4)], ..ramp(1e-4) };
     let plan = elastic_plan(3e5, vec![ProcedureKind::StiffnessRamp(two), ProcedureKind::DampingSweep(sweep(&[1e-3]))]);
     let record = run_unwatched(&plan);
-    assert!(matches!(&record.outcome, Outcome::Faulted { reason } if reason.contains("`stiffness`")), "{:?}", record.outcome);
+    assert!(matches!(&record.outcome, Outcome::Blocked { reason } if reason.contains("`stiffness`")), "{:?}", record.outcome);
     assert_eq!(record.procedures.len(), 2);
     assert_eq!(number(&record, 1, "damping"), (None, None));
     assert_eq!(record.events.last().unwrap().kind, EventKind::Fault);

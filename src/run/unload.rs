@@ -1,6 +1,6 @@
 //! `unload`: takes the load off, of one degree of freedom or of all floors of a frame together. In: the stiffness with which
-//! the forces are expected to fall. Out: the way there, and where the specimen rests. Each target is where the forces would
-//! be 0 along the stiffness that the last move showed (`mechanics/frame/unloading.rs`); the guard holds every one against the limits.
+//! the forces are expected to fall. Out: the way there, and where the specimen rests. Each target is on this side of where the forces
+//! are 0, by the slopes that the moves before it showed (`mechanics/frame/unloading_path.rs`); the guard holds every one against the limits.
 
 use super::Performed;
 use super::inputs::Inputs;
@@ -9,7 +9,7 @@ use super::results::{measured, result};
 use super::session::Session;
 use super::stop::Stop;
 use crate::formula::{Formula, ResultValue};
-use crate::mechanics::frame::{Damping, Loaded, Unloading};
+use crate::mechanics::frame::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::mechanics::frame_properties::FrameProperties;
 use crate::plan::{Frame, FrameUnload, Plan, Unload};
 use crate::quantity::Dimension;
@@ -18,7 +18,7 @@ use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep}
 use crate::rig::Reading;
 use crate::uncertainty::{Contribution, combined};
 
-/// Targets on the way, at most: a specimen that bends as it is expected to needs one or two.
+/// Targets on the way, at most: a specimen that bends as it is expected to needs three.
 pub(super) const MOST_TARGETS: u64 = 50;
 /// Of the force at the start: as near to none as is asked for where nothing else bounds it.
 const SMALL: f64 = 1e-3;
@@ -65,12 +65,13 @@ pub(super) fn perform_frame(plan: &FrameUnload, whole: &Plan, inputs: &mut Input
 }
 
 fn no_frame() -> Stop {
-    Stop::BadInput { field: "specimen", value: 0.0, wanted: "a frame of storeys".into() }
+    Stop::BadInput { field: "specimen", value: 0.0, dimension: Dimension::NUMBER, wanted: "a frame of storeys".into() }
 }
 
 /// How the forces of a frame are expected to fall.
 pub(super) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
-    let unfit = |reason: String| Stop::BadInput { field: "specimen", value: 0.0, wanted: reason.into() };
+    let unfit =
+        |reason: String| Stop::BadInput { field: "specimen", value: 0.0, dimension: Dimension::NUMBER, wanted: reason.into() };
     let properties = FrameProperties::of(frame, &Damping::None);
     let properties = properties.map_err(|reason| unfit(format!("a frame that can be unloaded: {reason}")))?;
     Unloading::of(&properties.matrices.stiffness).map_err(|reason| unfit(format!("a stiffness that resists: {reason}")))
@@ -130,7 +131,7 @@ fn asked(
 
 /// Takes the load off; `before` steps of the procedure are done already. The first of `steps` is where it began.
 pub(super) fn to_rest(
-    mut unloading: Unloading,
+    unloading: Unloading,
     within: Option<f64>,
     speed: Option<f64>,
     before: u64,
@@ -145,24 +146,28 @@ pub(super) fn to_rest(
     let tells = (NOISE * noise.force).max(unloading.felt(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
     let within = within.unwrap_or_else(|| tells.max(SMALL * left).max(f64::MIN_POSITIVE));
+    let mut path = UnloadingPath::new(unloading, (noise.force, noise.resolution), loaded(&at));
+    if session.unloads_at_once {
+        path = path.at_once();
+    }
     for step in before + 1..=before + MOST_TARGETS {
         if left <= within {
             return Ok(rest(at));
         }
-        let way = unloading.way(&at.force);
+        let way = path.way(&at.force);
         let target: Vec<f64> = session.guard.commanded().iter().zip(way).map(|(place, way)| place + way).collect();
         session.go_to_all(&target, speed)?;
         let (reached, broken) = session.read_kept()?;
-        let secants = unloading.learn(loaded(&at), loaded(&reached));
+        let secants = path.learn(loaded(&at), loaded(&reached));
         let wall_time = keep((step, target), &reached, secants, session, steps);
         if let Some(stop) = broken {
             return Err(stop);
         }
         session.measured_all(step, wall_time, &reached)?;
-        let felt = largest(&reached.force);
-        let nearer = felt < left;
-        (at, left) = (reached, felt);
-        if !nearer {
+        let nearer = path.left(&reached.force) < path.left(&at.force);
+        let passed = path.passed(&reached.force);
+        (left, at) = (largest(&reached.force), reached);
+        if !nearer || passed {
             break;
         }
     }

@@ -56,7 +56,7 @@ pub(super) const CYCLE: BlockKind = BlockKind {
         )
         .or_said("both"),
         Field::quantity("about", Dimension::LENGTH, "the middle of the cycles").or(0.0, "mm"),
-        Field::count("points", 1.0, 1e5, "targets between the middle and an amplitude").or(10.0, ""),
+        Field::count("points", 1.0, 1e5, "targets between the middle and an amplitude").or(25.0, ""),
         Field::quantity("pause", Dimension::TIME, "wait at each target before the samples; with `rate` at each end of a way")
             .or(0.0, "s")
             .at_least_zero(),
@@ -93,8 +93,16 @@ pub(super) const CYCLE: BlockKind = BlockKind {
     exports: &[],
     results: &[
         ResultKind::measured("dissipated_energy", Dimension::ENERGY, "work done on the specimen over all cycles, ∫R dX"),
-        ResultKind::measured("max_force", Dimension::FORCE, "largest restoring force"),
-        ResultKind::measured("min_force", Dimension::FORCE, "smallest restoring force: the largest pull"),
+        ResultKind::measured(
+            "max_force",
+            Dimension::FORCE,
+            "largest restoring force, less what noise adds to the largest of many readings",
+        ),
+        ResultKind::measured(
+            "min_force",
+            Dimension::FORCE,
+            "smallest restoring force: the largest pull, less what noise adds to it",
+        ),
         ResultKind::measured(
             "equivalent_damping_ratio",
             Dimension::NUMBER,

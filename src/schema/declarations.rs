@@ -13,7 +13,7 @@ pub(super) const SPECIMEN: BlockKind = BlockKind {
     fields: &[
         Field::quantity("mass", Dimension::MASS, "equivalent mass at the struck section")
             .above_zero()
-            .or_said("density * area * length / 2, or that of a `portal` as it deflects elastically"),
+            .or_said("density * area * length / 2, or that of a `portal` as it deflects elastically; a `beam` says it"),
         Field::quantity("mass_uncertainty", Dimension::MASS, "standard uncertainty of the mass").or(0.0, "kg").at_least_zero(),
         Field::quantity("length", Dimension::LENGTH, "length of the beam").above_zero(),
         Field::quantity("area", Dimension::AREA, "area of the cross-section").above_zero(),
@@ -74,7 +74,7 @@ pub(super) const STRIKER: BlockKind = BlockKind {
             .at_least_zero(),
         Field::quantity("drop_height", Dimension::LENGTH, "height of fall that gives the velocity").above_zero(),
         Field::quantity("arm", Dimension::LENGTH, "length of a pendulum, to its centre of mass").above_zero(),
-        Field::quantity("angle", Dimension::NUMBER, "from which a pendulum is let go, measured from where it hangs")
+        Field::angle("angle", "from which a pendulum is let go, measured from where it hangs")
             .above_zero_up_to(std::f64::consts::PI),
         Field::quantity("gravity", Dimension::ACCELERATION, "acceleration along its way: `1 gn` for a weight that falls")
             .or(0.0, "m/s^2")

@@ -55,12 +55,12 @@ pub(super) const STIFFNESS_RAMP: BlockKind = BlockKind {
                 Variant::with(
                     "standard_linear_solid",
                     WATCHED,
-                    "a spring beside a spring and a dashpot, through all moves and pauses; a move is taken as even",
+                    "a spring beside a spring and a dashpot, through all moves and pauses; a move is taken as even, and the settling after it as held",
                 ),
                 Variant::with(
                     "logarithmic",
                     SLOW_ENOUGH,
-                    "R falls by a ln(1 + t/t₀) of the reached force, through all moves and pauses; a move is taken as even",
+                    "R falls by a ln(1 + t/t₀) of the reached force, through all moves and pauses; a move is taken as even, and the settling after it as held",
                 ),
                 Variant::with(
                     "either",

@@ -125,6 +125,9 @@ fn takes(field: &Field) -> String {
         FieldType::Texts => "a list of texts".to_owned(),
         FieldType::Inner => "one of this list".to_owned(),
         FieldType::Inners => "two or more of this list".to_owned(),
+        FieldType::Quantity(dimension) if field.angle => {
+            format!("an angle with its unit, `deg` or `rad`{}", allowed(field.range, dimension))
+        }
         FieldType::Quantity(dimension) => format!("{}{}", measure(dimension), allowed(field.range, dimension)),
         FieldType::Quantities(dimension) => format!("a list or a range with a step: {}", measure(dimension)),
         FieldType::Bounds { dimension, symmetric } => {

@@ -13,7 +13,11 @@ pub(super) const STIFFNESS_RAMP: &[ResultKind] = &[
     ResultKind::measured("secant_stiffness", Dimension::STIFFNESS, "force over displacement of the first increment"),
     ResultKind::measured("intercept_force", Dimension::FORCE, "force of the fitted line at no displacement"),
     ResultKind::new("r_squared", Dimension::NUMBER, "coefficient of determination of the fit"),
-    ResultKind::measured("max_force", Dimension::FORCE, "largest size of the restoring force"),
+    ResultKind::measured(
+        "max_force",
+        Dimension::FORCE,
+        "largest size of the restoring force, less what noise adds to the largest of many readings",
+    ),
     ResultKind::measured("max_displacement", Dimension::LENGTH, "largest size of the measured displacement"),
     ResultKind::measured("loop_energy", Dimension::ENERGY, "energy of the hysteresis loop, with `return = true`"),
     ResultKind::measured("relaxation", Dimension::FORCE, "mean loss of force during a pause"),
@@ -115,8 +119,12 @@ pub(super) const IMPACT: &[ResultKind] = &[
     ResultKind::measured_list("final_drift", Dimension::LENGTH, "each storey's drift at the last step of the run").of_storey(),
     ResultKind::measured_list("storey_energy", Dimension::ENERGY, "shear of each storey integrated over its drift, over the run")
         .of_storey(),
-    ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey")
-        .of_storey(),
+    ResultKind::measured(
+        "max_base_shear",
+        Dimension::FORCE,
+        "largest size of the restoring force of the lowest storey, less what noise adds to it",
+    )
+    .of_storey(),
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first").of_storey(),
     FLOORS_FOLLOWED[0].of_storey(),
     FLOORS_FOLLOWED[1].of_storey(),
@@ -161,7 +169,11 @@ pub(super) const SHAKE: &[ResultKind] = &[
     ResultKind::measured_list("max_drift", Dimension::LENGTH, "largest size of each storey's drift"),
     ResultKind::measured_list("final_drift", Dimension::LENGTH, "each storey's drift at the last step of the run"),
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first"),
-    ResultKind::measured("max_base_shear", Dimension::FORCE, "largest size of the restoring force of the lowest storey"),
+    ResultKind::measured(
+        "max_base_shear",
+        Dimension::FORCE,
+        "largest size of the restoring force of the lowest storey, less what noise adds to it",
+    ),
     ResultKind::new("energy_error", Dimension::NUMBER, "what the energy balance misses, over the input energy"),
     ResultKind::count("steps", "number of steps"),
     FOLLOWED[0],

@@ -76,6 +76,12 @@ const SIGN: &[Variant] = &[
     Variant::word("negative", "the rig's positive direction is against the striker's"),
 ];
 
+/// Where the zero of the plan's displacements lies.
+const DATUM: &[Variant] = &[
+    Variant::word("machine", "the rig's own zero; a rig that stands elsewhere when the run begins is refused"),
+    Variant::word("here", "where the rig stands when the run begins, its specimen without load; on record"),
+];
+
 /// What one axis says of itself: each in place of what the rig says of all.
 const AXIS: &[Variant] = &[Variant::with(
     "axis",
@@ -101,9 +107,18 @@ const AXIS: &[Variant] = &[Variant::with(
             .or_said("the rig's"),
         Field::text("calibration_due", "last day on which its calibration holds").or_said("the rig's"),
         Field::text("force_class", "class of its force measurement").or_said("the rig's"),
+        Field::bounds("force_calibration_range", Dimension::FORCE, false, "forces, by size, over which that holds")
+            .or_said("the rig's"),
         Field::text("displacement_calibration", "reference of the calibration of its displacement").or_said("the rig's"),
         Field::text("displacement_calibration_due", "last day on which that calibration holds").or_said("the rig's"),
         Field::text("displacement_class", "class of its displacement measurement").or_said("the rig's"),
+        Field::bounds(
+            "displacement_calibration_range",
+            Dimension::LENGTH,
+            false,
+            "displacements, by size, over which that holds",
+        )
+        .or_said("the rig's"),
         Field::quantity("force_uncertainty", Dimension::NUMBER, "standard uncertainty of its force calibration")
             .within(0.0, 0.2)
             .or_said("the rig's"),
@@ -151,6 +166,7 @@ pub(super) const RIG: BlockKind = BlockKind {
             .or_said("one axis")
             .of_real_rigs(),
         Field::choice("sign", SIGN, "direction of the rig's displacement and force").or_said("positive"),
+        Field::choice("datum", DATUM, "where the plan's displacements are 0").or_said("machine").of_real_rigs(),
         Field::quantity("speed", Dimension::VELOCITY, "speed of a move for which nothing else is said")
             .or(1.0, "mm/s")
             .above_zero()
@@ -201,9 +217,23 @@ pub(super) const RIG: BlockKind = BlockKind {
         Field::text("calibration", "reference of the calibration; of the force alone, where `displacement_calibration` is given"),
         Field::text("calibration_due", "last day on which the calibration holds, `YYYY-MM-DD`"),
         Field::text("force_class", "class of the force measurement, such as one of ISO 7500-1"),
+        Field::bounds(
+            "force_calibration_range",
+            Dimension::FORCE,
+            false,
+            "forces, by size, over which the calibration of the force holds; the certificate wants it",
+        )
+        .or_said("not stated"),
         Field::text("displacement_calibration", "reference of the calibration of the displacement, where it has one of its own"),
         Field::text("displacement_calibration_due", "last day on which that calibration holds, `YYYY-MM-DD`"),
         Field::text("displacement_class", "class of the displacement measurement, such as one of ISO 9513"),
+        Field::bounds(
+            "displacement_calibration_range",
+            Dimension::LENGTH,
+            false,
+            "displacements, by size, over which the calibration of the displacement holds; the certificate wants it",
+        )
+        .or_said("not stated"),
     ],
     exports: &[],
     results: &[],

@@ -72,6 +72,8 @@ pub struct Field {
     pub real_rig_only: bool,
     /// Whether it says something of a frame only.
     pub of_frames: bool,
+    /// Whether its number is an angle, which is written with its unit.
+    pub angle: bool,
 }
 
 /// What a field takes.
@@ -238,6 +240,7 @@ impl Field {
             available: true,
             real_rig_only: false,
             of_frames: false,
+            angle: false,
         }
     }
 
@@ -263,6 +266,10 @@ impl Field {
 
     pub(super) const fn quantity(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
         Self::new(name, FieldType::Quantity(dimension), doc)
+    }
+
+    pub(super) const fn angle(name: &'static str, doc: &'static str) -> Self {
+        Self { angle: true, ..Self::quantity(name, Dimension::NUMBER, doc) }
     }
 
     pub(super) const fn quantities(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {

@@ -106,7 +106,8 @@ impl Bench {
             view: 0,
             converters: Vec::new(),
         };
-        bench.restoring_force = bench.structure.bend(&vec![0.0; rams.len()]);
+        let at_rest = vec![0.0; rams.len()];
+        bench.restoring_force = bench.structure.bend(&at_rest, &at_rest, 0.0, 0.0);
         bench
     }
 
@@ -121,6 +122,15 @@ impl Bench {
     #[must_use]
     pub fn with_converters(self, converters: Vec<(f64, f64)>) -> Self {
         Self { converters, ..self }
+    }
+
+    /// The same bench whose rams stand at these places of their controllers, m, with the specimen not bent.
+    #[must_use]
+    pub fn standing_at(mut self, places: &[f64]) -> Self {
+        for (ram, place) in self.rams.iter_mut().zip(places) {
+            ram.stand_at(*place);
+        }
+        self
     }
 
     /// Something goes wrong now with the ram at this place, its specimen or its sensors.
@@ -195,13 +205,12 @@ impl Bench {
             ram.advance(seconds);
         }
         let moved: Vec<f64> = self.rams.iter().zip(before).map(|(ram, before)| ram.settings.sign * (ram.at - before)).collect();
+        let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.bends()).collect();
+        let forces = self.structure.bend(&places, &moved, going, seconds);
         if moved.iter().any(|moved| *moved != 0.0) {
-            let places: Vec<f64> = self.rams.iter().map(|ram| ram.settings.sign * ram.at).collect();
-            let forces = self.structure.bend(&places);
-            let felt = self.rams.iter_mut().zip(forces).map(|(ram, force)| ram.faults.specimen_force(ram.at, force));
+            let felt = self.rams.iter_mut().zip(forces).map(|(ram, force)| ram.faults.specimen_force(ram.bends(), force));
             self.restoring_force = felt.collect();
         }
-        self.structure.relax(&moved, going, seconds);
     }
 
     /// Sets off to `target` (m) at `speed` (m/s).

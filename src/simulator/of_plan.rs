@@ -5,7 +5,7 @@ use super::firmware::{Grbl, Hx711, Indicator, Instron, Mark10, Mark10Gauge, Modb
 use super::of_ram::OfRam;
 use super::script::Script;
 use super::{Bench, BenchSettings, Firmware, Log, RamSettings, Stand};
-use crate::plan::{Behaviour, Behind, Dialect, Interval, Plan, RealLink, Specimen};
+use crate::plan::{Behaviour, Behind, Datum, Dialect, Interval, Plan, RealLink, Specimen};
 
 /// How a simulated controller says that it is one.
 const SIMULATED: &str = "PSD-SIM";
@@ -17,6 +17,9 @@ const CAPACITY: f64 = 100_000.0;
 const STROKE: f64 = 1.0;
 /// Conversions a second of an HX711.
 const HX711_RATE: f64 = 80.0;
+
+/// Where a Grbl stands by its own count when it has been homed, m: it pulls off its end switch, whose place is 0 (`$27`).
+const PULLED_OFF: f64 = -1e-3;
 
 /// Why there is nothing to stand in for the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -38,9 +41,11 @@ pub enum NoStandIn {
 /// The plan's rig is virtual, or its specimen has no behaviour.
 pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u16>) -> Result<Stand, NoStandIn> {
     let link = plan.rig.link.as_real().ok_or(NoStandIn::Virtual)?;
-    let bench = bench(plan, link, seed)?;
+    let starts = starts(plan, link, script);
+    let bench = bench(plan, link, seed, &starts)?.standing_at(&starts);
     let axes = bench.rams();
-    if let Some(named) = script.faults.iter().map(|fault| fault.ram + 1).find(|named| *named > axes) {
+    let named = script.faults.iter().map(|fault| fault.ram).chain(script.starts.iter().map(|(ram, _)| *ram));
+    if let Some(named) = named.map(|ram| ram + 1).find(|named| *named > axes) {
         return Err(NoStandIn::NoSuchAxis { named, axes });
     }
     let of_role = |role: &str, behind: Vec<Behind<'_>>| -> Vec<(String, Box<dyn Firmware>)> {
@@ -57,7 +62,27 @@ pub fn of_plan(plan: &Plan, script: &Script, log: Log, seed: u64, boot: Option<u
     Ok(Stand::of(bench, log, script, controllers))
 }
 
-fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
+/// Where each ram stands when it is switched on, m.
+fn starts(plan: &Plan, link: &RealLink, script: &Script) -> Vec<f64> {
+    let mut starts = vec![0.0; plan.rig.axes().unwrap_or(1)];
+    for behind in link.actuators().iter().filter(|behind| behind.link.dialect == Dialect::Grbl) {
+        behind.axes.iter().for_each(|axis| starts[*axis] = PULLED_OFF);
+    }
+    for (ram, place) in &script.starts {
+        if let Some(start) = starts.get_mut(*ram) {
+            *start = *place;
+        }
+    }
+    starts
+}
+
+/// Limits of displacement as a ram has them that stands at `start` (m): those of a plan whose zero is there go with it.
+fn places_at_rig(link: &RealLink, sign: f64, limits: Interval, start: f64) -> Interval {
+    let Interval { low, high } = at_rig(sign, limits);
+    if link.datum == Datum::Machine { Interval { low, high } } else { Interval { low: low + start, high: high + start } }
+}
+
+fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Bench, NoStandIn> {
     let specimen = specimen(plan).ok_or(NoStandIn::NoBehaviour)?;
     let settings = |behaviour| BenchSettings {
         behaviour,
@@ -67,13 +92,14 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
         newtons_per_count: plan.rig.calibration.newtons_per_count.unwrap_or_else(|| capacity(link) / COUNTS),
         zero_count: plan.rig.calibration.zero_count,
         seed,
-        limits: at_rig(plan.rig.sign, plan.limits.displacement),
+        limits: places_at_rig(link, plan.rig.sign, plan.limits.displacement, starts[0]),
         top_speed: plan.limits.speed.high,
     };
     if let Some(frame) = &specimen.frame {
         // The storeys stand in place of it.
         let nothing = Behaviour::Elastic { stiffness: 0.0 };
-        let rams: Vec<RamSettings> = (0..frame.degrees_of_freedom()).map(|axis| ram(plan, link, axis)).collect();
+        let rams: Vec<RamSettings> =
+            (0..frame.degrees_of_freedom()).map(|axis| ram(plan, link, axis, starts.get(axis).copied().unwrap_or(0.0))).collect();
         let converter = |axis| {
             let own = plan.rig.calibration_of(axis);
             (own.newtons_per_count.unwrap_or_else(|| capacity(link) / COUNTS), own.zero_count)
@@ -86,9 +112,9 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64) -> Result<Bench, NoStandIn> {
 }
 
 /// The ram of a frame's floor.
-fn ram(plan: &Plan, link: &RealLink, axis: usize) -> RamSettings {
+fn ram(plan: &Plan, link: &RealLink, axis: usize, start: f64) -> RamSettings {
     let (sign, readings) = (plan.rig.sign_of(axis), link.readings_of(axis));
-    let limits = at_rig(sign, plan.rig.limits_of(axis, &plan.limits).displacement);
+    let limits = places_at_rig(link, sign, plan.rig.limits_of(axis, &plan.limits).displacement, start);
     RamSettings { sign, noise: readings.noise, resolution: readings.resolution, limits }
 }
 
@@ -151,7 +177,7 @@ mod tests {
     use super::super::firmware::sealed;
     use super::*;
     use crate::check::{LoadFault, Loader, Options, check};
-    use crate::plan::{Calibration, DeviceLink, Gate, Link, PortPlan, ReadingRules, SafeState};
+    use crate::plan::{Calibration, Datum, DeviceLink, Gate, Link, PortPlan, ReadingRules, SafeState};
     use crate::rig::port::{Clock as _, Port as _};
     use std::time::Duration;
 
@@ -194,6 +220,7 @@ move to_half {
             actuator: device(actuator),
             load_cell: load_cell.map(device),
             safe_state: SafeState::Hold,
+            datum: Datum::Machine,
             gate: Gate { zero: 1.0, probe: 1e-4, stiffness: Interval::ALL },
             readings: ReadingRules {
                 samples: 1,
@@ -234,9 +261,9 @@ move to_half {
         let mut plan = plan(Dialect::Grbl, Some(Dialect::Hx711));
         plan.rig.calibration = Calibration { newtons_per_count: Some(0.01), zero_count: 500.0, ..Calibration::default() };
         let shared = stand(&plan);
-        assert!(heard(&shared, 0, b"$J=G21G90G53X2.000F600\n").starts_with("ok\r\n"));
+        assert!(heard(&shared, 0, b"$J=G21G90G53X-3.000F600\n").starts_with("ok\r\n"));
         let counts = heard(&shared, 1, b"");
-        assert_eq!(counts.lines().last(), Some("20500"), "200 N at 2 mm");
+        assert_eq!(counts.lines().last(), Some("-19500"), "−200 N, 2 mm from where it stood homed");
     }
 
     #[test]
@@ -266,7 +293,7 @@ move to_half {
             force_unit: 1.0,
         };
         let asked: [(Dialect, &[u8], &str); 8] = [
-            (Dialect::Grbl, b"?", "<Idle|MPos:0.000,"),
+            (Dialect::Grbl, b"?", "<Idle|MPos:-1.000,"),
             (Dialect::Indicator, b"", "ST,GS,+0000.00,kg\r\n"),
             (Dialect::Scpi { newtons_per_unit: vec![1.0] }, b"READ?\n", "E+00\n"),
             (Dialect::Instron, b"Q1\r\n", "0"),

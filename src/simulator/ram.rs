@@ -36,6 +36,8 @@ pub(super) struct Ram {
     reached: f64,
     /// Where it is, m.
     pub(super) at: f64,
+    /// Where it stood when the specimen was mounted, m: the specimen is bent by the way from there.
+    mounted_at: f64,
     pub(super) target: f64,
     /// m/s
     pub(super) speed: f64,
@@ -46,7 +48,28 @@ pub(super) struct Ram {
 impl Ram {
     pub(super) fn new(settings: RamSettings, seed: u64) -> Self {
         let (generator, faults) = (Pcg64::seed_from_u64(seed), BenchFaults::none(seed));
-        Self { settings, generator, faults, position: 0.0, reached: 0.0, at: 0.0, target: 0.0, speed: 0.0, course: None }
+        Self {
+            settings,
+            generator,
+            faults,
+            position: 0.0,
+            reached: 0.0,
+            at: 0.0,
+            mounted_at: 0.0,
+            target: 0.0,
+            speed: 0.0,
+            course: None,
+        }
+    }
+
+    /// It stands there (m) from the first, with the specimen not bent.
+    pub(super) fn stand_at(&mut self, place: f64) {
+        (self.position, self.reached, self.at, self.target, self.mounted_at) = (place, place, place, place, place);
+    }
+
+    /// By how much it bends the specimen, m.
+    pub(super) fn bends(&self) -> f64 {
+        self.at - self.mounted_at
     }
 
     /// Goes along a smooth way from now on; past its end as fast as there.

@@ -3,10 +3,9 @@
 
 use crate::mechanics::damping::CellDamping;
 use crate::mechanics::frame::{drifts, floor_forces};
-use crate::mechanics::logarithmic::Went;
 use crate::mechanics::maxwell::Travel;
 use crate::mechanics::relaxing::Relaxing;
-use crate::mechanics::specimen::{RestoringForce, SpecimenModel};
+use crate::mechanics::specimen::SpecimenModel;
 use crate::plan::{Behaviour, Frame, Storey};
 
 #[derive(Debug)]
@@ -49,41 +48,32 @@ impl Structure {
         }
     }
 
-    /// Restoring forces (N) with the rams at these places (m).
-    pub(super) fn bend(&mut self, places: &[f64]) -> Vec<f64> {
+    /// Restoring forces (N) with the rams at these places (m), to which they moved by so much (m), evenly for `going` of the `seconds` and at
+    /// rest for the others.
+    pub(super) fn bend(&mut self, places: &[f64], moved: &[f64], going: f64, seconds: f64) -> Vec<f64> {
+        let bent = |specimen: &mut SpecimenModel, relaxing: &mut Relaxing, force: f64, place: f64, moved: f64| {
+            let velocity = if moved == 0.0 { 0.0 } else { moved / going };
+            let force = relaxing.bend(specimen, &Travel::even(velocity, going), (place - moved, place), force);
+            relaxing.bend(specimen, &Travel::rest(seconds - going), (place, place), force)
+        };
         match self {
-            Self::One { specimen, force, .. } => {
-                let forces: Vec<f64> = places.iter().map(|place| specimen.move_to(*place)).collect();
-                *force = forces.last().copied().unwrap_or(*force);
-                forces
+            Self::One { specimen, relaxing, force, .. } => {
+                *force = bent(specimen, relaxing, *force, places[0], moved[0]);
+                vec![*force]
             }
-            Self::Storeys { models, shear, .. } => {
-                let (mut drift, mut forces) = (vec![0.0; places.len()], vec![0.0; places.len()]);
+            Self::Storeys { models, relaxing, shear, .. } => {
+                let (mut drift, mut apart, mut forces) =
+                    (vec![0.0; places.len()], vec![0.0; places.len()], vec![0.0; places.len()]);
                 drifts(places, &mut drift);
-                for ((shear, model), drift) in shear.iter_mut().zip(models).zip(drift) {
-                    *shear = model.move_to(drift);
+                drifts(moved, &mut apart);
+                let storeys = models.iter_mut().zip(relaxing).zip(&mut *shear).zip(drift.into_iter().zip(apart));
+                for (((model, relaxing), shear), (drift, moved)) in storeys {
+                    *shear = bent(model, relaxing, *shear, drift, moved);
                 }
                 floor_forces(shear, &mut forces);
                 forces
             }
             Self::Matrix(rows) => rows.iter().map(|row| row.iter().zip(places).map(|(k, x)| k * x).sum()).collect(),
-        }
-    }
-
-    /// What relaxes follows rams that moved by so much (m), evenly for `going` of the `seconds` and at rest for the others; they have bent
-    /// the structure already.
-    pub(super) fn relax(&mut self, moved: &[f64], going: f64, seconds: f64) {
-        let mut apart = vec![0.0; moved.len()];
-        drifts(moved, &mut apart);
-        let (relaxing, forces) = match self {
-            Self::One { relaxing, force, .. } => (std::slice::from_mut(&mut **relaxing), std::slice::from_ref(&*force)),
-            Self::Storeys { relaxing, shear, .. } => (relaxing.as_mut_slice(), shear.as_slice()),
-            Self::Matrix(_) => return,
-        };
-        for ((relaxing, moved), force) in relaxing.iter_mut().zip(apart).zip(forces) {
-            let velocity = if moved == 0.0 { 0.0 } else { moved / going };
-            relaxing.follow(&Travel::even(velocity, going), Went { moved, force: *force });
-            relaxing.follow(&Travel::rest(seconds - going), Went { moved: 0.0, force: *force });
         }
     }
 

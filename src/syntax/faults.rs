@@ -22,6 +22,10 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         "`between`" if expected.contains("an operator") => {
             "a band is two comparisons joined with `and`, as in `x > 1 mm and x < 2 mm`, or `x within 5 % of 2 mm`".to_owned()
         }
+        "`between`" if expected == "`=`" => "the value comes first: `param v = 0.8 m/s between 0.2 m/s .. 2 m/s`".to_owned(),
+        "`,`" if expected.contains("`)`") && !expected.contains("`,`") => {
+            "a list stands in `[ ]`, as in `[html, csv]`".to_owned()
+        }
         "`use`" | "`param`" | "`let`" | "`require`" | "`and`" | "`within`" | "`of`" | "`step`" | "`between`" => {
             format!("{found} is a word of the language: names are other words")
         }
@@ -78,6 +82,15 @@ pub fn stray_words(span: Span, words: &str) -> Diagnostic {
 /// A line that begins with a word that other languages begin a line with.
 pub fn word_of_another_language(span: Span, word: &str, help: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("`{word}` is no word of the language")).at(span, "begins no item").help(help)
+}
+
+/// A condition or a loop: `whole` is not read.
+pub fn no_control(message: &str, help: &str, begins: Span, whole: Span) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, message).at(begins, "begins no item").at(whole, "not read").help(help)
+}
+
+pub fn arguments_in_braces(span: Span, call: &str) -> Diagnostic {
+    Diagnostic::new(Code::Syntax, "arguments stand in `( )`").at(span, "in braces").help(format!("write `{call}`"))
 }
 
 /// `rest`: what follows `require`.
@@ -183,6 +196,7 @@ pub fn stray(span: Span, found: &str) -> Diagnostic {
         "'" | "“" | "”" | "‘" | "’" | "„" | "«" | "»" => "texts stand in straight double quotes: \"text\"",
         "&" | "&&" => "two conditions are joined by `and`",
         "|" | "||" => EITHER,
+        "+/-" => "a tolerance is written `within 1 mm of 45 mm`; a range by both its ends, `44 mm .. 46 mm`",
         "±" => "write both ends, as in `-5 mm .. 5 mm`; in a requirement, `within 5 % of 8 mm`",
         "!" => "a condition is turned round by its sign: `!=`, `>` for `<=`",
         "°" | "º" => "a degree of arc is written `deg`",

@@ -2,7 +2,7 @@
 //! none swallows the next. In: tokens. Out: [`Piece`]s and the faults of brackets. Knows lines, not grammar.
 
 use super::{
-    faults,
+    control, faults,
     tokens::{JOINING_WORDS, Kind, Tokens},
 };
 use crate::diagnostic::Diagnostic;
@@ -32,6 +32,9 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
         if cutter.is("}") {
             cutter.unexpected("an item");
             cutter.at += 1;
+            continue;
+        }
+        if cutter.skips_control() {
             continue;
         }
         let statement = cutter.statement();
@@ -222,6 +225,25 @@ impl Cutter<'_> {
         (keyword && named) || self.tokens.is(after, "{")
     }
 
+    /// Past a condition or a loop of another language, with all that is in its braces: told once.
+    fn skips_control(&mut self) -> bool {
+        let first = self.tokens.list[self.at];
+        let Some((message, help)) = control::of_another_language(self.tokens.text_of(first)) else { return false };
+        let line = (self.at..).take_while(|at| !matches!(self.tokens.kind(*at), None | Some(Kind::Newline | Kind::Comment)));
+        let brace = line.into_iter().find(|at| self.tokens.is(*at, "{"));
+        let Some(brace) = brace.filter(|_| !self.tokens.is(self.at + 1, "=")) else { return false };
+        self.at = brace;
+        self.skip_braces();
+        while self.tokens.list.get(self.at).is_some_and(|token| control::is_condition(self.tokens.text_of(*token))) {
+            self.at = (self.at..self.tokens.list.len()).find(|at| self.tokens.is(*at, "{")).unwrap_or(self.tokens.list.len());
+            self.skip_braces();
+        }
+        let last = self.tokens.list[self.at.max(1) - 1];
+        let (begins, whole) = (self.tokens.span(first.start, first.end), self.tokens.span(first.start, last.end));
+        self.faults.push(faults::no_control(message, help, begins, whole));
+        true
+    }
+
     fn column(&self, index: usize) -> usize {
         let start = self.tokens.list[index].start;
         start - self.tokens.text[..start].rfind('\n').map_or(0, |newline| newline + 1)
@@ -242,6 +264,9 @@ impl Cutter<'_> {
                 self.at += 1;
                 return Piece::Block { head, open, fields, close: Some(self.at - 1) };
             }
+            if self.skips_control() {
+                continue;
+            }
             if self.starts_item(self.at) {
                 // A line no further in than the block's own head is the next item: this block was never closed.
                 if self.column(self.at) <= self.column(head.start.min(open)) {
@@ -256,11 +281,32 @@ impl Cutter<'_> {
             if field.end > field.start {
                 fields.push(field);
             }
+            if self.is("{") && self.arguments_in_braces(field) {
+                if let Some(field) = fields.last_mut() {
+                    field.broken = true;
+                }
+                continue;
+            }
             if self.is("{") || self.at == before {
                 self.unexpected("the end of the line");
                 self.skip_braces();
             }
         }
+    }
+
+    /// Past `{0.5}` of `contact = restitution{0.5}`, on one line: told.
+    fn arguments_in_braces(&mut self, field: Statement) -> bool {
+        let close = (self.at..).take_while(|at| !matches!(self.tokens.kind(*at), None | Some(Kind::Newline)));
+        let close = close.into_iter().find(|at| self.tokens.is(*at, "}"));
+        let named =
+            field.end == self.at && self.tokens.kind(self.at - 1) == Some(Kind::Word) && self.tokens.is(field.start + 1, "=");
+        let Some(close) = close.filter(|_| named) else { return false };
+        let (name, open, last) = (self.tokens.list[self.at - 1], self.tokens.list[self.at], self.tokens.list[close]);
+        let inside = self.tokens.text[open.end..last.start].trim();
+        let call = format!("{}({inside})", self.tokens.text_of(name));
+        self.faults.push(faults::arguments_in_braces(self.tokens.span(open.start, last.end), &call));
+        self.at = close + 1;
+        true
     }
 
     fn skip_misplaced(&mut self) {

@@ -2,6 +2,7 @@
 //! and [`format()`] writes the canonical text of a plan.
 
 pub mod ast;
+pub mod control;
 pub mod format;
 pub mod limits;
 pub mod parse;

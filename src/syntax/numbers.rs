@@ -10,6 +10,9 @@ pub struct Fault {
     pub write: Vec<String>,
 }
 
+/// A power of ten as it is written by hand.
+const TIMES_TEN: &str = "x10^";
+
 fn digits(text: &str) -> usize {
     text.len() - text.trim_start_matches(|next: char| next.is_ascii_digit()).len()
 }
@@ -42,6 +45,11 @@ pub fn extent(text: &str, comma: bool, blank: bool) -> usize {
         }
     }
     let rest = &text[end..];
+    if let Some(power) = rest.strip_prefix(TIMES_TEN) {
+        let sign = usize::from(power.starts_with(['+', '-']));
+        let power = digits(&power[sign..]);
+        return if power > 0 { end + TIMES_TEN.len() + sign + power } else { end };
+    }
     if rest.starts_with(['e', 'E']) {
         let sign = usize::from(rest[1..].starts_with(['+', '-']));
         let power = digits(&rest[1 + sign..]);
@@ -95,6 +103,9 @@ pub fn fault(written: &str) -> Option<Fault> {
     if let Some(body) = written.strip_prefix("0x").or_else(|| written.strip_prefix("0X")) {
         let value = u64::from_str_radix(&body.replace('_', ""), 16).ok();
         return fault("numbers are decimal", value.map(|value| value.to_string()));
+    }
+    if let Some((mantissa, power)) = written.split_once(TIMES_TEN) {
+        return fault("a power of ten is written with `e`", Some(format!("{mantissa}e{power}")));
     }
     if written.contains(['_', ' ', '\'', '’']) {
         return fault("digits are not grouped", Some(written.replace(['_', ' ', '\'', '’'], "")));

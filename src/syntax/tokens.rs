@@ -85,6 +85,9 @@ const LONG_SIGNS: [&str; 5] = ["..", "<=", ">=", "==", "!="];
 /// Words that join two values or follow a value, so that none of them is a unit.
 pub const JOINING_WORDS: [&str; 5] = ["and", "within", "of", "step", "between"];
 
+/// Lines over which a text may have been written.
+const LINES_OF_A_TEXT: usize = 20;
+
 struct Reader<'a> {
     tokens: Tokens<'a>,
     at: usize,
@@ -202,6 +205,8 @@ impl<'a> Reader<'a> {
         }
         if end.is_none() {
             self.fault(faults::unclosed_text(self.span(1)));
+            // What was meant as one text is one, so that its other lines are not read as fields.
+            return self.push(Kind::Text, closed_below(self.rest()).unwrap_or(length));
         } else if length - 2 > limits::TEXT_BYTES {
             self.fault(faults::too_large(self.span(1), "this text", limits::TEXT_BYTES, "bytes"));
         }
@@ -268,6 +273,10 @@ impl<'a> Reader<'a> {
     }
 
     fn sign(&mut self, first: char) {
+        if self.rest().starts_with("+/-") {
+            self.fault(faults::stray(self.span(3), "+/-"));
+            return self.push(Kind::Sign, 3);
+        }
         if let Some(sign) = LONG_SIGNS.iter().find(|sign| self.rest().starts_with(**sign)) {
             return self.push(Kind::Sign, sign.len());
         }
@@ -307,6 +316,24 @@ impl<'a> Reader<'a> {
             }
         }
     }
+}
+
+/// Bytes of a text that is closed some lines below the one on which it opens; None where something else begins before that.
+fn closed_below(text: &str) -> Option<usize> {
+    let mut end = 0;
+    for (index, line) in text.split_inclusive('\n').take(LINES_OF_A_TEXT).enumerate() {
+        let words = line.trim_start();
+        let after = words.trim_start_matches(|next: char| next.is_ascii_alphanumeric() || next == '_');
+        let begins = after.trim_start().starts_with('=') || words.starts_with('}') || line.trim_end().ends_with('{');
+        match (index, line.matches('"').count()) {
+            (0, _) => {}
+            (_, 0) if !begins => {}
+            (_, 1) if !begins => return line.find('"').map(|at| end + at + 1),
+            _ => return None,
+        }
+        end += line.len();
+    }
+    None
 }
 
 /// A unit in parentheses at the start of `text`, behind `*` or `/` unless it is `alone`: its bytes, the sign included, and

@@ -15,7 +15,8 @@ pub(crate) struct Declared<'a> {
 
 impl<'a> Declared<'a> {
     pub(crate) fn of(plan: &Plan, results: &'a dyn Results) -> Self {
-        let undeclared = plan.rig.link.as_real().map_or_else(Vec::new, |_| plan.rig.undeclared_calibrations(plan.degrees_of_freedom()));
+        let undeclared =
+            plan.rig.link.as_real().map_or_else(Vec::new, |_| plan.rig.undeclared_calibrations(plan.degrees_of_freedom()));
         Self { results, undeclared }
     }
 }

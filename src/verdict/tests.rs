@@ -115,8 +115,13 @@ fn the_whole_takes_its_worst_part_and_the_end_of_the_run() {
         label: "travel".to_owned(),
         conditions: vec![condition(result("max_displacement"), compare(Comparison::Less, limit))],
     };
+    assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Completed, "nothing was required");
+    plan.requirements = vec![requirement(9.0)];
     assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Pass);
-    plan.requirements = vec![requirement(9.0), requirement(7.0)];
+    let blocked = record(Outcome::Blocked { reason: String::new() });
+    assert_eq!(assess(&plan, &blocked).verdict, Verdict::Inconclusive);
+    plan.requirements.push(requirement(7.0));
+    assert_eq!(assess(&plan, &blocked).verdict, Verdict::Fail);
     let assessed = assess(&plan, &record(Outcome::Completed));
     assert_eq!(assessed.verdict, Verdict::Fail);
     assert_eq!(assessed.requirements[0].verdict, Verdict::Pass);
@@ -196,7 +201,10 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
         assess_condition(&condition, DecisionRule::Guarded, record)
     };
     record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: Some(0.0) };
-    assert_eq!((at(&record, "max_displacement", 8.0).verdict, at(&record, "max_displacement", 8.0).guard_band), (Verdict::Pass, None));
+    assert_eq!(
+        (at(&record, "max_displacement", 8.0).verdict, at(&record, "max_displacement", 8.0).guard_band),
+        (Verdict::Pass, None)
+    );
     assert_eq!(at(&record, "max_displacement", 7.999).verdict, Verdict::Fail);
     assert_eq!([20.0, 19.0].map(|limit| at(&record, "steps", limit).verdict), [Verdict::Pass, Verdict::Fail]);
     assert_eq!(at(&record, "energy_error", 0.02).verdict, Verdict::Pass);
@@ -220,11 +228,13 @@ fn a_probability_of_conformity_is_told_under_either_rule() {
             let found = assess_condition(&condition(result("max_displacement"), test), rule, &record);
             (found.conforms.unwrap(), found.wider_than_tolerance)
         };
-        let near = |found: (f64, bool), p: f64, wider| assert!((found.0 - p).abs() < 1e-6 && found.1 == wider, "{found:?}, not {p}");
+        let near =
+            |found: (f64, bool), p: f64, wider| assert!((found.0 - p).abs() < 1e-6 && found.1 == wider, "{found:?}, not {p}");
         near(of(compare(Comparison::LessEqual, 8.0)), 0.5, false);
         near(of(compare(Comparison::LessEqual, 8.125)), 0.841_344_7, false);
         near(of(compare(Comparison::Greater, 8.125)), 0.158_655_3, false);
-        let within = |tolerance| Test::Within { target: Formula::Constant(8.0), tolerance: Formula::Constant(tolerance), relative: false };
+        let within =
+            |tolerance| Test::Within { target: Formula::Constant(8.0), tolerance: Formula::Constant(tolerance), relative: false };
         near(of(within(0.125)), 0.682_689_5, true);
         near(of(within(0.25)), 0.954_499_7, false);
         near(of(within(0.5)), 0.999_936_7, false);

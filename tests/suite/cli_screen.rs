@@ -102,10 +102,29 @@ impl Terminal {
 
     /// Another size of the window, as a window manager gives it; waits until the screen is drawn for it.
     fn resize(&mut self, columns: u16) {
+        self.set_size(columns);
+        self.wait_for("hold now");
+    }
+
+    fn set_size(&mut self, columns: u16) {
         self.seen.clear();
         tcsetwinsize(&self.master, Winsize { ws_row: 30, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 }).unwrap();
         kill_process(Pid::from_child(&self.child), Signal::WINCH).unwrap();
-        self.wait_for("hold now");
+    }
+
+    /// Waits until this stands on the screen, which is drawn whole only when the window gets another size.
+    fn drawn(&mut self, text: &str) {
+        let (mut columns, since) = (100, Instant::now());
+        while !self.seen.contains(text) {
+            assert!(since.elapsed() < PATIENCE, "in vain for {text:?}:\n{}", self.seen);
+            columns = 210 - columns;
+            self.set_size(columns);
+            // Cleared, drawn, and the cursor hidden again.
+            self.wait_for("\u{1b}[2J");
+            let cleared = self.seen.find("\u{1b}[2J").unwrap_or_default();
+            self.seen.drain(..cleared);
+            self.wait_for("\u{1b}[?25l");
+        }
     }
 
     /// The exit code and the summary.
@@ -126,17 +145,14 @@ fn events(summary: &Value) -> Vec<&str> {
 #[test]
 fn an_inspection_is_asked_on_the_screen_and_answered_by_name() {
     let mut terminal = Terminal::run(&[]);
-    terminal.wait_for("on?");
-    // Keys before an answer is asked for are none; a remark and a name follow a yes.
-    terminal.press("xp y");
-    terminal.wait_for("remark");
-    terminal.press("no crack\r");
+    terminal.wait_for("INSPECTION");
+    terminal.drawn("type yes");
+    // What is no answer goes on with nothing; a remark has a key of its own, and a name follows a yes.
+    terminal.press("xyz\rino crack\ryes\r");
     terminal.wait_for("name");
     terminal.press("A. Engineer\r");
-    terminal.wait_for("again");
-    terminal.press("y");
-    terminal.wait_for("remark");
-    terminal.press("\r");
+    terminal.drawn("type yes");
+    terminal.press("yes\r");
     let (code, summary) = terminal.ended();
     assert_eq!(code, Some(0), "{summary:#}");
     assert_eq!(events(&summary), ["Look at the joints: no crack (A. Engineer)", "Look again (A. Engineer)"]);
@@ -148,10 +164,11 @@ fn ctrl_c_and_no_and_the_end_of_the_input_stop_and_none_is_a_yes() {
         ("\u{3}", "stopped on request"),
         ("q", "stopped on request"),
         ("\u{4}", "no answer at an inspection"),
-        ("ncrack\r", "stopped by a person at an inspection: crack"),
+        ("icrack\rn\r", "stopped by a person at an inspection: crack"),
     ] {
         let mut terminal = Terminal::run(&["--operator", "B"]);
-        terminal.wait_for("on?");
+        terminal.wait_for("INSPECTION");
+        terminal.drawn("type yes");
         terminal.press(keys);
         let (code, summary) = terminal.ended();
         assert_eq!(code, Some(4), "{keys:?}: {summary:#}");
@@ -163,7 +180,8 @@ fn ctrl_c_and_no_and_the_end_of_the_input_stop_and_none_is_a_yes() {
 fn the_first_key_after_the_window_got_another_size_is_heard() {
     for (key, reason) in [("h", "on request"), ("q", "stopped on request"), ("\u{3}", "stopped on request")] {
         let mut terminal = Terminal::run(&["--operator", "B"]);
-        terminal.wait_for("on?");
+        terminal.wait_for("INSPECTION");
+        terminal.drawn("type yes");
         terminal.resize(110);
         terminal.resize(90);
         terminal.press(key);

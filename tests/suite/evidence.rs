@@ -153,7 +153,19 @@ fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
         if file == "tables/hit.csv" {
             let said = bench.ends(3, &["sign", "run", "--key", "key", "--role", "Quality"]);
             assert!(said.contains("does not verify"), "{said}");
-            let amend = ["report", "run", "--amend", "--by", "A", "--reason", "r", "--set-particular", "customer=B"];
+            let amend = [
+                "report",
+                "run",
+                "--amend",
+                "--by",
+                "A",
+                "--date",
+                "2027-01-01",
+                "--reason",
+                "r",
+                "--set-particular",
+                "customer=B",
+            ];
             assert!(bench.ends(3, &amend).contains("does not verify"));
         }
         fs::write(&path, own).unwrap();
@@ -189,31 +201,33 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     let bench = Bench::new();
     let before = bench.files("run");
     let amend = |run: &str, particular: &str, code| {
-        let with =
-            ["report", run, "--amend", "--by", "B. Editor", "--reason", "the name was wrong", "--set-particular", particular];
-        bench.ends(code, &with)
+        let by = ["report", run, "--amend", "--by", "B. Editor", "--date", "2026-06-12", "--reason", "the name was wrong"];
+        bench.ends(code, &[&by[..], &["--set-particular", particular]].concat())
     };
     let said = amend("run", "customer=Somebody & Sons", 0);
     assert!(said.contains("run-amended-1") && said.contains("takes the place of report"), "{said}");
     assert!(bench.files("run") == before, "the report that is replaced stays as it is");
     let page = fs::read_to_string(bench.path("run-amended-1/certificate.html")).unwrap();
-    for told in ["Amendment to report", "B. Editor", "the name was wrong", "Somebody &amp; Sons", "Somebody Ltd"] {
+    for told in ["Amendment to report", "B. Editor on 2026-06-12", "the name was wrong", "Somebody &amp; Sons", "Somebody Ltd"] {
         assert!(page.contains(told), "{told}");
     }
     let json = |path: &str| -> serde_json::Value { serde_json::from_slice(&fs::read(bench.path(path)).unwrap()).unwrap() };
     let (own, amended) = (json("run/summary.json"), json("run-amended-1/summary.json"));
-    assert_eq!(amended["amends"]["amendments"][0]["replaces"], own["run_id"]);
-    assert_ne!(amended["amends"]["report_id"], own["run_id"]);
-    assert!(own.get("amends").is_none() && own["procedures"] == amended["procedures"] && own["run_id"] == amended["run_id"]);
+    assert_eq!(amended["issues"]["issues"][0]["replaces"], own["run_id"]);
+    assert_ne!(amended["issues"]["report_id"], own["run_id"]);
+    assert!(own.get("issues").is_none() && own["procedures"] == amended["procedures"] && own["run_id"] == amended["run_id"]);
     for same in ["journal.psdj", "tables/hit.csv", "tables/hit.parquet", "figures/hit_displacement.png", "plan/plan.psd"] {
         assert!(fs::read(bench.path("run").join(same)).unwrap() == fs::read(bench.path("run-amended-1").join(same)).unwrap());
     }
-    assert!(bench.ends(0, &["verify", "run-amended-1"]).contains("amendment"));
+    assert!(bench.ends(0, &["verify", "run-amended-1"]).contains("amends report"));
+    // One report is replaced by one other.
+    assert!(amend("run", "customer=Third Ltd", 3).contains("has been replaced already"));
+    assert!(!bench.path("run-amended-2").exists());
 
     // An amendment may be amended; the chain of reports is told.
     amend("run-amended-1", "customer=", 0);
     let last = json("run-amended-2/summary.json");
-    assert_eq!(last["amends"]["amendments"][1]["replaces"], amended["amends"]["report_id"]);
+    assert_eq!(last["issues"]["issues"][1]["replaces"], amended["issues"]["report_id"]);
     bench.ends(0, &["verify", "run-amended-2"]);
     bench.ends(0, &["keygen", "key", "--no-password"]);
     bench.ends(0, &["sign", "run-amended-2", "--key", "key", "--role", "Quality"]);
@@ -229,11 +243,60 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     for (particular, told) in
         [("date=2020-01-01", "on record"), ("custumer=X", "did you mean `customer`?"), ("title=X", "no particular")]
     {
-        let said = amend("run-amended-1", particular, 2);
+        let said = amend("run-amended-2", particular, 2);
         assert!(said.contains(told), "{said}");
     }
-    let file = bench.path("run-amended-1/amendment.json");
+    let file = bench.path("run-amended-2/issue.json");
     let text = fs::read_to_string(&file).unwrap();
     fs::write(&file, text.replace("the name was wrong", "no reason")).unwrap();
-    bench.ends(3, &["verify", "run-amended-1"]);
+    bench.ends(3, &["verify", "run-amended-2"]);
+}
+
+#[test]
+fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
+    let bench = Bench::new();
+    let before = bench.files("run");
+    let issue = |run: &str, date: &str, more: &[&str], code| {
+        bench.ends(code, &[&["issue", run, "--authorised-by", "Q. Head", "--date", date], more].concat())
+    };
+    assert!(issue("run", "2026-05-29", &[], 2).contains("the test ended on 2026-05-31"));
+    assert!(issue("run", "2026-06-02", &["--set-particular", "issued=2026-06-03"], 2).contains("--date"));
+    assert!(issue("run", "2026-02-30", &[], 2).contains("no such day"));
+    let said = issue("run", "2026-06-02", &["--set-particular", "temperature=21 °C", "--set-particular", "deviations=None"], 0);
+    assert!(said.contains("run-issued") && said.contains("issues report"), "{said}");
+    assert!(bench.files("run") == before, "the run stays as it is");
+
+    let page = fs::read_to_string(bench.path("run-issued/certificate.html")).unwrap();
+    for stated in ["2026-06-02", "Q. Head", "21 °C", "stated after the test: temperature (was not given"] {
+        assert!(page.contains(stated), "{stated}");
+    }
+    assert!(!page.contains("Amendment") && !page.contains("no longer valid"), "a first issue amends nothing");
+    let json = |path: &str| -> serde_json::Value { serde_json::from_slice(&fs::read(bench.path(path)).unwrap()).unwrap() };
+    let (own, issued) = (json("run/summary.json"), json("run-issued/summary.json"));
+    assert_eq!(issued["issues"]["issues"][0]["kind"], "issue");
+    assert!(own["procedures"] == issued["procedures"] && own["run_id"] == issued["run_id"]);
+    assert!(bench.ends(0, &["verify", "run-issued"]).contains("issued on 2026-06-02 by Q. Head from report"));
+
+    // It is issued once; from then on there are amendments, and each says its day.
+    assert!(issue("run", "2026-06-02", &["--out", "again"], 3).contains("has been replaced already"));
+    assert!(issue("run-issued", "2026-06-03", &[], 2).contains("was issued on 2026-06-02"));
+    let amend = |date: &str, code| {
+        let by = ["report", "run-issued", "--amend", "--by", "B. Editor", "--reason", "a wrong name"];
+        bench.ends(code, &[&by[..], &["--set-particular", "customer=Other", "--date", date]].concat())
+    };
+    assert!(amend("2026-06-01", 2).contains("issued on 2026-06-02"));
+    amend("2026-06-12", 0);
+    let page = fs::read_to_string(bench.path("run-amended-1/certificate.html")).unwrap();
+    assert!(page.contains("Amendment to report") && page.contains("issued (was “2026-06-02”, is “2026-06-12”)"), "{page}");
+    bench.ends(0, &["keygen", "key", "--no-password"]);
+    for run in ["run-issued", "run-amended-1"] {
+        for role in ["Quality", "Test engineer"] {
+            bench.ends(0, &["sign", run, "--key", "key", "--role", role]);
+        }
+        bench.ends(0, &["verify", run, "--key", "key.pub"]);
+    }
+    let file = bench.path("run-issued/issue.json");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text.replace("21 °C", "20 °C")).unwrap();
+    bench.ends(3, &["verify", "run-issued"]);
 }

@@ -16,8 +16,7 @@ use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, RigKind, Variant};
 use psd::verdict::{Assessment, Verdict, assess};
 
 /// Where a plan's way ends, and the exit code that goes with it.
-const STAGES: &[(&str, u8)] =
-    &[("ok", 0), ("syntax_error", 2), ("check_error", 2), ("run_error", 3), ("aborted", 4), ("fail", 1)];
+const STAGES: &[(&str, u8)] = &[("ok", 0), ("syntax_error", 2), ("check_error", 2), ("blocked", 1), ("aborted", 4), ("fail", 1)];
 
 /// Codes without a case of their own, and why.
 const WITHOUT_CASE: &[(Code, &str)] = &[
@@ -110,7 +109,7 @@ fn play(checked: &Checked) -> Option<(Record, Assessment)> {
 fn exit_code(played: Option<&(Record, Assessment)>) -> u8 {
     match played.map(|(_, assessment)| assessment.verdict) {
         None => 2,
-        Some(Verdict::Pass) => 0,
+        Some(Verdict::Completed | Verdict::Pass) => 0,
         Some(Verdict::Fail | Verdict::Inconclusive) => 1,
         Some(Verdict::Error) => 3,
         Some(Verdict::Aborted) => 4,
@@ -122,6 +121,8 @@ fn told(record: &Record, assessment: &Assessment) -> String {
     let mut text = match &record.outcome {
         Outcome::Completed => "the run completed\n".to_owned(),
         Outcome::Aborted { reason } => format!("the run was aborted: {reason}\n"),
+        Outcome::NotReleased { reason } => format!("the rig was not released: {reason}\n"),
+        Outcome::Blocked { reason } => format!("the run could not go on: {reason}\n"),
         Outcome::Faulted { reason } => format!("the run failed: {reason}\n"),
     };
     for requirement in &assessment.requirements {

@@ -17,6 +17,7 @@ mod physics;
 mod plans;
 mod reference;
 mod rehearse;
+mod relaxing_rig;
 mod serve;
 mod shake;
 mod shake_continuous;

@@ -245,7 +245,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
     let finished = finished();
     let plain = console::verdict_text(&finished.run(), false).replace('\u{a0}', " ");
     insta::assert_snapshot!(plain, @r"
-    PASS  Simply supported beam, midspan impact  (simulated rig: rehearsal)
+    PASS  Simply supported beam, midspan impact  (rig `ideal`, simulated: a rehearsal)
       pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 0.0126 m
       pass  energy closes    1.599 × 10⁻¹⁵        ≤ 0.01    margin 0.0100
       decision rule: simple; ± is U = 2u, the value alone decides
@@ -284,7 +284,7 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     finished.record.procedures[0].history = History::Ramp(RampHistory {
         start: None,
         before: Vec::new(),
-            steps: Vec::new(),
+        steps: Vec::new(),
         fit: None,
         bilinear: None,
         multilinear: None,
@@ -336,4 +336,22 @@ fn only_the_formats_asked_for_are_written() {
             "manifest.sha256"
         ]
     );
+}
+
+#[test]
+fn a_run_of_which_nothing_is_required_is_completed_and_never_passed() {
+    let mut finished = finished();
+    finished.plan.requirements.clear();
+    finished.assessment = psd::verdict::assess(&finished.plan, &finished.record);
+    let files = files(&finished);
+    let html = text(&files, "certificate.html");
+    assert!(html.contains("<div class=\"verdict completed\"><strong>COMPLETED</strong>") && !html.contains("<strong>PASS"));
+    assert!(html.contains("The plan states no requirement: nothing was decided."));
+    let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
+    assert_eq!(summary["verdict"], "completed");
+    let told = console::verdict_text(&finished.run(), true);
+    assert!(told.starts_with("COMPLETED  Simply supported beam") && !told.contains("PASS"), "{told}");
+    assert!(bytes(&files, "certificate.pdf").starts_with(b"%PDF"), "paper knows the word too");
+    finished.record.outcome = Outcome::Aborted { reason: "a limit".into() };
+    assert_eq!(psd::verdict::assess(&finished.plan, &finished.record).verdict, Verdict::Aborted);
 }

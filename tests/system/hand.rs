@@ -7,7 +7,7 @@ use std::process::Stdio;
 use rustix::process::Signal;
 
 use crate::stage::{Stage, code, finish, impatient, signal, start, until, wait};
-use crate::terminal::Terminal;
+use crate::terminal::{MOVE, Terminal};
 
 #[test]
 fn a_monitor_ends_with_its_reader_and_with_each_signal() {
@@ -74,11 +74,30 @@ fn a_jog_goes_where_it_is_told_and_is_on_record() {
 }
 
 #[test]
-fn only_a_yes_moves_and_the_end_of_the_input_is_none() {
+fn a_jog_counts_from_the_zero_of_the_run_that_loaded_the_specimen() {
+    let here = |plan: &str| plan.replace("safe_state = hold", "safe_state = hold\n  datum      = here");
+    let stage = Stage::of(here, "stands at 3 mm");
+    let out = wait(&mut stage.recorded_tool("jog", &["--to", "0.5 mm", "--yes"]));
+    assert!(out.code == Some(0) && out.told.contains("R 50.00 N"), "{}", out.told);
+    let loaded = stage.path("loaded");
+    std::fs::rename(stage.path("run"), &loaded).unwrap();
+    // Its limits would go with a zero that it has while it carries load.
+    let refused = wait(&mut stage.recorded_tool("jog", &["--to", "0 mm", "--yes"]));
+    assert!(refused.code == Some(2) && refused.told.contains("the specimen carries 50.00 N"), "{}", refused.told);
+    assert_eq!(stage.moves().len(), 1);
+    let back = wait(&mut stage.recorded_tool("jog", &["--datum", loaded.to_str().unwrap(), "--to", "0 mm", "--yes"]));
+    assert_eq!(back.code, Some(0), "{}", back.told);
+    let moves: Vec<String> = stage.requests().into_iter().filter(|request| request.contains(">MOVE")).collect();
+    assert!(moves.len() == 2 && moves[0].contains(" 3.500000 ") && moves[1].contains(" 3.000000 "), "{moves:?}");
+    assert!(stage.proven().contains("all 1 came out again"));
+}
+
+#[test]
+fn only_the_word_moves_and_the_end_of_the_input_is_none() {
     let stage = Stage::new();
-    for keys in ["n\n", "\n", "\u{4}", "yesterday\n"] {
+    for keys in ["n\n", "\u{4}", "y\nyes\nmove\nRELEASE\n\nn\n"] {
         let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &["--to", "1 mm"]));
-        terminal.answer("[y or n]", keys);
+        terminal.answer(MOVE, keys);
         assert_eq!(code(&mut terminal.child), Some(4), "{keys:?}: {}", terminal.shown());
         assert!(terminal.shown().contains("nothing moved"), "{}", terminal.shown());
         assert!(stage.proven().contains("all 0 came out again"));
@@ -98,10 +117,12 @@ fn a_sitting_goes_from_place_to_place() {
     let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &[]));
     terminal.answer("at 0 mm; where to?", "0.5\n");
     terminal.answer("write it as 1 mm", "0.5 mm\n");
-    terminal.answer("move from 0 mm to 0.5 mm? [y or n]", "y\n");
+    terminal.answer("it moves from 0 mm to 0.5 mm", "MOVE\n");
+    terminal.answer(MOVE, "MOVE\n");
     terminal.answer("at 0.5 mm; where to?", "11 mm\n");
     terminal.answer("refused: target displacement 11 mm", "0 mm\n");
-    terminal.answer("move from 0.5 mm to 0 mm? [y or n]", "y\n");
+    terminal.answer("it moves from 0.5 mm to 0 mm", "");
+    terminal.answer(MOVE, "MOVE\n");
     terminal.answer("at 0 mm; where to?", "q\n");
     assert_eq!(code(&mut terminal.child), Some(4), "one place was refused: {}", terminal.shown());
     assert_eq!(stage.moves().len(), 2);

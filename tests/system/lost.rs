@@ -4,7 +4,7 @@
 use rustix::process::{Signal, WaitOptions, waitpid};
 
 use crate::stage::{Stage, code, finish, let_it_trip, signal, start, wait, watched};
-use crate::terminal::Terminal;
+use crate::terminal::{RELEASE, Terminal};
 
 #[test]
 fn it_hangs_up() {
@@ -40,7 +40,7 @@ fn a_rig_that_was_referenced_again_goes_on_where_it_stands() {
     // Not released: at rest and at zero, where a rig that starts anew stands too.
     let mut stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-    terminal.answer("go on?", "n\n");
+    terminal.answer(RELEASE, "n\n");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     stage.power_up("");
     let refused = wait(&mut stage.resume_with(&[]));

@@ -19,6 +19,7 @@ mod named;
 mod needs;
 mod opensees;
 mod person;
+mod released;
 mod resumed;
 mod served;
 mod signals;

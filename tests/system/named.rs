@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use crate::stage::{Stage, code, wait};
-use crate::terminal::Terminal;
+use crate::terminal::{RELEASE, Terminal};
 
 /// The commands that may move a real rig, started without a name.
 fn unnamed(stage: &Stage, more: &[&str]) -> Vec<Command> {
@@ -63,7 +63,7 @@ fn at_a_terminal_the_name_is_asked_for_before_anything_is_opened() {
     let [mut run, ..] = <[Command; 4]>::try_from(unnamed(&stage, &[])).unwrap();
     let mut terminal = Terminal::start(&mut run);
     terminal.answer("your name", "D. Tester\n");
-    terminal.answer("go on?", "n\n");
+    terminal.answer(RELEASE, "n\n");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     let record = std::fs::read_to_string(stage.journal()).unwrap();
     let named = record.lines().filter(|line| line.contains("D. Tester")).count();

@@ -6,7 +6,7 @@ use std::fs;
 use rustix::process::Signal;
 
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
-use crate::terminal::Terminal;
+use crate::terminal::{GO_ON, RELEASE, Terminal};
 
 /// Held, on record, and gone on with.
 fn held_and_sound(stage: &Stage, ran: &Ended) {
@@ -41,8 +41,8 @@ fn the_end_of_the_input_is_no_yes() {
     let stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
     // The release of the rig is granted; the look at the specimen is not answered.
-    terminal.answer("go on?", "y\n");
-    terminal.answer("look at the specimen", "\u{4}");
+    terminal.answer(RELEASE, "RELEASE\n");
+    terminal.answer(GO_ON, "\u{4}");
     let code = code(&mut terminal.child);
     held_and_sound(&stage, &Ended { code, told: terminal.shown() });
 }
@@ -51,8 +51,8 @@ fn the_end_of_the_input_is_no_yes() {
 fn a_terminal_that_goes_away_is_no_yes() {
     let stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-    terminal.answer("go on?", "y\n");
-    terminal.answer("look at the specimen", "");
+    terminal.answer(RELEASE, "RELEASE\n");
+    terminal.answer(GO_ON, "");
     signal(&terminal.child, Signal::HUP);
     let code = code(&mut terminal.child);
     held_and_sound(&stage, &Ended { code, told: terminal.shown() });
@@ -104,6 +104,8 @@ fn the_first_key_after_the_window_got_another_size_holds_the_rig() {
             terminal.redrawn("hold now");
         }
         terminal.press(keys);
+        terminal.drawn("x leave");
+        terminal.press("x");
         let code = code(&mut terminal.child);
         assert_eq!(code, Some(4), "{}", terminal.shown());
         assert_eq!(stage.moves().len(), 3, "{}", stage.log());

@@ -8,7 +8,7 @@ use std::io::Write as _;
 use rustix::process::Signal;
 
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
-use crate::terminal::Terminal;
+use crate::terminal::{RELEASE, Terminal, UNLOAD};
 
 /// A stepper frame with an indicator beside it.
 fn stepper(plan: &str) -> String {
@@ -16,7 +16,9 @@ fn stepper(plan: &str) -> String {
     let (port, after) = port.split_once("\", dialect: native, reply_timeout: 2 s)").unwrap();
     let devices = format!(
         "  actuator   = serial(port: \"{port}\", dialect: grbl, reply_timeout: 1 s)\n  \
-           load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 1 s)"
+           load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 1 s)\n  \
+           sign       = negative\n  \
+           datum      = here"
     );
     let plan = format!("{before}{devices}{after}").replace("duration  = 24 ms", "duration  = 3 ms");
     let plan = plan.replace("samples    = 1", "samples    = 1\n  resolution = 2.5 um");
@@ -80,7 +82,10 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
     let held = wait(&mut stage.run_with(&["--yes"]));
     assert!(held.code == Some(3) && held.told.contains("`--let-go`"), "{}", held.told);
     let _ = fs::remove_dir_all(stage.path("run"));
-    let jog = wait(&mut stage.recorded_tool("jog", &["--to", "0 mm", "--yes", "--let-go"]));
+    // Its specimen is bent: the zero is that of the run which bent it.
+    let first = stage.path("first");
+    let back = ["--datum", first.to_str().unwrap(), "--to", "0 mm", "--yes", "--let-go"];
+    let jog = wait(&mut stage.recorded_tool("jog", &back));
     assert_eq!(jog.code, Some(0), "{}", jog.told);
     let record = fs::read_to_string(stage.journal()).unwrap();
     assert!(record.contains("what was found held was let go of where it stands (A. Tester)"), "{record}");
@@ -99,7 +104,7 @@ fn stopped_at_zero() -> Stage {
     };
     let stage = Stage::of(console, "");
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-    terminal.answer("go on?", "n\n");
+    terminal.answer(RELEASE, "n\n");
     let code = code(&mut terminal.child);
     assert_eq!(code, Some(4), "{}", terminal.shown());
     stage
@@ -137,10 +142,10 @@ fn a_rig_that_is_not_there_leaves_the_record_as_it_was() {
 fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
     let stage = Stage::of(|plan| plan.replace("safe_state = hold", "safe_state = unload"), "");
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-    terminal.answer("go on?", "y\n");
+    terminal.answer(RELEASE, "RELEASE\n");
     stage.after_moves(6);
     signal(&terminal.child, Signal::INT);
-    terminal.answer("unload?", "y\n");
+    terminal.answer(UNLOAD, "UNLOAD\n");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
     assert!(told.contains("unloading to where the run began"), "{told}");

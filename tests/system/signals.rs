@@ -9,7 +9,7 @@ use rustix::process::Signal;
 use crate::needs;
 use crate::served::Served;
 use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until};
-use crate::terminal::Terminal;
+use crate::terminal::{GO_ON, MOVE, RELEASE, Terminal};
 
 const SIGNALS: [Signal; 3] = [Signal::INT, Signal::TERM, Signal::HUP];
 
@@ -117,18 +117,18 @@ fn while_it_does_not_stop() {
 #[test]
 fn while_somebody_is_asked() {
     std::thread::scope(|scope| {
-        for (sent, question) in SIGNALS.into_iter().flat_map(|sent| [(sent, "go on?"), (sent, "look at the specimen")]) {
+        for (sent, question) in SIGNALS.into_iter().flat_map(|sent| [(sent, RELEASE), (sent, GO_ON)]) {
             scope.spawn(move || {
                 let stage = Stage::new();
                 let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-                if question != "go on?" {
-                    terminal.answer("go on?", "y\n");
+                if question != RELEASE {
+                    terminal.answer(RELEASE, "RELEASE\n");
                 }
                 terminal.answer(question, "");
                 signal(&terminal.child, sent);
                 let code = code(&mut terminal.child);
                 stage.held_and_sound(&Ended { code, told: terminal.shown() });
-                assert_eq!(stage.moves().is_empty(), question == "go on?");
+                assert_eq!(stage.moves().is_empty(), question == RELEASE);
             });
         }
     });
@@ -173,10 +173,10 @@ fn of_a_terminal_that_dies() {
     };
     let in_the_ramp = |stage: &Stage, _: &mut Terminal| stage.after_moves(10);
     let at_a_question = |_: &Stage, terminal: &mut Terminal| {
-        terminal.answer("go on?", "y\n");
-        terminal.answer("look at the specimen", "");
+        terminal.answer(RELEASE, "RELEASE\n");
+        terminal.answer(GO_ON, "");
     };
-    let at_the_release = |_: &Stage, terminal: &mut Terminal| terminal.answer("Inspection", "");
+    let at_the_release = |_: &Stage, terminal: &mut Terminal| terminal.answer("RELEASE:", "");
     std::thread::scope(|scope| {
         scope.spawn(|| one(false, &["--yes"], &in_the_ramp));
         scope.spawn(|| one(true, &["--yes"], &in_the_ramp));
@@ -200,7 +200,7 @@ fn of_a_jog_on_its_way_and_while_it_asks() {
                 stage.proven();
             });
             scope.spawn(move || {
-                for (arguments, question) in [(&[][..], "where to?"), (&["--to", "1 mm"][..], "[y or n]")] {
+                for (arguments, question) in [(&[][..], "where to?"), (&["--to", "1 mm"][..], MOVE)] {
                     let stage = Stage::new();
                     let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", arguments));
                     terminal.answer(question, "");

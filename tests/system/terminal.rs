@@ -16,12 +16,20 @@ use rustix::termios::{Winsize, tcsetwinsize};
 
 use crate::stage::{signal, until};
 
+/// What stands behind each question once it can be answered, in lines.
+pub const RELEASE: &str = "type RELEASE, or n: nothing moves";
+pub const GO_ON: &str = "type RELEASE, or n: the run ends here";
+pub const UNLOAD: &str = "type UNLOAD, or n: it stays held";
+pub const MOVE: &str = "type MOVE, or n: nothing moves";
+
 pub struct Terminal {
     pub child: Child,
     keys: File,
     shown: Arc<Mutex<Vec<u8>>>,
     closed: Arc<AtomicBool>,
     reader: JoinHandle<()>,
+    /// How much of what is shown was waited for.
+    read: usize,
 }
 
 impl Terminal {
@@ -63,7 +71,7 @@ impl Terminal {
                 }
             }
         });
-        Self { child, keys: File::from(keys), shown, closed, reader }
+        Self { child, keys: File::from(keys), shown, closed, reader, read: 0 }
     }
 
     /// Its window is closed. The program, and what it had shown by then.
@@ -96,10 +104,25 @@ impl Terminal {
         signal(&self.child, Signal::WINCH);
     }
 
-    /// Waits for a question, then types.
+    /// Waits for a question behind the last one, then types.
     pub fn answer(&mut self, question: &str, keys: &str) {
-        until(question, || self.shown().contains(question));
-        self.keys.write_all(keys.as_bytes()).unwrap();
+        let behind =
+            |shown: &str| shown.get(self.read..).and_then(|new| new.find(question)).map(|at| self.read + at + question.len());
+        until(question, || behind(&self.shown()).is_some());
+        self.read = behind(&self.shown()).unwrap();
+        self.press(keys);
+    }
+
+    /// Waits until this stands on the screen, which is drawn whole only when the window gets another size.
+    pub fn drawn(&self, text: &str) {
+        let mut columns = 100;
+        until(text, || {
+            columns = 210 - columns;
+            let before = self.shown().len();
+            self.resize(columns);
+            std::thread::sleep(Duration::from_millis(300));
+            self.shown().get(before..).is_some_and(|shown| shown.contains(text))
+        });
     }
 }
 

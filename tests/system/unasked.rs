@@ -7,7 +7,7 @@ use std::process::Command;
 use rustix::process::Signal;
 
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
-use crate::terminal::Terminal;
+use crate::terminal::{GO_ON, RELEASE, Terminal, UNLOAD};
 
 /// Looked at where it is bent.
 fn unloading(plan: &str) -> String {
@@ -21,30 +21,18 @@ fn slow(plan: &str) -> String {
     plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um").replace("probe(0.1 mm", "probe(0.02 mm")
 }
 
-/// Waits until this stands on the screen, which is drawn whole only when the window gets another size.
-fn drawn(terminal: &Terminal, text: &str) {
-    let mut columns = 100;
-    until(text, || {
-        columns = 210 - columns;
-        let before = terminal.shown().len();
-        terminal.resize(columns);
-        std::thread::sleep(std::time::Duration::from_millis(300));
-        terminal.shown().get(before..).is_some_and(|shown| shown.contains(text))
-    });
-}
-
 /// At the look at the specimen, with the rig where it bends it.
 fn at_the_look(stage: &Stage, with_screen: bool) -> Terminal {
     let command = &mut stage.run_with(&[]);
     let mut terminal = if with_screen { Terminal::with_screen(command) } else { Terminal::start(command) };
     if with_screen {
-        drawn(&terminal, "end the run here");
-        terminal.press("y\r");
+        terminal.drawn("type RELEASE");
+        terminal.press("RELEASE\r");
         until("the way to the look", || stage.moves().last().is_some_and(|last| last.ends_with(" to 0.0002")));
-        drawn(&terminal, "end the run here");
+        terminal.drawn("type RELEASE");
     } else {
-        terminal.answer("go on?", "y\n");
-        terminal.answer("look at the specimen", "");
+        terminal.answer(RELEASE, "RELEASE\n");
+        terminal.answer(GO_ON, "");
     }
     terminal
 }
@@ -68,15 +56,17 @@ fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
     let moves = stage.moves();
     assert!(ran.told.contains("held at ") && ran.told.contains("to go on: psd resume "), "{}", ran.told);
     held_and_goes_on(&stage, &moves, &ran);
-    for typed in ["n\nn\n", "n\n\u{4}", "\u{3}", "\u{4}"] {
+    for (looked, then) in [("n\n", Some("n\n")), ("n\n", Some("\u{4}")), ("\u{3}", Some("n\n")), ("\u{4}", None)] {
         let stage = Stage::of(unloading, "");
         let mut terminal = at_the_look(&stage, false);
         let moves = stage.moves();
-        if typed == "\u{3}" {
+        if looked == "\u{3}" {
             signal(&terminal.child, Signal::INT);
-            terminal.answer("unload?", "n\n");
         } else {
-            terminal.press(typed);
+            terminal.press(looked);
+        }
+        if let Some(then) = then {
+            terminal.answer(UNLOAD, then);
         }
         let code = code(&mut terminal.child);
         held_and_goes_on(&stage, &moves, &Ended { code, told: terminal.shown() });
@@ -102,11 +92,16 @@ fn a_yes_unloads_and_the_screen_says_that_the_rig_moves() {
     let mut terminal = at_the_look(&stage, true);
     let moves = stage.moves().len();
     terminal.press("n\r");
-    drawn(&terminal, "the rig MOVES");
-    drawn(&terminal, "HELD");
+    terminal.drawn("u unload");
+    terminal.press("uy\ryes\rRELEASE\r");
+    terminal.drawn("type UNLOAD");
+    terminal.press("y\ryes\rRELEASE\r");
+    terminal.drawn("type UNLOAD");
     assert_eq!(stage.moves().len(), moves);
-    terminal.press("y\r");
-    drawn(&terminal, "UNLOADING, THE RIG MOVES");
+    terminal.press("UNLOAD\r");
+    terminal.drawn("UNLOADING, THE RIG MOVES");
+    terminal.drawn(" x leave");
+    terminal.press("x");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     assert!(stage.moves().last().unwrap().ends_with(" to 0"), "{:?}", stage.moves());
     stage.proven();
@@ -167,7 +162,7 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
     let (moves, journal) = (stage.moves(), fs::read(stage.journal()).unwrap());
     for no in ["n\n", "\u{4}"] {
         let mut terminal = resumed(&stage);
-        until("the release", || terminal.shown().contains("go on?"));
+        terminal.answer(RELEASE, "");
         let shown = terminal.shown();
         assert!(shown.contains("found at ") && shown.contains("it will move to 0.1000 mm at 0.05 mm/s"), "{shown}");
         terminal.press(no);
@@ -177,7 +172,8 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
         assert!(fs::read(stage.journal()).unwrap() == journal, "the record is as it was");
     }
     let mut terminal = resumed(&stage);
-    terminal.answer("go on?", "y it looks well\n");
+    terminal.answer(RELEASE, "i it looks well\n");
+    terminal.answer(RELEASE, "RELEASE\n");
     stage.after_moves(moves.len() + 1);
     signal(&terminal.child, Signal::TERM);
     signal(&terminal.child, Signal::TERM);
@@ -208,11 +204,13 @@ fn the_help_does_not_swallow_a_hold_and_a_pause_is_one_when_the_rig_rests() {
     let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
     terminal.press("p");
-    drawn(&terminal, "PAUSING");
+    terminal.drawn("PAUSING");
     assert!(!terminal.shown().contains("PAUSED"), "the rig still moves");
     terminal.press("?");
-    drawn(&terminal, "closes");
+    terminal.drawn("closes");
     terminal.press("h");
+    terminal.drawn("x leave");
+    terminal.press("x");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     assert_eq!(stage.moves().len(), 3, "{}", stage.log());
 }

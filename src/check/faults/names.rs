@@ -1,11 +1,14 @@
 //! Faults of names: E2xx, and rings of names.
 
+use std::sync::LazyLock;
+
 use super::{one_of, suggestion};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::quantity::unit::{PREFIXES, UNITS};
 use crate::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FunctionKind, ITEM_WORDS, Kind, Naming, Need, RigKind, Variant};
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Block, Ident};
+use crate::syntax::control;
 
 fn owner(kind: &BlockKind, name: Option<&Ident>) -> String {
     name.map_or_else(|| format!("`{}`", kind.words()), |name| format!("{} `{}`", kind.words(), name.node))
@@ -13,6 +16,9 @@ fn owner(kind: &BlockKind, name: Option<&Ident>) -> String {
 
 pub fn unknown_block(block: &Block) -> Diagnostic {
     let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
+    if let Some((message, help)) = words.first().and_then(|word| control::of_another_language(word)) {
+        return Diagnostic::new(Code::UnknownBlock, message).at(block.words[0].span, "begins no item").help(help);
+    }
     let keywords: Vec<String> = BLOCKS.iter().filter(|block| block.kind != Kind::Later).map(|block| block.words()).collect();
     let known = || keywords.iter().map(String::as_str).chain(ITEM_WORDS.iter().copied());
     // All words but the name, two of them, or the first alone: whichever is nearest to a keyword.
@@ -154,7 +160,9 @@ pub fn missing_block(kind: &BlockKind, span: Span) -> Diagnostic {
 
 /// `before`: what stands before the name on its line. A name that is a unit was written apart from its number.
 pub fn unknown_name<'n>(name: &str, span: Span, before: &str, known: impl Iterator<Item = &'n str>) -> Diagnostic {
-    let help = if let Some(quantity) = quantity_apart(name, before) {
+    let help = if name == "g" {
+        "`g` is the gram; gravity is `1 gn`, as in `sqrt(2 * 1 gn * height)`".to_owned()
+    } else if let Some(quantity) = quantity_apart(name, before) {
         format!("`{name}` is a unit, and a unit is one word without blanks behind its number: write `{quantity}`")
     } else if name == "critical" {
         "`critical` stands only in `time_step`; after the run it is the result `critical_time_step`".to_owned()
@@ -176,13 +184,13 @@ pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diag
 /// A result of a run that does not unload by the name of one that does, or the other way round.
 pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Span) -> Diagnostic {
     let unloads = now.starts_with("residual");
-    let message = if unloads { "is unloaded: what is left is residual" } else { "ends under load: what is left is not residual" };
+    let message = if unloads { "takes the load off" } else { "ends under load" };
     let help = match (unloads, kind.kind) {
         (true, _) => format!("read `{now}`"),
         (false, Kind::Escalate) => format!("read `{now}`, or write `between = unload`"),
         (false, _) => format!("read `{now}`, or unload first: `unload rest {{ }}`, then `rest.{name}`"),
     };
-    Diagnostic::new(Code::UnknownResult, format!("`{name}` is called `{now}` here: the `{}` {message}", kind.words()))
+    Diagnostic::new(Code::UnknownResult, format!("`{name}` is called `{now}` here, where the `{}` {message}", kind.words()))
         .at(span, format!("the `{}` has `{now}`", kind.words()))
         .help(help)
 }
@@ -252,23 +260,26 @@ const SPELT_OUT: &[(&str, &str)] = &[
 
 /// `kN*m` of `kNm`.
 fn unit_product(name: &str) -> Option<String> {
-    let is_unit = |part: &str| crate::quantity::unit::lookup(part).is_some();
-    let (first, second) =
-        (1..name.len()).filter_map(|at| name.split_at_checked(at)).find(|(one, other)| is_unit(one) && is_unit(other))?;
+    let dimension = |part: &str| crate::quantity::unit::lookup(part).map(|unit| unit.dimension);
+    // `mmm` is a slip, and no area.
+    let product = |(one, other): &(&str, &str)| dimension(one).zip(dimension(other)).is_some_and(|(one, other)| one != other);
+    let (first, second) = (1..name.len()).filter_map(|at| name.split_at_checked(at)).find(product)?;
     Some(format!("{first}*{second}"))
 }
 
 pub fn unknown_unit(name: &str, span: Span) -> Diagnostic {
-    let mut known: Vec<String> = UNITS.iter().map(|unit| unit.symbol.to_owned()).collect();
-    for unit in UNITS.iter().filter(|unit| unit.prefixes) {
-        known.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{}", unit.symbol)));
-    }
-    let same_letters = known.iter().find(|unit| unit.eq_ignore_ascii_case(name)).map(String::as_str);
+    static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let plain = UNITS.iter().map(|unit| unit.symbol.to_owned());
+        let prefixed = UNITS.iter().filter(|unit| unit.prefixes);
+        let prefixed = prefixed.flat_map(|unit| PREFIXES.iter().map(move |(prefix, _)| format!("{prefix}{}", unit.symbol)));
+        plain.chain(prefixed).collect()
+    });
+    let same_letters = KNOWN.iter().find(|unit| unit.eq_ignore_ascii_case(name)).map(String::as_str);
     let spelt_out =
         SPELT_OUT.iter().find(|(words, _)| words.split(' ').any(|word| word.eq_ignore_ascii_case(name))).map(|(_, unit)| *unit);
     let product = unit_product(name);
     let near = same_letters.or(spelt_out).or(product.as_deref());
-    let near = near.or_else(|| crate::suggest::nearest(name, known.iter().map(String::as_str)));
+    let near = near.or_else(|| crate::suggest::nearest(name, KNOWN.iter().map(String::as_str)));
     let help = near.map_or_else(
         || format!("known units: {}; SI prefixes may stand before the SI ones", one_of(UNITS.iter().map(|unit| unit.symbol))),
         |near| format!("did you mean `{near}`?"),

@@ -102,6 +102,22 @@ pub fn portal_without_mass(name: Option<&Ident>, head: Span) -> Diagnostic {
     .help("say what the frame weighs, such as `mass_per_length: 12 kg/m` in `portal(…)`, or add a line such as `mass = 25 kg`")
 }
 
+/// `half` is q·A·L/2, `elastic` what its own ends give, kg; None where the beam is a part of its behaviour only.
+pub fn beam_without_mass(name: &str, head: Span, half: f64, elastic: Option<f64>) -> Diagnostic {
+    let kg = |mass| shown(mass, Dimension::MASS);
+    let half = format!("`mass = density * area * length / 2`, {}, which is made for a beam on two supports", kg(half));
+    let help = match elastic {
+        Some(elastic) => format!("write `mass = {name}.elastic_mass`, {}, which its ends give, or {half}", kg(elastic)),
+        None => format!("write what moves with it, as in `mass = 0.9 kg`, or {half}"),
+    };
+    Diagnostic::new(
+        Code::MissingField,
+        format!("specimen `{name}` lacks the field `mass`, which depends on the ends of its `beam`"),
+    )
+    .at(head, "`mass` is missing")
+    .help(help)
+}
+
 pub fn too_few_parts(variant: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::BehaviourIncomplete, format!("`{variant}` joins two behaviours or more"))
         .at(span, "only one")

@@ -4,6 +4,7 @@ use super::one_of;
 use crate::check::checker::Typed;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::quantity::Dimension;
+use crate::quantity::unit::{PREFIXES, UNITS};
 use crate::schema::{BlockKind, Field, Kind, Variant};
 use crate::source::Span;
 
@@ -23,10 +24,32 @@ fn example(number: Option<&str>, dimension: Dimension) -> String {
     if dimension == Dimension::NUMBER { number.to_owned() } else { format!("{number} {}", dimension.usual_unit()) }
 }
 
+/// `kN/m` of `kN`, where `N/m` is wanted: what is suggested must not be a thousandth of what was meant.
+fn of_the_same_size(written: &str, wanted: &str) -> Option<String> {
+    let first = |unit: &str| unit.find(['*', '/', '^']).unwrap_or(unit.len());
+    let parts = |name: &str| {
+        let whole = UNITS.iter().find(|unit| unit.symbol == name).map(|unit| ("", unit.symbol));
+        let symbols = UNITS.iter().filter(|unit| unit.prefixes).map(|unit| unit.symbol);
+        let prefixed = symbols.flat_map(|symbol| PREFIXES.iter().map(move |(prefix, _)| (*prefix, symbol)));
+        whole.or_else(|| prefixed.into_iter().find(|(prefix, symbol)| format!("{prefix}{symbol}") == name))
+    };
+    let (prefix, symbol) = parts(&written[..first(written)])?;
+    let (head, rest) = wanted.split_at(first(wanted));
+    parts(head).filter(|(_, base)| *base == symbol).map(|_| format!("{prefix}{symbol}{rest}"))
+}
+
 pub fn missing_unit(text: &str, span: Span, number: Option<&str>, wanted: Dimension, wanted_by: &str) -> Diagnostic {
     Diagnostic::new(Code::MissingUnit, format!("`{wanted_by}` wants {}, found a number without a unit", article(wanted)))
         .at(span, format!("`{text}` has no unit"))
         .help(format!("write the unit, such as `{}`", example(number, wanted)))
+}
+
+/// A plain number would be read as radians, where most people think of degrees.
+pub fn angle_without_unit(text: &str, span: Span) -> Diagnostic {
+    let plain = text.parse::<f64>().is_ok();
+    let help =
+        if plain { format!("write `{text} deg`, or `{text} rad`") } else { "write `deg` or `rad`, as in `40 deg`".to_owned() };
+    Diagnostic::new(Code::MissingUnit, format!("`{text}` is an angle without a unit")).at(span, "degrees or radians?").help(help)
 }
 
 /// `entries`: a list or range, whose unit stands once, at its end.
@@ -46,16 +69,18 @@ pub fn missing_unit_of_entries(entries: &str, span: Span, wanted: Dimension, wan
 pub fn wrong_dimension(
     text: &str,
     span: Span,
-    number: Option<&str>,
-    found: Dimension,
-    wanted: Dimension,
+    (number, unit): (Option<&str>, Option<&str>),
+    (found, wanted): (Dimension, Dimension),
     wanted_by: &str,
 ) -> Diagnostic {
     let help = match (number, wanted) {
         (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
             format!("`g` is the gram; write `{number} gn`, as many times the standard gravity of 9.80665 m/s^2")
         }
-        (Some(_), _) => format!("write {}, such as `{}`", article(wanted), example(number, wanted)),
+        (Some(number), _) => {
+            let fits = unit.and_then(|unit| of_the_same_size(unit, &wanted.usual_unit())).map(|unit| format!("{number} {unit}"));
+            format!("write {}, such as `{}`", article(wanted), fits.unwrap_or_else(|| example(Some(number), wanted)))
+        }
         (None, Dimension::NUMBER) => format!("divide `{text}` by {}, so that a number is left", article(found)),
         (None, _) => {
             format!("change `{text}` so that it gives {}, which has the unit `{}`", article(wanted), wanted.usual_unit())

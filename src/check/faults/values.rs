@@ -228,6 +228,12 @@ pub fn not_finite(span: Span) -> Diagnostic {
         .help("change the expression so that it has a value")
 }
 
+pub fn energy_not_finite(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::NotFinite, "the energy of the striker, ½ m v², is not a finite number")
+        .at(span, "too fast for its mass")
+        .help("lower its velocity or its mass")
+}
+
 pub fn edition(span: Span, text: &str) -> Diagnostic {
     Diagnostic::new(Code::Edition, format!("this version reads edition 1 of the language, not {text}"))
         .at(span, "another edition")

@@ -6,11 +6,16 @@ use crate::plan::Interval;
 use crate::quantity::Dimension;
 use crate::source::Span;
 
-pub fn several_specimens(head: Span, declared: &[(&str, Span)]) -> Diagnostic {
+/// Places of what a plan declares several of, at most.
+pub const SHOWN: usize = 20;
+
+/// `declared`: the first [`SHOWN`] of `several`.
+pub fn several_specimens(head: Span, declared: &[(String, Span)], several: usize) -> Diagnostic {
     let fault = Diagnostic::new(Code::AmbiguousSpecimen, "several specimens are declared, and this procedure names none")
         .at(head, "on which specimen?");
     let lines: Vec<String> = declared.iter().map(|(name, _)| format!("specimen = {name}")).collect();
-    let help = format!("add a line {}", one_of(lines.iter().map(String::as_str)));
+    let more = if several > SHOWN { format!(", or one of {} more", several - SHOWN) } else { String::new() };
+    let help = format!("add a line {}{more}", one_of(lines.iter().map(String::as_str)));
     declared.iter().fold(fault, |fault, (name, span)| fault.at(*span, format!("`{name}` is one"))).help(help)
 }
 

@@ -4,6 +4,7 @@ mod bounds;
 mod faults;
 mod plan;
 mod real_rig;
+mod recorded;
 
 use super::{Checked, LoadFault, Loader, Options, check};
 

@@ -1,21 +1,23 @@
-//! The command line of the evidence: `psd verify`, `sign`, `keygen`, `report`. In: words. Out: their shapes, not their
+//! The command line of the evidence: `psd verify`, `sign`, `keygen`, `issue`, `report`. In: words. Out: their shapes, not their
 //! meaning.
 
 use std::path::PathBuf;
 
 use clap::Args;
 
-use super::name;
+use super::{date, name};
 use crate::diagnostic::excerpt::one_line;
 
 /// The longest reason, characters.
 const REASON: usize = 1000;
 
 #[derive(Debug, Args)]
-#[command(after_help = "Says of record, targets, results, figures, certificate, plan, manifest and signature whether each is\n\
-    what it must be. A folder that nobody signed is told to be unsigned.\n\n\
+#[command(
+    after_help = "Says of record, targets, results, figures, certificate, plan, manifest, sidecars and signature whether\n\
+    each is what it must be. A folder that nobody signed is told to be unsigned.\n\n\
     Exit codes: 0 all is proven, 2 the command line is wrong, 3 something is not what it must be, or a key\n\
-    that was named did not sign.")]
+    that was named did not sign."
+)]
 pub struct VerifyArguments {
     /// The run folder
     #[arg(value_name = "RUN")]
@@ -75,11 +77,14 @@ pub struct ReportArguments {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Makes a report that takes the place of the one in RUN and says so
-    #[arg(long, requires = "by", requires = "reason")]
+    #[arg(long, requires = "by", requires = "reason", requires = "date")]
     pub amend: bool,
     /// Who answers for the amendment
     #[arg(long, value_name = "NAME", value_parser = name, requires = "amend")]
     pub by: Option<String>,
+    /// The day of the amendment, which is the new report's day of issue
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, requires = "amend")]
+    pub date: Option<String>,
     /// Why there is one
     #[arg(long, value_name = "TEXT", value_parser = reason, requires = "amend")]
     pub reason: Option<String>,
@@ -89,6 +94,35 @@ pub struct ReportArguments {
     /// A file of such particulars, one `field = text` a line
     #[arg(long, value_name = "FILE", requires = "amend")]
     pub particulars: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Writes a new folder beside the run, RUN-issued, with the same record and every result made from it again.\n\
+    Only particulars of the `plan` block are stated so, such as `condition`, `temperature`, `humidity` or `deviations`; a\n\
+    measured or computed number never is. A report that is issued already is changed by `psd report --amend`.\n\n\
+    Exit codes: 0 issued, 2 the command line is wrong or the days are not in order, 3 the folder does not verify,\n\
+    or a file failed."
+)]
+pub struct IssueArguments {
+    /// The run folder; it must verify
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Who authorises the report
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub authorised_by: String,
+    /// The day of issue
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
+    pub date: String,
+    /// States a particular that is known only after the test; without a text it is not given any more
+    #[arg(long, value_name = "FIELD=TEXT", value_parser = particular)]
+    pub set_particular: Vec<(String, String)>,
+    /// A file of such particulars, one `field = text` a line
+    #[arg(long, value_name = "FILE")]
+    pub particulars: Option<PathBuf>,
+    /// Where the issued report goes, with a copy of the record: a new or empty folder [default: RUN-issued]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 fn particular(text: &str) -> Result<(String, String), String> {

@@ -3,10 +3,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::amending::AMENDMENT;
 use super::folder::{Folder, MANIFEST};
+use super::issues;
 use super::keys::KnownKey;
 use super::rebuilt::{Rebuilt, Report};
+use super::sidecar;
 use super::signature;
 use crate::output::manifest_with;
 
@@ -34,13 +35,15 @@ impl Finding {
 /// Everything that can be said of a run folder. With keys, each of them must have signed, and nobody else.
 pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Finding> {
     let mut findings = rebuilt.findings.clone();
-    let has_results = folder.files.contains_key(MANIFEST) || folder.listed().count() > folder.kept().len();
+    let sidecars = sidecars(folder, rebuilt.report.as_ref());
+    let own = folder.listed().filter(|(name, _)| !sidecars.contains(name.as_str()));
+    let has_results = folder.files.contains_key(MANIFEST) || own.count() > folder.kept().len();
     if let Some(report) = rebuilt.report.as_ref().filter(|_| has_results) {
-        results(folder, report, &mut findings);
+        results(folder, report, &sidecars, &mut findings);
     }
     let ended = rebuilt.report.as_ref().is_some_and(|report| report.ended);
     findings.push(if has_results {
-        manifest(folder, rebuilt.report.as_ref())
+        manifest(folder, rebuilt.report.as_ref(), &sidecars)
     } else if ended {
         Finding::wrong("results", "the run came to its end, and its results are gone: `psd report` makes them again")
     } else if let Some(fault) = foreign(folder).first() {
@@ -48,8 +51,18 @@ pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Fin
     } else {
         Finding::sound("manifest", "no results yet: there is none")
     });
+    findings.extend(sidecars.iter().filter_map(|name| sidecar::examine(folder, name)));
     findings.extend(signature::examine(folder, rebuilt.report.as_ref(), keys));
     findings
+}
+
+/// What lies beside the files of the run and is of one of them: nothing that record or manifest name.
+fn sidecars<'a>(folder: &'a Folder, report: Option<&Report>) -> BTreeSet<&'a str> {
+    let listed = folder.bytes(MANIFEST).and_then(lines).unwrap_or_default();
+    let is_of_the_run =
+        |name: &str| listed.contains_key(name) || report.is_some_and(|report| report.files.iter().any(|(path, _)| path == name));
+    let named = folder.files.keys().map(String::as_str);
+    named.filter(|name| sidecar::is_one(folder, name) && !is_of_the_run(name)).collect()
 }
 
 /// The parts of the results, each with the paths that are its own.
@@ -60,7 +73,7 @@ fn part_of(path: &str) -> &'static str {
 }
 
 /// Every file of the results against the one that the record gives.
-fn results(folder: &Folder, report: &Report, findings: &mut Vec<Finding>) {
+fn results(folder: &Folder, report: &Report, sidecars: &BTreeSet<&str>, findings: &mut Vec<Finding>) {
     let mut faults: BTreeMap<&'static str, Vec<String>> = BTreeMap::new();
     let mut counts: BTreeMap<&'static str, usize> = BTreeMap::new();
     for (path, digest) in &report.files {
@@ -73,8 +86,10 @@ fn results(folder: &Folder, report: &Report, findings: &mut Vec<Finding>) {
         faults.entry(part_of(path)).or_default().push(fault);
     }
     let expected: BTreeSet<&String> = report.files.iter().map(|(path, _)| path).collect();
-    let kept: BTreeSet<String> = folder.kept().into_iter().map(|(name, _)| name).collect();
-    for (name, _) in folder.listed().filter(|(name, _)| !expected.contains(name) && !kept.contains(*name) && *name != AMENDMENT) {
+    let issue = issues::held(folder).map(|(name, _)| name.to_owned());
+    let kept: BTreeSet<String> = folder.kept().into_iter().map(|(name, _)| name).chain(issue).collect();
+    let foreign = |name: &String| !expected.contains(name) && !kept.contains(name) && !sidecars.contains(name.as_str());
+    for (name, _) in folder.listed().filter(|(name, _)| foreign(name)) {
         faults.entry(part_of(name)).or_default().push(format!("`{name}` is none of the run's files"));
     }
     for (part, _) in PARTS.iter().rev() {
@@ -97,7 +112,7 @@ fn foreign(folder: &Folder) -> Vec<String> {
 }
 
 /// Every file of the folder against its manifest, and the manifest against the one that the record gives.
-fn manifest(folder: &Folder, report: Option<&Report>) -> Finding {
+fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>) -> Finding {
     let Some(bytes) = folder.bytes(MANIFEST) else {
         return Finding::wrong("manifest", "there are results and no manifest");
     };
@@ -112,19 +127,23 @@ fn manifest(folder: &Folder, report: Option<&Report>) -> Finding {
             None => faults.push(format!("`{name}` is missing")),
         }
     }
-    let unlisted = folder.listed().filter(|(name, _)| !lines.contains_key(name.as_str()));
+    let known = |name: &str| lines.contains_key(name) || sidecars.contains(name);
+    let unlisted = folder.listed().filter(|(name, _)| !known(name));
     faults.extend(unlisted.map(|(name, _)| format!("`{name}` is not in the manifest")));
     if faults.is_empty()
         && let Some(report) = report
     {
-        let beside = folder.files.get(AMENDMENT).map(|held| (AMENDMENT.to_owned(), held.digest.clone()));
+        let beside = issues::held(folder).map(|(name, held)| (name.to_owned(), held.digest.clone()));
         let all: Vec<(String, String)> = report.files.iter().cloned().chain(folder.kept()).chain(beside).collect();
         if manifest_with(&[], &all).bytes != bytes {
             faults.push("it is not the one that the record gives".to_owned());
         }
     }
     if faults.is_empty() {
-        Finding::sound("manifest", format!("all {} files are those it lists, and there is no other", lines.len()))
+        Finding::sound("manifest", {
+            let other = if sidecars.is_empty() { "there is no other" } else { "there is no other but sidecars" };
+            format!("all {} files are those it lists, and {other}", lines.len())
+        })
     } else {
         Finding::wrong("manifest", some_of(&faults))
     }

@@ -16,14 +16,16 @@ use crate::cli::record_file::JOURNAL;
 use crate::digest::{hex, sha256};
 use crate::record::journal::{MOST_BYTES, is_part_of_a_reserve};
 
-use super::amending::AMENDMENT;
-use super::signature;
+use super::issues::{ISSUE, OLDER_ISSUE};
+use super::{sidecar, signature};
 
 /// Name of the manifest; it does not list itself.
 pub const MANIFEST: &str = "manifest.sha256";
 
 /// The largest file of a run folder that is read, bytes: the record is the longest.
 const LISTED_BYTES: u64 = MOST_BYTES;
+/// The largest sidecar whose bytes are held.
+const SIDECAR_BYTES: u64 = 64 << 20;
 
 /// The deepest that files of a run folder lie.
 const DEEPEST: usize = 64;
@@ -41,7 +43,7 @@ pub struct Folder {
 pub struct Held {
     /// SHA-256, hex.
     pub digest: String,
-    /// Only of files that are read: the record, the manifest, the amendment, signatures.
+    /// Only of files that are read: the record, the manifest, the issue, signatures, the report on paper, sidecars.
     pub bytes: Option<Vec<u8>>,
 }
 
@@ -146,7 +148,7 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
     let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
     let file = OpenOptions::new().read(true).custom_flags(flags.cast_signed()).open(path).map_err(said)?;
     let mut file = file.take(LISTED_BYTES);
-    if is_read {
+    if is_read && (metadata.len() <= SIDECAR_BYTES || !sidecar::is_name(name)) {
         // As long as it is: a record of a gigabyte is not to grow by doubling.
         let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
         file.read_to_end(&mut bytes).map_err(said)?;
@@ -163,7 +165,8 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
 }
 
 fn is_read(name: &str) -> bool {
-    matches!(name, JOURNAL | MANIFEST | AMENDMENT) || signature::is_name(name) || is_reserve(name)
+    let own = matches!(name, JOURNAL | MANIFEST | ISSUE | OLDER_ISSUE) || signature::is_name(name) || is_reserve(name);
+    own || name == sidecar::PAPER || sidecar::is_name(name)
 }
 
 fn is_kept(name: &str) -> bool {

@@ -1,16 +1,16 @@
 //! What a record gives when it is played back: record, verdict, every file of the results. In: the journal of a run
-//! folder, and the amendment beside it. Out: the results, and what the playing back itself proves.
+//! folder, and what was stated after the test beside it. Out: the results, and what the playing back itself proves.
 
 use std::borrow::Cow;
 
-use super::amending::{AMENDMENT, AmendmentFile, amended};
 use super::check::Finding;
 use super::folder::Folder;
+use super::issues::{IssueFile, apply};
 use super::standing;
 use crate::cli::conclude::made_of;
 use crate::cli::provenance::BUILD;
 use crate::cli::record_file::{self, JOURNAL, ReadRecord};
-use crate::output::{Listed, Nowhere, OutputError, Provenance, Shelf};
+use crate::output::{Issue, IssueKind, Listed, Nowhere, OutputError, Provenance, Shelf};
 use crate::plan::Plan;
 use crate::record::journal::EntryKind;
 use crate::record::{Outcome, Record};
@@ -30,20 +30,20 @@ pub struct PlayedBack {
 }
 
 impl PlayedBack {
-    /// Plays a record back, and amends what it gives.
-    pub fn of(read: ReadRecord, amendment: Option<&AmendmentFile>) -> Result<Self, String> {
+    /// Plays a record back, with what was stated of its report after the test.
+    pub fn of(read: ReadRecord, issues: Option<&IssueFile>) -> Result<Self, String> {
         let ReadRecord { mut plan, mut provenance, played, recovered } = read;
         // What is played is done with line by line: nobody else holds them.
         drop(recovered);
         let Replayed { mut record, mismatch, steps } = tape::replay(&plan, played);
-        if let Outcome::Faulted { reason } | Outcome::Aborted { reason } = &mut record.outcome
+        if let Outcome::Faulted { reason } | Outcome::Aborted { reason } | Outcome::NotReleased { reason } = &mut record.outcome
             && reason.contains(CUT_OFF)
         {
             *reason = format!("INCOMPLETE: {reason}");
         }
         let assessment = verdict::assess(&plan, &record);
-        if let Some(file) = amendment {
-            amended(&mut plan, &mut provenance, file)?;
+        if let Some(file) = issues {
+            apply(&mut plan, &mut provenance, file)?;
         }
         Ok(Self { plan, provenance, record, assessment, mismatch, steps })
     }
@@ -98,14 +98,13 @@ impl Rebuilt {
             Err(failure) => return nothing("record", failure.to_string()),
         };
         drop(bytes);
-        let amendment = match folder.bytes(AMENDMENT).map(AmendmentFile::read).transpose() {
-            Ok(amendment) => amendment,
-            Err(fault) => return nothing("amendment", fault),
-        };
-        Self::played(read, amendment.as_ref())
+        match IssueFile::of(folder) {
+            Ok(issues) => Self::played(read, issues.as_ref()),
+            Err(fault) => nothing("issue", fault),
+        }
     }
 
-    fn played(read: ReadRecord, amendment: Option<&AmendmentFile>) -> Self {
+    fn played(read: ReadRecord, issues: Option<&IssueFile>) -> Self {
         let count = |kind| read.recovered.lines.iter().filter(|line| line.kind == kind).count();
         let (targets, steps) = (count(EntryKind::Intent), count(EntryKind::Step));
         let torn = read.recovered.torn.as_ref();
@@ -121,9 +120,9 @@ impl Rebuilt {
         let ended = read.played.ended;
         let header = &read.played.header;
         let other_build = (header.build != BUILD).then(|| format!("psd {} build {}", header.psd, header.build));
-        let played = match PlayedBack::of(read, amendment) {
+        let played = match PlayedBack::of(read, issues) {
             Ok(played) => played,
-            Err(fault) => return Self { findings: vec![Finding::wrong("amendment", fault)], report: None },
+            Err(fault) => return Self { findings: vec![Finding::wrong("issue", fault)], report: None },
         };
         let built = if other_build.is_some() { " by another build of psd" } else { "" };
         let again = || format!("all {targets} came out again bit for bit");
@@ -134,7 +133,13 @@ impl Rebuilt {
                 Finding::wrong("targets", "the run came to its end, and the record has none".to_owned())
             }
             (None, _) if ended => Finding::wrong("targets", "the record has an end that the run does not come to".to_owned()),
-            (None, Outcome::Aborted { reason } | Outcome::Faulted { reason }) => {
+            (
+                None,
+                Outcome::Aborted { reason }
+                | Outcome::NotReleased { reason }
+                | Outcome::Blocked { reason }
+                | Outcome::Faulted { reason },
+            ) => {
                 let told = if reason.contains("INCOMPLETE") { reason.clone() } else { format!("INCOMPLETE: {reason}") };
                 Finding::sound("targets", format!("{}; {told}{built}", again()))
             }
@@ -142,10 +147,8 @@ impl Rebuilt {
         if played.mismatch.is_some() {
             return Self { findings, report: None };
         }
-        let Some(amends) = &played.provenance.amends else { return Self::with_results(findings, &played, other_build, ended) };
-        if let Some(last) = amends.amendments.last() {
-            findings.push(Finding::sound("amendment", format!("report {} amends report {}", amends.report_id, last.replaces)));
-        }
+        let issues = played.provenance.issues.as_ref();
+        findings.extend(issues.and_then(|issues| Some(Finding::sound("issue", told(&issues.report_id, issues.all.last()?)))));
         Self::with_results(findings, &played, other_build, ended)
     }
 
@@ -166,5 +169,15 @@ impl Rebuilt {
             ended,
         };
         Self { findings, report: Some(report) }
+    }
+}
+
+/// Which report this is, and what it was made from.
+fn told(report_id: &str, last: &Issue) -> String {
+    let (by, replaces) = (&last.by, &last.replaces);
+    let date = last.date.as_ref().map_or_else(String::new, |date| format!(" on {date}"));
+    match last.kind {
+        IssueKind::First => format!("report {report_id}, issued{date} by {by} from report {replaces}"),
+        IssueKind::Amendment => format!("report {report_id} amends report {replaces},{date} by {by}"),
     }
 }

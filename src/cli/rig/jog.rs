@@ -1,7 +1,7 @@
 //! `psd rig jog`: moves the rig by hand, inside the plan's limits, through the guard and never without a yes. In: places as
 //! the language writes them. Out: where the rig went; of a real rig also a run folder with the record.
 
-use std::sync::mpsc::Receiver;
+use std::path::Path;
 
 use super::typed::{number, places};
 use crate::cli::args::JogArguments;
@@ -9,20 +9,21 @@ use crate::cli::conclude::write_made;
 use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
+use crate::cli::question::{Kind, Question};
 use crate::cli::record_file::{self, Circumstances};
 use crate::cli::run_folder::RunFolder;
 use crate::cli::settings::Settings;
-use crate::cli::watch::{Attendance, Signals, next_line, typed_lines};
+use crate::cli::watch::{Attendance, Signals, Typed, agrees, next_line};
 use crate::cli::{plan_file, provenance, real_rig};
 use crate::output;
-use crate::plan::{Interval, Link, Plan};
+use crate::plan::{Datum, Interval, Link, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::record::Outcome;
-use crate::rig::{LimitedQuantity, Rig, RigFault, Wish, connect, virtual_rig};
+use crate::rig::{Identity, LimitedQuantity, OWN_SPEED, Rig, RigFault, Wish, connect, virtual_rig};
 use crate::run::driven::{Driver, Specimen};
 use crate::run::tape::{self, BY_HAND};
-use crate::run::{Parting, Unwatched};
+use crate::run::{Extent, Motion, Parting, Unwatched};
 
 /// Moves, asking first on every move.
 pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -43,20 +44,48 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
     let wish = Wish::default().letting_go(arguments.let_go);
     let _signals = Signals::holding(&wish).map_err(Failure::Signals)?;
     let by = real_rig::operator(plan, &attendance).unwrap_or_else(|| "somebody".to_owned());
-    let person = Person { lines: None, wish: &wish, yes: arguments.yes, by };
+    let person = Person { typed: None, wish: &wish, yes: arguments.yes, by };
     match plan.rig.link {
         Link::Virtual(_) => on_a_virtual_rig(arguments, plan, &wanted, person, settings),
         Link::Real(_) => {
-            let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let recorded = arguments.datum.as_deref().map(|run| datum_of(run, plan)).transpose()?;
+            let rig = plan.rig.with_recorded_datum(recorded.as_deref());
+            let connected = connect(&rig, &plan.limits, &wish).map_err(Failure::Rig);
             let place = |fault: &str| plan_file::place_of_link(&checked, &arguments.plan, fault);
             let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
             if !settings.can_ask && !connected.rig.identity().simulated {
                 return Err(Failure::command_line("a real rig is not moved by hand without a person at a terminal")
                     .help("start it from a terminal"));
             }
+            if recorded.is_none() {
+                without_load(plan, &mut connected.rig)?;
+            }
             on_a_real_rig(arguments, plan, &attendance, &mut connected.rig, &wanted, person, settings)
         }
     }
+}
+
+/// Where the zero of a recorded run lies in the coordinate of its rig, m, one an axis.
+fn datum_of(run: &Path, plan: &Plan) -> Result<Vec<f64>, Failure> {
+    let read = record_file::read(run)?;
+    let of_this_rig = read.plan.rig.name == plan.rig.name;
+    let datum = read.played.rig.filter(|_| of_this_rig).and_then(|rig| rig.datum);
+    datum.ok_or_else(|| {
+        Failure::command_line(format!("{}: its record says of no datum of rig `{}`", run.display(), plan.rig.name))
+    })
+}
+
+/// A rig whose zero is where it stands does not count from where its specimen carries load: its limits would go with it.
+fn without_load(plan: &Plan, rig: &mut dyn Rig) -> Result<(), Failure> {
+    let Some(link) = plan.rig.link.as_real().filter(|link| link.datum == Datum::Here) else { return Ok(()) };
+    let found = rig.read().map_err(Failure::Rig)?;
+    let loaded = found.force.iter().enumerate().find(|(axis, force)| force.is_nan() || force.abs() > link.gate_of(*axis).zero);
+    let Some((_, force)) = loaded else { return Ok(()) };
+    Err(Failure::command_line(format!(
+        "the specimen carries {}: where it stands is no zero to count from, and nothing moved",
+        readable(*force, Dimension::FORCE)
+    ))
+    .help("`--datum RUN` counts from the zero of the run that loaded it"))
 }
 
 /// What the command line asks for, SI.
@@ -85,7 +114,7 @@ fn on_a_virtual_rig(
         circumstances,
     );
     let journal = record_file::begin_nowhere(plan, &header)?;
-    let mut hand = Hand { wanted, plan, person, settings, ended: None };
+    let mut hand = Hand { wanted, plan, identity: rig.identity(), own_speed: rig.own_speed(), person, settings, ended: None };
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = Box::new(|| None);
     let (recorded, _) = tape::record_driven(plan, rig.as_mut(), &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
@@ -107,7 +136,7 @@ fn on_a_real_rig(
     let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
     let header = record_file::header(plan, record_file::device(rig), &arguments.plan_settings, &provenance, circumstances);
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let mut hand = Hand { wanted, plan, person, settings, ended: None };
+    let mut hand = Hand { wanted, plan, identity: rig.identity(), own_speed: rig.own_speed(), person, settings, ended: None };
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = real_rig::wall_clock();
     let (recorded, steps) = tape::record_driven(plan, rig, &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
@@ -124,6 +153,10 @@ fn on_a_real_rig(
 struct Hand<'a> {
     wanted: &'a Wanted,
     plan: &'a Plan,
+    /// Who the rig says it is.
+    identity: Identity,
+    /// m/s
+    own_speed: Option<f64>,
     person: Person<'a>,
     settings: Settings,
     ended: Option<Result<Exit, Failure>>,
@@ -154,7 +187,8 @@ impl Hand<'_> {
         self.ended.unwrap_or_else(|| {
             let (exit, reason) = match outcome {
                 Outcome::Completed => (Exit::Met, ""),
-                Outcome::Aborted { reason } => (Exit::Stopped, reason.as_str()),
+                Outcome::Aborted { reason } | Outcome::NotReleased { reason } => (Exit::Stopped, reason.as_str()),
+                Outcome::Blocked { reason } => (Exit::Missed, reason.as_str()),
                 Outcome::Faulted { reason } => (Exit::Fault, reason.as_str()),
             };
             tell(&format!("  nothing moved: {reason}\n"));
@@ -187,6 +221,21 @@ impl Hand<'_> {
         }
     }
 
+    /// What the move takes.
+    fn motion(&self, to: &[f64], specimen: &Specimen<'_, '_>) -> Motion {
+        let from = specimen.commanded();
+        let (low, high) = from
+            .iter()
+            .chain(to)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| (low.min(*place), high.max(*place)));
+        let way = from.iter().zip(to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max);
+        let speed = self.wanted.speed.or(self.own_speed).unwrap_or(OWN_SPEED);
+        let expected =
+            Extent { travel: Some(Interval { low, high }), force: None, speed: Some(speed), duration: Some(way / speed) };
+        let does = format!("it moves from {} to {}", told(from), told(to));
+        Motion { expected, ..Motion::of(self.plan, self.identity.clone(), does) }
+    }
+
     /// One move, in increments where the plan limits them; Ctrl-C holds the rig on its way.
     fn move_to(&mut self, to: &[f64], specimen: &mut Specimen<'_, '_>) -> Result<Exit, Failure> {
         let speed = self.wanted.speed;
@@ -198,7 +247,8 @@ impl Hand<'_> {
             tell(&format!("  refused: {fault}\n"));
             return Ok(Exit::Stopped);
         }
-        if !self.person.agrees(&question, specimen)? {
+        let motion = self.motion(to, specimen);
+        if !self.person.agrees(&question, &motion, specimen)? {
             specimen.hold();
             tell("  nothing moved\n");
             return Ok(Exit::Stopped);
@@ -253,7 +303,7 @@ fn refused(fault: RigFault) -> Result<Exit, Failure> {
 
 /// Who says yes.
 struct Person<'a> {
-    lines: Option<Receiver<String>>,
+    typed: Option<Typed>,
     wish: &'a Wish,
     yes: bool,
     /// The name.
@@ -263,18 +313,18 @@ struct Person<'a> {
 impl Person<'_> {
     /// None at the end of the input and on Ctrl-C. The rig stays where it is meanwhile, and is heard from.
     fn line(&mut self, specimen: &mut Specimen<'_, '_>) -> Result<Option<String>, Failure> {
-        let lines = self.lines.get_or_insert_with(typed_lines);
-        next_line(lines, self.wish, || specimen.listen()).map_err(Failure::Rig)
+        let typed = self.typed.get_or_insert_with(Typed::from_the_terminal);
+        next_line(typed, self.wish, || specimen.listen()).map_err(Failure::Rig)
     }
 
-    /// Only a clear yes is one. Question and answer are on record.
-    fn agrees(&mut self, question: &str, specimen: &mut Specimen<'_, '_>) -> Result<bool, Failure> {
+    /// Only its word lets it move. Question and answer are on record.
+    fn agrees(&mut self, question: &str, motion: &Motion, specimen: &mut Specimen<'_, '_>) -> Result<bool, Failure> {
         let (agreed, how) = if self.yes {
             (true, "answered by --yes")
         } else {
-            tell(&format!("  {question} [y or n] "));
-            let line = self.line(specimen)?;
-            let yes = line.is_some_and(|line| matches!(line.trim().to_ascii_lowercase().as_str(), "y" | "yes"));
+            let typed = self.typed.get_or_insert_with(Typed::from_the_terminal);
+            let asked = Question::of(Kind::Jog, motion);
+            let yes = agrees(typed, &asked, self.wish, || specimen.listen()).map_err(Failure::Rig)?;
             (yes, if yes { "yes" } else { "no" })
         };
         specimen.remark(format!("{question} {how} ({})", self.by));

@@ -7,7 +7,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::give;
 use crate::diagnostic::excerpt::escape;
 use crate::mechanics::identification::fit_line;
-use crate::plan::{Interval, Plan};
+use crate::plan::{Datum, Interval, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::rig::{Identity, Reading, Rig};
@@ -30,7 +30,8 @@ pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {
         readings.push(rig.read().map_err(Failure::Rig)?);
     }
     let axes = (0..rig.degrees_of_freedom()).map(|axis| Axis::of(&readings, axis)).collect::<Vec<_>>();
-    give(&report(&identity, &axes, plan))?;
+    let datum = rig.datum().filter(|_| plan.rig.link.as_real().is_some_and(|link| link.datum != Datum::Machine));
+    give(&report(&identity, &axes, plan, datum.as_deref()))?;
     let inside = |(place, axis): (usize, &Axis)| {
         let limits = plan.rig.limits_of(place, &plan.limits);
         limits.displacement.contains(axis.displacement.mean) && limits.force.contains(axis.force.mean)
@@ -112,12 +113,16 @@ fn advice(axes: &[Axis], plan: &Plan) -> Option<String> {
     more.then(|| format!("  the rig block says too little: noise = {}\n", plain(noise, Dimension::FORCE, 2)))
 }
 
-fn report(identity: &Identity, axes: &[Axis], plan: &Plan) -> String {
+fn report(identity: &Identity, axes: &[Axis], plan: &Plan, datum: Option<&[f64]>) -> String {
     let mut text = format!("{}{}\n", escape(&identity.name), if identity.simulated { " (simulated)" } else { "" });
     for (what, word) in [("model", &identity.model), ("serial number", &identity.serial), ("firmware", &identity.firmware)] {
         if !word.is_empty() {
             let _ = writeln!(text, "  {what:<14}{}", escape(word));
         }
+    }
+    if let Some(places) = datum {
+        let places: Vec<String> = places.iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect();
+        let _ = writeln!(text, "  stands at {} of its own: a run would begin there, at 0", places.join(", "));
     }
     for (number, axis) in (1..).zip(axes) {
         if axes.len() > 1 {

@@ -134,7 +134,12 @@ fn on_record(
     });
     watcher.finish();
     let drift = recorded.record.drift.as_ref();
-    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, drift, shelf))?;
+    if let Outcome::NotReleased { reason } = &recorded.record.outcome {
+        tell(&format!("  NOT RELEASED: {}\n", escape(reason)));
+        write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |_| Ok(Vec::new()))?;
+    } else {
+        write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, drift, shelf))?;
+    }
     for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
         let note = settings.paint_note("  note:");
         tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));
@@ -148,7 +153,8 @@ fn on_record(
     }
     Ok(exit.max(match recorded.record.outcome {
         Outcome::Completed => Exit::Met,
-        Outcome::Aborted { .. } => Exit::Stopped,
+        Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
+        Outcome::Blocked { .. } => Exit::Missed,
         Outcome::Faulted { .. } => Exit::Fault,
     }))
 }

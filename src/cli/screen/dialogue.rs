@@ -1,10 +1,12 @@
-//! What the person at the keys wants. In: keys, and questions of the run. Out: wishes, answers, words for the record.
-//! Only a `y` typed at a question, then its line and a name, goes on; nothing else ever counts as yes.
+//! What the person at the keys wants. In: keys with their time, questions of the run. Out: wishes, answers, words for the record.
+//! Only the word of a question, typed and entered after it could be read, goes on; nothing else ever counts as yes.
 
 use std::collections::VecDeque;
+use std::time::Duration;
 
 use super::keys::Key;
-use crate::cli::watch::interrupt;
+use crate::cli::question::{DEAF, Kind, Question};
+use crate::cli::watch::{Stay, interrupt};
 use crate::diagnostic::excerpt::escape;
 use crate::rig::Wish;
 use crate::run::{Inspection, Next};
@@ -21,20 +23,43 @@ pub struct Dialogue {
     pub paused: bool,
     /// The run waits, and the rig rests.
     pub waiting: bool,
-    /// What is asked is whether the rig is to unload: the run has ended.
-    pub unload: bool,
     pub help: bool,
-    /// What the run asks a person to look at.
-    pub question: Option<String>,
+    /// What the run asks a person.
+    pub question: Option<Question>,
+    /// A remark to the answer, once it is typed.
+    pub remark: Option<String>,
+    /// What was entered last answers nothing.
+    pub unclear: bool,
     pub typing: Option<Typing>,
+    /// What may be chosen after the early end of the run.
+    pub after: Option<After>,
     /// Only watching: nothing runs that could be paused.
     pub monitor: bool,
+    /// Somebody has stopped the run at these keys.
+    pub attended: bool,
+    /// How many questions and choices have appeared.
+    pub appeared: u64,
+    /// From when on keys count for the last of them; None: it has not been drawn yet.
+    heard_from: Option<Duration>,
     /// Steps asked for while paused.
     single: u32,
     said: VecDeque<String>,
     answer: Option<Inspection>,
+    /// The rig is to unload: its question comes next.
+    unload: bool,
+    /// What the person chose at last.
+    chosen: Option<Stay>,
     /// The terminal is gone: nobody answers any more.
     lost: bool,
+}
+
+/// The early end of a run, as a person stands before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum After {
+    /// The rig holds, and these may be chosen.
+    Held { resume: bool, unload: bool },
+    /// Nobody knows whether it holds.
+    NotHeld,
 }
 
 /// A line that is being typed.
@@ -52,17 +77,16 @@ pub enum What {
     NoteName {
         note: String,
     },
-    /// `y` or `n`.
+    /// The word of the question, or `n`.
     Answer,
     /// A remark to the answer.
-    Remark {
-        yes: bool,
-    },
+    Remark,
     /// Who answers.
     AnswerName {
         yes: bool,
-        remark: String,
     },
+    /// Why a held run goes on.
+    Reason,
 }
 
 impl Dialogue {
@@ -75,29 +99,48 @@ impl Dialogue {
         Self { monitor: true, ..Self::default() }
     }
 
-    /// A key was pressed.
-    pub fn press(&mut self, key: Key, wish: &Wish) {
-        if key == Key::Interrupt {
-            interrupt(wish);
+    /// A key was pressed, `now`.
+    pub fn press(&mut self, key: Key, now: Duration, wish: &Wish) {
+        self.pressed(key, now, wish);
+        self.open_question();
+    }
+
+    fn pressed(&mut self, key: Key, now: Duration, wish: &Wish) {
+        let interrupts = key == Key::Interrupt;
+        if self.is_asking() && !self.hears(now) {
+            // What stands there has not been read: only a Ctrl-C that stops a run counts.
+            if interrupts && self.after.is_none() {
+                self.interrupt(wish);
+            }
             return;
+        }
+        match self.after {
+            Some(after) if self.typing.is_none() && self.question.is_none() => return self.choose(after, key),
+            // The run has ended: it is the motion that is not wanted.
+            Some(_) if interrupts => return self.back_to_the_choice(),
+            None if interrupts => return self.interrupt(wish),
+            _ => {}
         }
         // The help closes with any key; one that it names as a way to stop also does that.
         if std::mem::take(&mut self.help) && !matches!(key, Key::Character('h' | 'H' | 'q' | 'Q')) {
             return;
         }
         match &self.typing {
-            Some(Typing { what: What::Answer, .. }) => self.choose(key, wish),
+            Some(Typing { what: What::Answer, .. }) => self.answer(key, wish),
             Some(_) => self.edit(key),
             None => self.command(key, wish),
         }
-        self.open_question();
+    }
+
+    fn interrupt(&mut self, wish: &Wish) {
+        self.attended = true;
+        interrupt(wish);
     }
 
     fn command(&mut self, key: Key, wish: &Wish) {
         let Key::Character(character) = key else { return };
         match character.to_ascii_lowercase() {
-            'q' => wish.stop_after_step(),
-            'h' => wish.hold_now(),
+            'q' | 'h' => self.stop(character, wish),
             '?' => self.help = true,
             _ if self.monitor => {}
             'p' => {
@@ -107,22 +150,48 @@ impl Dialogue {
                 self.said.push_back(format!("{did}{}", self.signature()));
             }
             's' | ' ' if self.paused => self.single += 1,
-            'i' => self.typing = Some(Typing { what: What::Note, text: String::new() }),
+            'i' => self.line(What::Note),
             _ => {}
         }
     }
 
-    /// At a question.
-    fn choose(&mut self, key: Key, wish: &Wish) {
+    fn stop(&mut self, key: char, wish: &Wish) {
+        self.attended = true;
+        if key.eq_ignore_ascii_case(&'h') { wish.hold_now() } else { wish.stop_after_step() }
+    }
+
+    /// At a question. As long as nothing is typed, single keys are what they are elsewhere.
+    fn answer(&mut self, key: Key, wish: &Wish) {
+        let nothing_typed = self.typing.as_ref().is_none_or(|typing| typing.text.is_empty());
+        let unload = self.is_unload();
+        self.unclear = false;
         match key {
-            Key::Character('y' | 'Y') => self.line(What::Remark { yes: true }),
-            Key::Character('n' | 'N') => self.line(What::Remark { yes: false }),
-            Key::Character('q' | 'Q') if self.unload => self.no_answer(),
-            Key::Character('q' | 'Q') => wish.stop_after_step(),
-            Key::Character('h' | 'H') => wish.hold_now(),
-            Key::End => self.no_answer(),
+            Key::Character('i' | 'I') if nothing_typed => self.line(What::Remark),
+            Key::Character('?') if nothing_typed => self.help = true,
+            Key::Character(key @ ('q' | 'Q' | 'h' | 'H')) if nothing_typed && !unload => self.stop(key, wish),
+            Key::Escape if unload => self.back_to_the_choice(),
+            Key::Escape => self.line(What::Answer),
+            key => self.edit(key),
+        }
+    }
+
+    /// What is done with a rig that holds. None of it moves anything yet.
+    fn choose(&mut self, after: After, key: Key) {
+        match (after, key) {
+            // Its question comes next.
+            _ if self.unload => {}
+            (After::NotHeld, Key::Character('a' | 'A')) | (After::Held { .. }, Key::Character('x' | 'X') | Key::Interrupt) => {
+                self.chosen = Some(Stay::Leave);
+            }
+            (After::Held { resume: true, .. }, Key::Character('r' | 'R')) => self.line(What::Reason),
+            (After::Held { unload: true, .. }, Key::Character('u' | 'U')) => self.unload = true,
             _ => {}
         }
+    }
+
+    fn back_to_the_choice(&mut self) {
+        (self.question, self.typing, self.remark, self.answer, self.unload) = (None, None, None, None, false);
+        self.appear();
     }
 
     fn edit(&mut self, key: Key) {
@@ -138,6 +207,8 @@ impl Dialogue {
             }
             Key::EraseLine => typing.text.clear(),
             Key::Enter => self.enter(),
+            Key::Escape if matches!(typing.what, What::Remark | What::AnswerName { .. }) => self.line(What::Answer),
+            Key::Escape if typing.what == What::Reason => self.back_to_the_choice(),
             Key::Escape => self.typing = None,
             Key::End if self.question.is_some() && !typing.what.is_note() => self.no_answer(),
             Key::End | Key::Interrupt => {}
@@ -153,21 +224,32 @@ impl Dialogue {
                 Some(_) => self.say(&text),
                 None => self.line(What::NoteName { note: text }),
             },
-            What::Remark { yes } => match self.operator.clone() {
-                Some(name) => self.settle(yes, &text, name),
-                None => self.line(What::AnswerName { yes, remark: text }),
+            What::Answer => match (self.question.as_ref().and_then(|question| question.kind.answer(&text)), &self.operator) {
+                (Some(yes), Some(name)) => {
+                    let name = name.clone();
+                    self.settle(yes, name);
+                }
+                (Some(yes), None) => self.line(What::AnswerName { yes }),
+                (None, _) => {
+                    self.unclear = !text.is_empty();
+                    self.line(what);
+                }
             },
-            // A note or an answer has somebody's name: a blank one is asked for again.
-            What::NoteName { .. } | What::AnswerName { .. } if text.is_empty() => self.line(what),
+            What::Remark => {
+                self.remark = Some(text).filter(|text| !text.is_empty());
+                self.line(What::Answer);
+            }
+            // A note, an answer and a resumption have somebody's name and reason: a blank one is asked for again.
+            What::NoteName { .. } | What::AnswerName { .. } | What::Reason if text.is_empty() => self.line(what),
             What::NoteName { note } => {
                 self.operator = Some(text);
                 self.say(&note);
             }
-            What::AnswerName { yes, remark } => {
+            What::AnswerName { yes } => {
                 self.operator = Some(text.clone());
-                self.settle(yes, &remark, text);
+                self.settle(yes, text);
             }
-            What::Answer => {}
+            What::Reason => self.chosen = Some(Stay::Resume(text)),
         }
     }
 
@@ -183,35 +265,63 @@ impl Dialogue {
         self.operator.as_ref().map_or_else(|| " by a person".to_owned(), |name| format!(" ({name})"))
     }
 
-    fn settle(&mut self, yes: bool, remark: &str, name: String) {
-        let remark = (!remark.is_empty()).then(|| remark.to_owned());
-        let by = Some(name);
-        self.question = None;
-        self.answer = Some(if yes {
-            Inspection::GoOn { note: remark, by }
-        } else if self.unload {
-            Inspection::Stop { reason: remark.map_or_else(|| "no".to_owned(), |remark| format!("no: {remark}")), by }
-        } else {
-            let reason = "stopped by a person at an inspection";
-            Inspection::Stop { reason: remark.map_or_else(|| reason.to_owned(), |remark| format!("{reason}: {remark}")), by }
-        });
+    fn settle(&mut self, yes: bool, name: String) {
+        let Some(question) = self.question.take() else { return };
+        self.answer = Some(question.kind.said(yes, self.remark.take(), name));
     }
 
     fn no_answer(&mut self) {
-        self.question = None;
-        self.typing = None;
-        self.answer = Some(Inspection::Stop { reason: "no answer at an inspection".to_owned(), by: None });
+        let Some(question) = self.question.take() else { return };
+        (self.typing, self.remark) = (None, None);
+        self.answer = Some(question.kind.unanswered());
     }
 
     /// A question waits until the line that is being typed is done: no letter of a note is taken for an answer.
     fn open_question(&mut self) {
         if self.question.is_some() && self.typing.is_none() {
             self.line(What::Answer);
+            self.appear();
         }
     }
 
+    /// Something stands there that waits for a person: keys count for it once it has been drawn and could be read.
+    const fn appear(&mut self) {
+        self.appeared += 1;
+        self.heard_from = None;
+    }
+
+    /// What appeared as this number has been drawn, `now`.
+    pub fn drawn(&mut self, appeared: u64, now: Duration) {
+        if self.appeared == appeared && self.heard_from.is_none() {
+            self.heard_from = Some(now + DEAF);
+        }
+    }
+
+    /// Whether it has not been drawn yet.
+    pub const fn is_new(&self) -> bool {
+        self.is_asking() && self.heard_from.is_none()
+    }
+
+    /// Whether keys count by now for what waits for an answer.
+    pub fn hears(&self, now: Duration) -> bool {
+        self.heard_from.is_some_and(|from| now >= from)
+    }
+
+    /// Whether something stands there that waits for an answer.
+    const fn is_asking(&self) -> bool {
+        match &self.typing {
+            Some(Typing { what: What::Answer, .. }) => !self.help,
+            Some(_) => false,
+            None => self.after.is_some() && self.question.is_none(),
+        }
+    }
+
+    fn is_unload(&self) -> bool {
+        self.question.as_ref().is_some_and(|question| question.kind == Kind::Unload)
+    }
+
     /// The run asks; asked again, the answer is given once it is known.
-    pub fn ask(&mut self, note: &str) -> Inspection {
+    pub fn ask(&mut self, question: &Question) -> Inspection {
         if self.lost {
             return Inspection::Stop { reason: "nobody to ask at an inspection: the terminal is gone".to_owned(), by: None };
         }
@@ -219,22 +329,54 @@ impl Dialogue {
             return answer;
         }
         if self.question.is_none() {
-            self.question = Some(note.to_owned());
-            self.help = false;
+            self.question = Some(question.clone());
+            (self.help, self.unclear, self.remark) = (false, false, None);
         }
         self.open_question();
         Inspection::Wait
     }
 
-    /// A person stopped the run: asks whether the rig is to take the load off. None: nobody answers, and it stays held.
-    pub fn ask_to_unload(&mut self, question: &str) -> Option<Inspection> {
-        if !std::mem::replace(&mut self.unload, true) {
-            (self.question, self.answer, self.typing) = (None, None, None);
+    /// The run has ended early, and the rig holds: whether it is to take the load off. None: it stays held.
+    pub fn ask_to_unload(&mut self, question: &Question) -> Option<Inspection> {
+        if self.lost || self.chosen.is_some() {
+            return None;
         }
-        match self.ask(question) {
-            Inspection::Stop { by: None, .. } => None,
-            answer => Some(answer),
+        let choice = After::Held { resume: true, unload: true };
+        if self.after != Some(choice) {
+            self.offer(choice);
         }
+        if self.unload {
+            match self.ask(question) {
+                Inspection::Stop { .. } => self.back_to_the_choice(),
+                Inspection::Wait => {}
+                yes @ Inspection::GoOn { .. } => {
+                    (self.after, self.unload) = (None, false);
+                    return Some(yes);
+                }
+            }
+        }
+        Some(Inspection::Wait)
+    }
+
+    /// The run has ended early: what the person before it wants.
+    pub fn stay(&mut self, after: After) -> Stay {
+        if self.lost {
+            return Stay::Leave;
+        }
+        // Who left a held rig has not seen that nobody knows any more whether it holds.
+        let news = after == After::NotHeld && self.after != Some(after);
+        if let Some(chosen) = self.chosen.clone().filter(|_| !news) {
+            return chosen;
+        }
+        if self.after != Some(after) {
+            self.offer(after);
+        }
+        Stay::Wait
+    }
+
+    fn offer(&mut self, after: After) {
+        (self.after, self.chosen, self.help) = (Some(after), None, false);
+        self.back_to_the_choice();
     }
 
     /// What a person wants between two steps.
@@ -264,131 +406,4 @@ impl What {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn type_in(dialogue: &mut Dialogue, text: &str) {
-        let wish = Wish::default();
-        for character in text.chars() {
-            let key = match character {
-                '\n' => Key::Enter,
-                '\u{1b}' => Key::Escape,
-                '\u{4}' => Key::End,
-                other => Key::Character(other),
-            };
-            dialogue.press(key, &wish);
-        }
-    }
-
-    fn answered(operator: Option<&str>, typed: &str) -> Inspection {
-        let mut dialogue = Dialogue::new(operator.map(str::to_owned));
-        assert_eq!(dialogue.ask("look"), Inspection::Wait);
-        type_in(&mut dialogue, typed);
-        dialogue.ask("look")
-    }
-
-    #[test]
-    fn only_yes_with_a_name_goes_on() {
-        let by = |name: &str| Some(name.to_owned());
-        assert_eq!(answered(Some("A. Engineer"), "y\n"), Inspection::GoOn { note: None, by: by("A. Engineer") });
-        let typed = Inspection::GoOn { note: Some("no crack".to_owned()), by: by("B") };
-        assert_eq!(answered(None, "yno crack\n  \nB\n"), typed, "a blank name is asked for again");
-        for undecided in ["", "\n", " ", "x", "y", "yyes", "y\n", "y\n  \n", "y\u{1b}", "p", "i"] {
-            assert_eq!(answered(None, undecided), Inspection::Wait, "{undecided:?}");
-        }
-        assert!(matches!(answered(None, "\u{4}"), Inspection::Stop { .. }), "the end of the input is no yes");
-        assert!(matches!(answered(None, "yfine\u{4}"), Inspection::Stop { .. }));
-        let stop = answered(Some("C"), "ncrack\u{202e}\n");
-        let reason = "stopped by a person at an inspection: crack\\u{202e}".to_owned();
-        assert_eq!(stop, Inspection::Stop { reason, by: by("C") });
-    }
-
-    #[test]
-    fn a_note_being_typed_is_no_answer() {
-        let mut dialogue = Dialogue::new(Some("A".to_owned()));
-        type_in(&mut dialogue, "i");
-        assert_eq!(dialogue.ask("look"), Inspection::Wait);
-        type_in(&mut dialogue, "yes\n");
-        assert_eq!(dialogue.next(), Next::Record("yes (A)".to_owned()));
-        assert_eq!(dialogue.ask("look"), Inspection::Wait, "the question comes after the note");
-        type_in(&mut dialogue, "y\n");
-        assert!(matches!(dialogue.ask("look"), Inspection::GoOn { .. }));
-    }
-
-    #[test]
-    fn a_paused_run_goes_on_step_by_step() {
-        let mut dialogue = Dialogue::new(None);
-        type_in(&mut dialogue, "s");
-        assert_eq!(dialogue.next(), Next::GoOn);
-        type_in(&mut dialogue, "p");
-        assert_eq!(dialogue.next(), Next::Record("paused by a person".to_owned()));
-        assert_eq!(dialogue.next(), Next::Wait);
-        type_in(&mut dialogue, "s ");
-        assert_eq!([dialogue.next(), dialogue.next(), dialogue.next()], [Next::GoOn, Next::GoOn, Next::Wait]);
-        type_in(&mut dialogue, "p");
-        assert_eq!(dialogue.next(), Next::Record("went on by a person".to_owned()));
-        assert_eq!(dialogue.next(), Next::GoOn);
-    }
-
-    #[test]
-    fn the_help_lets_the_keys_through_that_it_names_for_stopping() {
-        for (key, held) in [('h', true), ('H', true), ('q', false), ('p', false)] {
-            let wish = Wish::default();
-            let mut dialogue = Dialogue::new(None);
-            dialogue.press(Key::Character('?'), &wish);
-            dialogue.press(Key::Character(key), &wish);
-            assert_eq!((wish.wants_hold(), wish.wants_end()), (held, key != 'p'), "{key}");
-            assert!(!dialogue.help && !dialogue.paused, "any other key only closes it");
-        }
-    }
-
-    #[test]
-    fn a_pause_is_one_when_the_step_has_ended() {
-        let mut dialogue = Dialogue::new(Some("A".to_owned()));
-        type_in(&mut dialogue, "p");
-        assert!(dialogue.paused && !dialogue.waiting, "the rig still moves");
-        assert!(matches!(dialogue.next(), Next::Record(_)));
-        assert_eq!((dialogue.next(), dialogue.waiting), (Next::Wait, true));
-        type_in(&mut dialogue, "s");
-        assert_eq!((dialogue.next(), dialogue.waiting), (Next::GoOn, false), "one step moves");
-    }
-
-    #[test]
-    fn only_a_yes_with_a_name_unloads() {
-        let answered = |typed: &str| {
-            let mut dialogue = Dialogue::new(Some("A".to_owned()));
-            assert_eq!(dialogue.ask("look"), Inspection::Wait);
-            type_in(&mut dialogue, "n\n");
-            assert!(matches!(dialogue.ask("look"), Inspection::Stop { .. }));
-            assert_eq!(dialogue.ask_to_unload("unload?"), Some(Inspection::Wait));
-            type_in(&mut dialogue, typed);
-            dialogue.ask_to_unload("unload?")
-        };
-        assert!(matches!(answered("y\n"), Some(Inspection::GoOn { by: Some(_), .. })));
-        let no = Inspection::Stop { reason: "no: cracked".to_owned(), by: Some("A".to_owned()) };
-        assert_eq!(answered("ncracked\n"), Some(no));
-        for undecided in ["", "\n", "y", "x"] {
-            assert_eq!(answered(undecided), Some(Inspection::Wait), "{undecided:?}");
-        }
-        assert_eq!((answered("q"), answered("\u{4}"), answered("y\u{4}")), (None, None, None));
-        let mut dialogue = Dialogue::new(None);
-        dialogue.lose(&Wish::default());
-        assert_eq!(dialogue.ask_to_unload("unload?"), None, "nobody there");
-    }
-
-    #[test]
-    fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_stop() {
-        let wish = Wish::default();
-        let mut dialogue = Dialogue::default();
-        dialogue.press(Key::Character('q'), &wish);
-        assert!(wish.wants_end() && !wish.wants_hold());
-        dialogue.press(Key::Interrupt, &wish);
-        assert!(wish.wants_hold());
-        let wish = Wish::default();
-        dialogue.paused = true;
-        dialogue.lose(&wish);
-        assert!(wish.wants_end());
-        assert_eq!(dialogue.next(), Next::GoOn, "a pause does not outlast its terminal");
-        assert!(matches!(dialogue.ask("look"), Inspection::Stop { .. }));
-    }
-}
+mod tests;

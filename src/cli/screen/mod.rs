@@ -11,13 +11,16 @@ mod terminal;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use super::question::{Kind, Question};
+use super::watch::Stay;
 use crate::plan::Plan;
 use crate::record::Event;
 use crate::rig::{Live, Wish};
 use crate::run::{Inspection, Next, Observer, StepReport};
-use dialogue::Dialogue;
+use dialogue::{After, Dialogue};
 use draw::View;
-use model::Model;
+use keys::Key;
+use model::{Ended, Model};
 use terminal::{Gone, Page};
 
 pub use terminal::is_large_enough;
@@ -88,6 +91,40 @@ impl Screen {
         self.shared.lock().live = Some(live);
     }
 
+    /// Asks, or gives the answer once it is known.
+    pub fn ask(&self, question: &Question) -> Inspection {
+        self.wait_for(|dialogue| dialogue.ask(question), |answer| *answer == Inspection::Wait)
+    }
+
+    /// The run has ended early, and the rig holds: what may be done with it. None: it stays held.
+    pub fn ask_to_unload(&self, question: &Question) -> Option<Inspection> {
+        self.wait_for(|dialogue| dialogue.ask_to_unload(question), |answer| *answer == Some(Inspection::Wait))
+    }
+
+    /// The run has ended early: what the person before it wants. `resume`: whether it could go on.
+    pub fn stay(&self, resume: bool) -> Stay {
+        let ended = self.shared.lock().model.ended;
+        let after = if ended == Some(Ended::NotHeld) { After::NotHeld } else { After::Held { resume, unload: false } };
+        self.wait_for(|dialogue| dialogue.stay(after), |stay| *stay == Stay::Wait)
+    }
+
+    /// Whether somebody has stopped the run at its keys.
+    pub fn is_attended(&self) -> bool {
+        self.shared.lock().dialogue.attended
+    }
+
+    /// What the dialogue says; where that is to wait, after a moment: an answer, or the time for the rig to be heard from.
+    fn wait_for<T>(&self, ask: impl FnOnce(&mut Dialogue) -> T, waits: impl FnOnce(&T) -> bool) -> T {
+        let mut state = self.shared.lock();
+        state.wanted = true;
+        self.shared.changed.notify_all();
+        let answer = ask(&mut state.dialogue);
+        if waits(&answer) {
+            drop(self.shared.changed.wait_timeout(state, FRAME));
+        }
+        answer
+    }
+
     /// Gives the terminal back.
     pub fn finish(&mut self) {
         if std::mem::replace(&mut self.finished, true) {
@@ -126,25 +163,7 @@ impl Observer for Screen {
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {
-        let mut state = self.shared.lock();
-        state.wanted = true;
-        self.shared.changed.notify_all();
-        let answer = state.dialogue.ask(note);
-        if answer == Inspection::Wait {
-            // An answer, or the time for the rig to be heard from.
-            drop(self.shared.changed.wait_timeout(state, FRAME));
-        }
-        answer
-    }
-
-    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
-        let mut state = self.shared.lock();
-        self.shared.changed.notify_all();
-        let answer = state.dialogue.ask_to_unload(question);
-        if answer == Some(Inspection::Wait) {
-            drop(self.shared.changed.wait_timeout(state, FRAME));
-        }
-        answer
+        self.ask(&Question { kind: Kind::Look, lines: vec![note.to_owned()] })
     }
 
     fn next(&mut self) -> Next {
@@ -198,6 +217,7 @@ fn is_wanted(shared: &Shared) -> bool {
 /// Draws and listens until the run is over.
 fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(), Gone> {
     let mut page = Page::open()?;
+    let mut alarmed = false;
     loop {
         let drawn = Instant::now();
         let (model, dialogue) = {
@@ -208,17 +228,35 @@ fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(),
             let live = state.live.as_ref().and_then(Live::newest);
             (Model { live, ..state.model.clone() }, state.dialogue.clone())
         };
-        page.draw(&View { model: &model, dialogue: &dialogue, wish, elapsed: began.elapsed().as_secs(), color })?;
+        page.draw(&View { model: &model, dialogue: &dialogue, wish, now: began.elapsed(), color })?;
+        if model.ended == Some(Ended::NotHeld) && !std::mem::replace(&mut alarmed, true) {
+            page.ring();
+        }
+        if dialogue.is_new() {
+            // What was typed before it could be seen is none of its answers.
+            loop {
+                let pressed = page.keys(Duration::ZERO)?;
+                if pressed.is_empty() {
+                    break;
+                }
+                press(shared, pressed, began, wish);
+            }
+            shared.lock().dialogue.drawn(dialogue.appeared, began.elapsed());
+        }
         // Keys are heard at once, and the next picture is drawn when its time has come.
         while let Some(left) = FRAME.checked_sub(drawn.elapsed()).filter(|left| !left.is_zero()) {
             let pressed = page.keys(left)?;
             if !pressed.is_empty() {
-                let mut state = shared.lock();
-                for key in pressed {
-                    state.dialogue.press(key, wish);
-                }
-                shared.changed.notify_all();
+                press(shared, pressed, began, wish);
             }
         }
     }
+}
+
+fn press(shared: &Shared, keys: Vec<Key>, began: Instant, wish: &Wish) {
+    let mut state = shared.lock();
+    for key in keys {
+        state.dialogue.press(key, began.elapsed(), wish);
+    }
+    shared.changed.notify_all();
 }

@@ -60,6 +60,11 @@ impl Page {
         self.terminal.draw(|frame| draw(frame, view)).map(|_| ()).map_err(|_| Gone)
     }
 
+    /// Makes itself heard by who does not look.
+    pub fn ring(&mut self) {
+        let _ = stderr().write_all(b"\x07").and_then(|()| stderr().flush());
+    }
+
     /// The keys pressed, if any within the time-out.
     pub fn keys(&mut self, timeout: Duration) -> Result<Vec<Key>, Gone> {
         if !has_input(timeout)? {

@@ -1,121 +1,142 @@
-//! A person who answers inspections by typing lines: on a terminal too small for the screen. In: lines. Out: an answer
+//! A person who answers questions by typing lines: on a terminal too small for the screen, and by hand. In: lines. Out: an answer
 //! with its remark and name. The end of the input never counts as yes.
 
-use std::io::BufRead as _;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::time::Duration;
-
+use super::typed::{Heard, Typed};
 use crate::cli::output::tell;
+use crate::cli::question::{Kind, Question};
 use crate::diagnostic::excerpt::escape;
 use crate::rig::Wish;
 use crate::run::Inspection;
-
-/// How long one look for an answer takes: Ctrl-C and the rig are heard between two.
-const LOOK: Duration = Duration::from_millis(50);
 
 /// Where the conversation is.
 #[derive(Default)]
 pub struct Person {
     /// The lines typed, once anything has been asked.
-    lines: Option<Receiver<String>>,
+    typed: Option<Typed>,
     state: State,
-    /// What is asked is whether to unload.
-    unload: bool,
+    /// Of the question that waits.
+    remark: Option<String>,
 }
 
 #[derive(Default)]
 enum State {
     #[default]
     Silent,
-    /// Asked whether to go on.
-    Asked,
+    Asked(Kind),
     /// Asked for the name to this answer.
-    Naming(Inspection),
+    Naming(Kind, bool),
+    /// Told that nobody knows whether the rig holds.
+    Alarmed,
+    Acknowledged,
 }
 
 impl Person {
     /// Asks, or looks for an answer to what was asked. A name once given is kept.
-    pub fn ask(&mut self, note: &str, operator: &mut Option<String>) -> Inspection {
-        if matches!(self.state, State::Silent) {
-            let what = if self.unload { "" } else { "inspect: " };
-            tell(&format!("\n  {what}{}\n", escape(note)));
-            self.question();
+    pub fn ask(&mut self, question: &Question, operator: &mut Option<String>) -> Inspection {
+        let kind = question.kind;
+        if !matches!(self.state, State::Asked(asked) | State::Naming(asked, _) if asked == kind) {
+            self.show(question);
+            self.remark = None;
+            self.state = State::Asked(kind);
         }
-        let lines = self.lines.get_or_insert_with(typed_lines);
-        match lines.recv_timeout(LOOK) {
-            Ok(line) => self.heard(&line, operator),
-            Err(RecvTimeoutError::Timeout) => Inspection::Wait,
-            Err(RecvTimeoutError::Disconnected) => {
+        match self.typed().hear() {
+            Heard::Nothing => Inspection::Wait,
+            Heard::Ready => {
+                tell(&prompt(kind));
+                Inspection::Wait
+            }
+            Heard::Line(line) => self.heard(&line, operator),
+            Heard::End => {
                 self.state = State::Silent;
-                Inspection::Stop { reason: "no answer at an inspection".to_owned(), by: None }
+                kind.unanswered()
             }
         }
     }
 
     /// Asks whether a rig that a person stopped is to unload. The run has ended: the end of the input is no answer at all.
-    pub fn ask_to_unload(&mut self, question: &str, operator: &mut Option<String>) -> Option<Inspection> {
-        if !std::mem::replace(&mut self.unload, true) {
-            self.state = State::Silent;
-        }
+    pub fn ask_to_unload(&mut self, question: &Question, operator: &mut Option<String>) -> Option<Inspection> {
         match self.ask(question, operator) {
             Inspection::Stop { by: None, .. } => None,
-            Inspection::Stop { by, .. } => Some(Inspection::Stop { reason: "no".to_owned(), by }),
             answer => Some(answer),
         }
     }
 
-    fn question(&mut self) {
-        tell(if self.unload {
-            "  unload? [y and it MOVES, n and it stays held] "
-        } else {
-            "  go on? [y, y and a note for the record, or n to stop here] "
-        });
-        self.state = State::Asked;
+    /// Shows what nobody may overlook, and waits until somebody says that they have seen it; whether they have.
+    pub fn acknowledges(&mut self, alarm: &str) -> bool {
+        match self.state {
+            State::Acknowledged => return true,
+            State::Alarmed => {}
+            _ => {
+                tell(&format!("\n  {alarm}\n"));
+                self.typed().begin();
+                self.state = State::Alarmed;
+            }
+        }
+        match self.typed().hear() {
+            Heard::Nothing => return false,
+            Heard::Ready => {
+                tell("  press Enter once you have seen this > ");
+                return false;
+            }
+            Heard::Line(_) | Heard::End => self.state = State::Acknowledged,
+        }
+        true
+    }
+
+    fn typed(&mut self) -> &mut Typed {
+        self.typed.get_or_insert_with(Typed::from_the_terminal)
+    }
+
+    fn show(&mut self, question: &Question) {
+        tell(&shown(question));
+        self.typed().begin();
     }
 
     fn heard(&mut self, line: &str, operator: &mut Option<String>) -> Inspection {
-        let answer = match std::mem::take(&mut self.state) {
-            State::Naming(answer) => {
+        let (kind, yes) = match std::mem::take(&mut self.state) {
+            State::Naming(kind, yes) => {
                 let name = escape(line.trim());
                 if !name.is_empty() {
                     *operator = Some(name);
                 }
-                answer
+                (kind, yes)
             }
-            State::Silent | State::Asked => {
-                let Some(answer) = answer(line) else {
-                    self.question();
+            State::Asked(kind) => {
+                let remark = line.trim().strip_prefix("i ").map(str::trim).filter(|remark| !remark.is_empty());
+                if let Some(remark) = remark {
+                    self.remark = Some(escape(remark));
+                }
+                let Some(yes) = kind.answer(line) else {
+                    tell(&prompt(kind));
+                    self.state = State::Asked(kind);
                     return Inspection::Wait;
                 };
-                answer
+                (kind, yes)
+            }
+            state => {
+                self.state = state;
+                return Inspection::Wait;
             }
         };
-        let by = operator.clone();
-        if by.is_none() {
+        let Some(by) = operator.clone() else {
             tell("  your name? ");
-            self.state = State::Naming(answer);
+            self.state = State::Naming(kind, yes);
             return Inspection::Wait;
-        }
-        match answer {
-            Inspection::GoOn { note, .. } => Inspection::GoOn { note, by },
-            Inspection::Stop { reason, .. } => Inspection::Stop { reason, by },
-            Inspection::Wait => Inspection::Wait,
-        }
+        };
+        kind.said(yes, self.remark.take(), by)
     }
 }
 
-/// `y`, `y and what was seen`, `n`; anything else is no answer.
-fn answer(line: &str) -> Option<Inspection> {
-    let line = line.trim();
-    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-    match word.to_ascii_lowercase().as_str() {
-        "y" | "yes" => {
-            let note = escape(rest.trim());
-            Some(Inspection::GoOn { note: (!note.is_empty()).then_some(note), by: None })
-        }
-        "n" | "no" | "stop" => Some(Inspection::Stop { reason: "stopped by a person at an inspection".to_owned(), by: None }),
-        _ => None,
-    }
+/// A question as it is told in lines.
+fn shown(question: &Question) -> String {
+    let lines: String = question.lines.iter().map(|line| format!("  {line}\n")).collect();
+    format!("\n  {}\n{lines}", question.kind.title())
+}
+
+/// What may be typed.
+fn prompt(kind: Kind) -> String {
+    let remark = if kind == Kind::Jog { "" } else { ", i and a remark for the record" };
+    format!("  type {}, or n: {}{remark} > ", kind.word(), kind.declined())
 }
 
 /// The next line typed. None at the end of the input, which never counts as yes, and on Ctrl-C. While nothing is typed,
@@ -123,50 +144,90 @@ fn answer(line: &str) -> Option<Inspection> {
 ///
 /// # Errors
 /// As `meanwhile`.
-pub fn next_line<E>(
-    lines: &Receiver<String>,
-    wish: &Wish,
-    mut meanwhile: impl FnMut() -> Result<(), E>,
-) -> Result<Option<String>, E> {
+pub fn next_line<E>(typed: &mut Typed, wish: &Wish, mut meanwhile: impl FnMut() -> Result<(), E>) -> Result<Option<String>, E> {
     loop {
-        match lines.recv_timeout(LOOK) {
-            Ok(line) => return Ok(Some(line)),
-            Err(RecvTimeoutError::Disconnected) => return Ok(None),
-            Err(RecvTimeoutError::Timeout) if wish.wants_end() => return Ok(None),
-            Err(RecvTimeoutError::Timeout) => meanwhile()?,
+        match typed.hear() {
+            Heard::Line(line) => return Ok(Some(line)),
+            Heard::End => return Ok(None),
+            Heard::Nothing | Heard::Ready if wish.wants_end() => return Ok(None),
+            Heard::Nothing | Heard::Ready => meanwhile()?,
         }
     }
 }
 
-/// Lines of standard input, read beside the run: a read that waits must not keep Ctrl-C from being heard.
-pub fn typed_lines() -> Receiver<String> {
-    let (send, receive) = channel();
-    std::thread::spawn(move || {
-        for line in std::io::stdin().lock().lines() {
-            let Ok(line) = line else { break };
-            if send.send(line).is_err() {
-                break;
-            }
+/// Asks for one motion; only its word is a yes. As [`next_line`].
+///
+/// # Errors
+/// As `meanwhile`.
+pub fn agrees<E>(
+    typed: &mut Typed,
+    question: &Question,
+    wish: &Wish,
+    mut meanwhile: impl FnMut() -> Result<(), E>,
+) -> Result<bool, E> {
+    tell(&shown(question));
+    typed.begin();
+    loop {
+        match typed.hear() {
+            Heard::Ready => tell(&prompt(question.kind)),
+            Heard::Line(line) => match question.kind.answer(&line) {
+                Some(yes) => return Ok(yes),
+                None => tell(&prompt(question.kind)),
+            },
+            Heard::End => return Ok(false),
+            Heard::Nothing if wish.wants_end() => return Ok(false),
+            Heard::Nothing => {}
         }
-    });
-    receive
+        meanwhile()?;
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+    use std::rc::Rc;
+    use std::sync::mpsc::{Sender, channel};
+    use std::time::Duration;
+
     use super::*;
 
-    /// What comes of these lines and then the end of the input.
-    fn said(lines: &[&str], operator: Option<&str>) -> Inspection {
-        let (send, receive) = channel();
-        for line in lines {
-            send.send((*line).to_owned()).unwrap();
+    /// A clock that a test sets, a person whose lines it types.
+    struct Bench {
+        now: Rc<Cell<Duration>>,
+        send: Option<Sender<String>>,
+        person: Person,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let (now, (send, lines)) = (Rc::new(Cell::new(Duration::ZERO)), channel());
+            let clock = Rc::clone(&now);
+            let typed = Typed::of(lines, Box::new(move || clock.get()));
+            Self { now, send: Some(send), person: Person { typed: Some(typed), ..Person::default() } }
         }
-        drop(send);
-        let mut person = Person { lines: Some(receive), ..Person::default() };
+
+        fn types(&self, line: &str) {
+            self.send.as_ref().unwrap().send(line.to_owned()).unwrap();
+        }
+    }
+
+    const LOOK: Kind = Kind::Look;
+
+    fn question(kind: Kind) -> Question {
+        Question { kind, lines: vec!["look".to_owned()] }
+    }
+
+    /// What comes of these lines, typed once the question can be answered, and then the end of the input.
+    fn said(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
+        let mut bench = Bench::new();
         let mut operator = operator.map(str::to_owned);
+        assert_eq!(bench.person.ask(&question(kind), &mut operator), Inspection::Wait);
+        bench.now.set(Duration::from_secs(1));
+        assert_eq!(bench.person.ask(&question(kind), &mut operator), Inspection::Wait);
+        lines.iter().for_each(|line| bench.types(line));
+        bench.send = None;
         loop {
-            match person.ask("look", &mut operator) {
+            match bench.person.ask(&question(kind), &mut operator) {
                 Inspection::Wait => {}
                 answer => return answer,
             }
@@ -174,42 +235,126 @@ mod tests {
     }
 
     #[test]
-    fn only_a_clear_yes_with_a_name_goes_on() {
+    fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
         let by = |name: &str| Some(name.to_owned());
-        assert_eq!(said(&["y"], Some("A")), Inspection::GoOn { note: None, by: by("A") });
+        assert_eq!(said(LOOK, &["y"], Some("A")), Inspection::GoOn { note: None, by: by("A") });
+        assert_eq!(said(LOOK, &["yes"], Some("A")), Inspection::GoOn { note: None, by: by("A") });
         let note = Some("crack at\\u{7} midspan".to_owned());
-        assert_eq!(said(&["what", " Yes crack at\u{7} midspan ", "", "B"], None), Inspection::GoOn { note, by: by("B") });
-        assert!(matches!(said(&["no"], Some("A")), Inspection::Stop { by: Some(_), .. }));
-        assert_eq!((answer(""), answer("yesterday"), answer("go")), (None, None, None));
+        let lines = ["what", "i crack at\u{7} midspan ", "yes", "", "B"];
+        assert_eq!(said(LOOK, &lines, None), Inspection::GoOn { note, by: by("B") });
+        assert!(matches!(said(LOOK, &["no"], Some("A")), Inspection::Stop { by: Some(_), .. }));
+        let released = said(Kind::Release, &["y", "yes", "xyz", "release", "RELEASE"], Some("A"));
+        assert_eq!(released, Inspection::GoOn { note: None, by: by("A") });
+        for none in ["y", "yes", "xyz", "release", "UNLOAD", "y RELEASE"] {
+            assert!(matches!(said(Kind::Release, &[none], Some("A")), Inspection::Stop { by: None, .. }), "{none}");
+        }
+        let declined = Inspection::Stop { reason: "declined by the operator: not clear".to_owned(), by: by("A") };
+        assert_eq!(said(Kind::Release, &["i not clear", "n"], Some("A")), declined);
+    }
+
+    #[test]
+    fn a_release_typed_before_its_question_could_be_read_is_none() {
+        let mut bench = Bench::new();
+        let mut operator = Some("A".to_owned());
+        let mut ask = |bench: &mut Bench| bench.person.ask(&question(Kind::Release), &mut operator);
+        bench.types("RELEASE");
+        assert_eq!(ask(&mut bench), Inspection::Wait);
+        bench.types("RELEASE");
+        bench.now.set(Duration::from_millis(999));
+        assert_eq!(ask(&mut bench), Inspection::Wait);
+        bench.types("RELEASE");
+        bench.now.set(Duration::from_secs(1));
+        assert_eq!([ask(&mut bench), ask(&mut bench)], [Inspection::Wait, Inspection::Wait]);
+        bench.types("RELEASE");
+        assert!(matches!(ask(&mut bench), Inspection::GoOn { .. }));
+    }
+
+    #[test]
+    fn the_next_question_takes_no_line_of_the_one_before() {
+        let mut bench = Bench::new();
+        let mut operator = Some("A".to_owned());
+        let mut ask = |bench: &mut Bench, kind| bench.person.ask(&question(kind), &mut operator);
+        ask(&mut bench, Kind::Release);
+        bench.now.set(Duration::from_secs(1));
+        ask(&mut bench, Kind::Release);
+        bench.types("RELEASE");
+        bench.types("RELEASE");
+        assert!(matches!(ask(&mut bench, Kind::Release), Inspection::GoOn { .. }));
+        assert_eq!([ask(&mut bench, Kind::GoOn), ask(&mut bench, Kind::GoOn)], [Inspection::Wait, Inspection::Wait]);
+        bench.now.set(Duration::from_secs(2));
+        assert_eq!([ask(&mut bench, Kind::GoOn), ask(&mut bench, Kind::GoOn)], [Inspection::Wait, Inspection::Wait]);
+        bench.types("RELEASE");
+        assert!(matches!(ask(&mut bench, Kind::GoOn), Inspection::GoOn { .. }));
+    }
+
+    #[test]
+    fn an_alarm_waits_until_it_has_been_seen() {
+        let mut bench = Bench::new();
+        bench.types("");
+        assert!(!bench.person.acknowledges("NOT CONFIRMED HELD"));
+        bench.types("");
+        assert!(!bench.person.acknowledges("NOT CONFIRMED HELD"));
+        bench.now.set(Duration::from_secs(1));
+        assert!(!bench.person.acknowledges("NOT CONFIRMED HELD"));
+        bench.types("");
+        assert!(bench.person.acknowledges("NOT CONFIRMED HELD") && bench.person.acknowledges("NOT CONFIRMED HELD"));
     }
 
     #[test]
     fn a_line_ends_with_the_input_and_with_ctrl_c() {
+        let typed = || {
+            let (send, lines) = channel();
+            (send, Typed::of(lines, Box::new(|| Duration::ZERO)))
+        };
         let wish = Wish::default();
-        let (send, receive) = channel();
+        let (send, mut lines) = typed();
         send.send("y".to_owned()).unwrap();
         drop(send);
-        let line = |receive: &Receiver<String>| next_line(receive, &wish, || Ok::<_, ()>(()));
-        assert_eq!(line(&receive), Ok(Some("y".to_owned())));
-        assert_eq!(line(&receive), Ok(None));
-        let (kept, receive) = channel();
+        let line = |typed: &mut Typed| next_line(typed, &wish, || Ok::<_, ()>(()));
+        assert_eq!(line(&mut lines), Ok(Some("y".to_owned())));
+        assert_eq!(line(&mut lines), Ok(None));
+        let (kept, mut lines) = typed();
         wish.stop_after_step();
-        assert_eq!(line(&receive), Ok(None), "Ctrl-C while a question waits");
+        assert_eq!(line(&mut lines), Ok(None), "Ctrl-C while a question waits");
         let wish = Wish::default();
         let mut looks = 0;
-        let heard = next_line(&receive, &wish, || {
+        let heard = next_line(&mut lines, &wish, || {
             looks += 1;
             if looks == 3 { kept.send("late".to_owned()) } else { Ok(()) }
         });
         assert_eq!((heard, looks), (Ok(Some("late".to_owned())), 3), "the rig is heard from while a person thinks");
-        let (_kept, receive) = channel::<String>();
-        assert_eq!(next_line(&receive, &wish, || Err("it trips")), Err("it trips"));
+        let (_kept, mut lines) = typed();
+        assert_eq!(next_line(&mut lines, &wish, || Err("it trips")), Err("it trips"));
+    }
+
+    #[test]
+    fn one_move_by_hand_wants_its_word() {
+        for (typed, moves) in [(&["y", "MOVE"][..], true), (&["n"], false), (&["y"], false)] {
+            let (send, lines) = channel();
+            let now = Rc::new(Cell::new(Duration::ZERO));
+            let clock = Rc::clone(&now);
+            let mut lines = Typed::of(lines, Box::new(move || clock.get()));
+            send.send("MOVE".to_owned()).unwrap();
+            let mut send = Some(send);
+            let mut looks = 0;
+            let agreed = agrees(&mut lines, &question(Kind::Jog), &Wish::default(), || {
+                looks += 1;
+                if looks == 1 {
+                    now.set(Duration::from_secs(1));
+                } else if looks == 2 {
+                    let send = send.take().unwrap();
+                    typed.iter().for_each(|line| send.send((*line).to_owned()).unwrap());
+                }
+                Ok::<_, ()>(())
+            });
+            assert_eq!(agreed, Ok(moves), "{typed:?}");
+        }
     }
 
     #[test]
     fn the_end_of_the_input_is_no_yes() {
         for lines in [&[][..], &["yesterday"], &["y"], &["y", " "]] {
-            assert!(matches!(said(lines, None), Inspection::Stop { by: None, .. }), "{lines:?}");
+            assert!(matches!(said(LOOK, lines, None), Inspection::Stop { by: None, .. }), "{lines:?}");
         }
     }
 }

@@ -4,17 +4,21 @@
 mod asking;
 mod plain;
 mod signals;
+mod typed;
 
+use super::question::{Kind, Question};
 use super::screen::{self, Screen};
 use super::settings::Settings;
+use crate::diagnostic::excerpt::escape;
 use crate::plan::Plan;
-use crate::record::Event;
+use crate::record::{Event, EventKind};
 use crate::rig::{Live, Wish};
-use crate::run::{Inspection, Next, Observer, StepReport};
+use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
 use asking::Person;
-pub use asking::{next_line, typed_lines};
+pub use asking::{agrees, next_line};
 use plain::{Bar, Lines};
 pub use signals::{Signals, catch_full_files, interrupt};
+pub use typed::{Typed, throw_away};
 
 /// The observer of `psd run`.
 pub struct Watcher {
@@ -22,6 +26,12 @@ pub struct Watcher {
     asking: Asking,
     operator: Option<String>,
     wish: Wish,
+    /// What the run is expected to do.
+    expected: Extent,
+    /// What the rig was asked to be released for.
+    released: Option<Motion>,
+    /// That nobody knows whether the rig holds.
+    alarm: Option<String>,
     /// Whether the end was wanted already when it was first asked whether to unload.
     wanted_end: Option<bool>,
     _signals: Signals,
@@ -47,6 +57,17 @@ enum Asking {
     NobodyNeeded,
     /// No terminal, and a real rig waits for an answer that cannot come.
     Nobody,
+}
+
+/// What a person wants of a run that has ended early.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stay {
+    /// Nothing yet: the rig is watched on.
+    Wait,
+    /// Nothing more.
+    Leave,
+    /// That it goes on, for this reason.
+    Resume(String),
 }
 
 /// What the command line says of the person.
@@ -98,7 +119,8 @@ impl Watcher {
         if !matches!(face, Face::Screen(_)) {
             signals.told_in_lines(settings.stderr_terminal);
         }
-        Self { face, asking, operator, wish, wanted_end: None, _signals: signals }
+        let (expected, released, alarm, wanted_end) = (Extent::default(), None, None, None);
+        Self { face, asking, operator, wish, expected, released, alarm, wanted_end, _signals: signals }
     }
 
     /// Shows the numbers of this rig as it reads them, where there is a screen.
@@ -106,6 +128,34 @@ impl Watcher {
         if let Face::Screen(screen) = &self.face {
             screen.watch(live);
         }
+    }
+
+    /// What the run is expected to do, for who releases it.
+    pub const fn expect(&mut self, expected: Extent) {
+        self.expected = expected;
+    }
+
+    /// What a person wants of a run that has ended early: the screen stays as long as somebody looks at it. `resume`: whether the run
+    /// could go on.
+    pub fn stay(&mut self, resume: bool) -> Stay {
+        if !self.wish.may_ask() {
+            return Stay::Leave;
+        }
+        let stays = self.stays() || self.alarm.is_some();
+        match (&mut self.face, &mut self.asking, &self.alarm) {
+            (Face::Screen(screen), ..) if stays => screen.stay(resume),
+            (Face::Bar(bar), Asking::Person(person), Some(alarm)) => {
+                bar.clear();
+                if person.acknowledges(alarm) { Stay::Leave } else { Stay::Wait }
+            }
+            _ => Stay::Leave,
+        }
+    }
+
+    /// Whether somebody sits at the screen.
+    fn stays(&self) -> bool {
+        let Face::Screen(screen) = &self.face else { return false };
+        matches!(self.asking, Asking::Screen) || screen.is_attended()
     }
 
     /// Takes screen and bar off the terminal.
@@ -148,6 +198,54 @@ impl Observer for Watcher {
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {
+        self.ask(&Question::look(note, self.released.as_ref()))
+    }
+
+    fn release(&mut self, _: &str, motion: &Motion) -> Inspection {
+        let motion = motion.clone().expecting(self.expected);
+        let question = Question::of(Kind::Release, &motion);
+        self.released = Some(motion);
+        self.ask(&question)
+    }
+
+    fn may_unload(&mut self, _: &str, motion: &Motion, declared: bool) -> Option<Inspection> {
+        let wanted_end = *self.wanted_end.get_or_insert(self.wish.wants_end());
+        if !self.wish.may_ask() {
+            return None;
+        }
+        let question = Question::of(Kind::Unload, motion);
+        if self.stays()
+            && let Face::Screen(screen) = &mut self.face
+        {
+            return screen.ask_to_unload(&question);
+        }
+        // Ctrl-C at this question is no yes.
+        if !declared || !wanted_end && self.wish.wants_end() {
+            return None;
+        }
+        let Asking::Person(person) = &mut self.asking else { return None };
+        if let Face::Bar(bar) = &mut self.face {
+            bar.clear();
+        }
+        person.ask_to_unload(&question, &mut self.operator)
+    }
+
+    fn next(&mut self) -> Next {
+        self.face().next()
+    }
+
+    fn event(&mut self, event: &Event) {
+        match event.kind {
+            EventKind::NotHeld => self.alarm = Some(escape(&event.text)),
+            EventKind::Held => self.alarm = None,
+            _ => {}
+        }
+        self.face().event(event);
+    }
+}
+
+impl Watcher {
+    fn ask(&mut self, question: &Question) -> Inspection {
         let by = self.operator.clone();
         match &mut self.asking {
             Asking::Yes => Inspection::GoOn { note: Some("answered by --yes".to_owned()), by },
@@ -157,40 +255,17 @@ impl Observer for Watcher {
             Asking::Nobody => {
                 Inspection::Stop { reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned(), by: None }
             }
-            Asking::Screen => self.face().inspect(note),
+            Asking::Screen => match &mut self.face {
+                Face::Screen(screen) => screen.ask(question),
+                Face::Bar(_) | Face::Lines(_) => question.kind.unanswered(),
+            },
             Asking::Person(person) => {
                 if let Face::Bar(bar) = &mut self.face {
                     bar.clear();
                 }
-                person.ask(note, &mut self.operator)
+                person.ask(question, &mut self.operator)
             }
         }
-    }
-
-    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
-        let wanted_end = *self.wanted_end.get_or_insert(self.wish.wants_end());
-        // Ctrl-C at this question is no yes.
-        if !self.wish.may_ask() || !wanted_end && self.wish.wants_end() {
-            return None;
-        }
-        match &mut self.asking {
-            Asking::Yes | Asking::NobodyNeeded | Asking::Nobody => None,
-            Asking::Screen => self.face().may_unload(question),
-            Asking::Person(person) => {
-                if let Face::Bar(bar) = &mut self.face {
-                    bar.clear();
-                }
-                person.ask_to_unload(question, &mut self.operator)
-            }
-        }
-    }
-
-    fn next(&mut self) -> Next {
-        self.face().next()
-    }
-
-    fn event(&mut self, event: &Event) {
-        self.face().event(event);
     }
 }
 

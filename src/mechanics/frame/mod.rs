@@ -20,6 +20,7 @@ mod storeys;
 mod sweeps;
 mod tangents;
 mod unloading;
+mod unloading_path;
 
 pub use band::{RowsError, SymmetricBand};
 pub use damping::{Damping, DampingError, damping_matrix, rayleigh_coefficients};
@@ -30,6 +31,7 @@ pub use solver::{FrameError, FrameInput, FrameSolver, FrameState};
 pub use storeys::{drifts, floor_forces, shears, storey_stiffness, storeys_of};
 pub use tangents::Tangents;
 pub use unloading::{Loaded, Unloading};
+pub use unloading_path::UnloadingPath;
 
 /// M, C and K of a frame, of one order: kg, N·s/m, N/m.
 #[derive(Clone, Debug, PartialEq)]

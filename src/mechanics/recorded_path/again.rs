@@ -99,7 +99,8 @@ impl<'a> Again<'a> {
     /// The same of a target that is passed with a velocity, m/s.
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let (target, velocity) = (target / self.distortion.displacement_scale, velocity / self.distortion.displacement_scale);
-        let speed = self.path.under_way.as_ref().map(|it| it.speed(self.speed, velocity, self.distortion.finer)).unwrap_or_default();
+        let speed =
+            self.path.under_way.as_ref().map(|it| it.speed(self.speed, velocity, self.distortion.finer)).unwrap_or_default();
         let place = self.path.under_way.as_ref().map_or(target, |under_way| under_way.place(target, speed.felt));
         let before = self.step;
         self.own_step += 1;
@@ -139,7 +140,8 @@ impl<'a> Again<'a> {
             let moved = if under_way.is_some() { velocity } else { place - self.place };
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
-                let between = under_way.and_then(|it| it.turn_between((self.place, self.speed.felt), (place, velocity), self.distortion.finer));
+                let between = under_way
+                    .and_then(|it| it.turn_between((self.place, self.speed.felt), (place, velocity), self.distortion.finer));
                 let from = between.unwrap_or(self.place);
                 if self.matched(before) {
                     self.turn(from);

@@ -3,9 +3,10 @@
 use super::{RestoringForce, SpecimenModel};
 
 /// f₁(u) = f₂(x − u). Neither force falls while its displacement grows, so that over a move by Δx the difference
-/// f₁(u) − f₂(x − u) does not fall over u between u₀ and u₀ + Δx and changes its sign there: the root is always bracketed, each
-/// part moves the way the whole does, and the answer does not depend on the size of the moves beyond rounding. Found by
-/// false position with the Illinois rule, with bisection where it is slow, to the last bits of u.
+/// f₁(u) − f₂(x − u) does not fall over u between u₀ and u₀ + Δx and changes its sign there: the root is always bracketed, and each
+/// part moves the way the whole does. Where both parts give way at one force there are many roots: the first part moves only as far
+/// as the second leaves it no choice, so that many small moves end where a large one does. Found by false position with the
+/// Illinois rule, with bisection where it is slow, to the last bits of u.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     first: SpecimenModel,
@@ -18,6 +19,8 @@ pub struct Series {
 
 /// Evaluations of one move, at most: bisection alone from 1 m to 1e-19 m takes 64.
 const MOST_TRIALS: usize = 200;
+/// Of a displacement: less is none.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Series {
     /// Any number of parts, at least one, nested from the last.
@@ -35,49 +38,49 @@ impl Series {
         (self.first.clone().move_to(first), self.second.clone().move_to(displacement - first))
     }
 
-    /// u of the root.
+    /// u of the root that is nearest to where the first part is.
     fn solve(&self, displacement: f64) -> f64 {
+        let moved = displacement - self.displacement;
+        // By how much the first part is ahead of equilibrium: it does not fall along the move.
         let excess = |first: f64| {
             let (ahead, behind) = self.forces(first, displacement);
-            ahead - behind
+            (ahead - behind) * moved.signum()
         };
-        let moved = displacement - self.displacement;
-        let (mut low, mut high) = (self.first_displacement + moved.min(0.0), self.first_displacement + moved.max(0.0));
-        let (mut at_low, mut at_high) = (excess(low), excess(high));
-        if at_low >= 0.0 {
-            return low;
+        let (mut near, mut far) = (self.first_displacement, self.first_displacement + moved);
+        let (mut at_near, mut at_far) = (excess(near), excess(far));
+        if at_near >= 0.0 {
+            return near;
         }
-        if at_high <= 0.0 {
-            return high;
-        }
-        let mut kept_high = None;
+        let between = |place: f64, near: f64, far: f64| near.min(far) < place && place < near.max(far);
+        let mut kept_far = None;
         for trial in 0..MOST_TRIALS {
-            let width = high - low;
-            let by_position = high - at_high * (width / (at_high - at_low));
-            let inside = low < by_position && by_position < high;
-            let middle = if inside && trial % 4 != 3 { by_position } else { low + 0.5 * width };
-            if middle <= low || middle >= high {
+            let width = far - near;
+            let by_position = far - at_far * (width / (at_far - at_near));
+            let by_position = Some(by_position).filter(|place| trial % 4 != 3 && between(*place, near, far));
+            let middle = by_position.unwrap_or(near + 0.5 * width);
+            if !between(middle, near, far) {
                 break;
             }
             let found = excess(middle);
-            if found == 0.0 {
+            // One of many roots is one a little nearer too.
+            if found == 0.0 && excess(middle - ROUNDING * middle.abs() * moved.signum()) < 0.0 {
                 return middle;
             }
-            if found > 0.0 {
-                (high, at_high) = (middle, found);
-                if kept_high == Some(false) {
-                    at_low *= 0.5;
+            if found >= 0.0 {
+                (far, at_far) = (middle, found);
+                if kept_far == Some(false) {
+                    at_near *= 0.5;
                 }
-                kept_high = Some(false);
+                kept_far = Some(false);
             } else {
-                (low, at_low) = (middle, found);
-                if kept_high == Some(true) {
-                    at_high *= 0.5;
+                (near, at_near) = (middle, found);
+                if kept_far == Some(true) {
+                    at_far *= 0.5;
                 }
-                kept_high = Some(true);
+                kept_far = Some(true);
             }
         }
-        if -at_low < at_high { low } else { high }
+        if -at_near < at_far { near } else { far }
     }
 }
 

@@ -1,12 +1,11 @@
 //! The end of the report: the plan as it was run, where the numbers come from, what may be done with them, signatures. In: a
 //! run. Out: blocks, and the plan's files to go with them.
 
-use super::super::document::{Attachment, Block, Column, Style, Table, Text};
-use super::super::{Listed, RealRun, Run, number, plan_files};
-use super::{pairs, particulars};
+use super::super::document::{Attachment, Block, Column, Table, Text};
+use super::super::{Listed, RealRun, Run, issue, plan_files};
+use super::{pairs, validation};
 use crate::digest::sha256;
 use crate::inert;
-use crate::mechanics::self_test;
 use crate::plan::PlanFile;
 
 /// Statements, plan, provenance, signatures.
@@ -43,7 +42,7 @@ pub(super) fn all(run: &Run<'_>, tables: &[Listed], body: &mut Vec<Block>) {
         )
     }));
     body.push(Block::part("Validation of the program"));
-    validation(run, body);
+    validation::all(run, body);
     if !run.plan.report.sign.is_empty() {
         let name = |name: &String| Text::from(format!("{name}: name, date and signature"));
         body.push(Block::Signatures { names: run.plan.report.sign.iter().map(name).collect() });
@@ -76,8 +75,9 @@ fn provenance(run: &Run<'_>) -> Block {
     let settings: Vec<String> = run.plan.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let settings = if settings.is_empty() { "none".to_owned() } else { settings.join("; ") };
     let simulated = if run.record.rig.simulated { " (simulated)" } else { "" };
-    let mut rows = vec![
-        ("Report", Text::new().id(run.provenance.report_id())),
+    let mut rows = vec![("Report", Text::new().id(run.provenance.report_id()))];
+    rows.extend(issue::first(run).map(|issued| ("Issued", issued.into())));
+    rows.extend([
         ("Run", Text::new().id(&run.provenance.run_id)),
         ("Program", format!("psd {}", run.provenance.psd_version).into()),
         ("Its sources, SHA-256", id_or_unknown(&run.provenance.build.sources)),
@@ -86,7 +86,7 @@ fn provenance(run: &Run<'_>) -> Block {
         ("Settings on the command line", settings.into()),
         ("Rig", format!("{}{simulated}", run.record.rig.name).into()),
         ("Firmware of the rig", known(&run.record.rig.firmware)),
-    ];
+    ]);
     match (&run.provenance.real, run.plan.rig.link.as_virtual()) {
         (Some(real), _) => rows.extend(record(real)),
         (None, Some(link)) => {
@@ -112,33 +112,6 @@ fn files(run: &Run<'_>, tables: &[Listed]) -> Block {
     let plan = plan_files(run.plan).into_iter().map(|file| (file.path, sha256(&file.bytes)));
     let rows = plan.chain(tables.iter().cloned()).map(row).collect();
     Block::Table(Table { columns: vec![Column::words("File in the folder of the run", 1), Column::short("SHA-256")], rows })
-}
-
-/// What the program reckons of cases whose answers are known, and where the laboratory's own validation is.
-fn validation(run: &Run<'_>, body: &mut Vec<Block>) {
-    let exact = |value: f64, dimension| number::stated(value, dimension);
-    let row = |case: &self_test::SelfTest| {
-        let verdict = if case.passed() { Text::new().with(Style::Pass, "pass") } else { Text::new().with(Style::Fail, "fail") };
-        vec![
-            Text::from(format!("{}: {}", case.case, case.result)),
-            exact(case.computed, case.dimension).into(),
-            exact(case.expected, case.dimension).into(),
-            verdict,
-        ]
-    };
-    let columns = vec![
-        Column::words("Self-test, after Melo et al. 2006", 1),
-        Column::numbers("Computed"),
-        Column::numbers("Reference"),
-        Column::short("Verdict"),
-    ];
-    body.push(Block::Table(Table { columns, rows: self_test::all().iter().map(row).collect() }));
-    body.push(Block::note(match particulars::stated(run, "validation") {
-        Some(text) => Text::from(format!("Validation by the laboratory: {text}")),
-        None => Text::from("The program that set this report passes or fails these cases by the code that reckoned the run. ")
-            .code("psd test")
-            .and(" holds whole plans against their blessed results."),
-    }));
 }
 
 /// Who, where and when, and the record that everything here is made from.

@@ -166,7 +166,10 @@ fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, partial: Partial) -> V
     let whole =
         format!("combined: {}\u{a0}{}, U = {factor}\u{a0}u{of_degrees}", number::plus_minus(&parts.value, &expanded), parts.unit);
     let whole = if partial == Partial::Real {
-        format!("combined, without the calibrations: {}, u in brackets", number::with_uncertainty(*value, Some(*uncertainty), result.dimension))
+        format!(
+            "combined, without the calibrations: {}, u in brackets",
+            number::with_uncertainty(*value, Some(*uncertainty), result.dimension)
+        )
     } else {
         whole
     };

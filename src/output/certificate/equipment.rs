@@ -1,10 +1,11 @@
 //! Equipment and calibration: who answered, how it was reached, what its numbers are traced to, what it was held to. In: a
 //! run. Out: blocks. Where a port lies on the machine is no part of it.
 
+use super::super::days::last_day;
 use super::super::document::{Block, Column, Style, Table, Text};
-use super::super::{Run, number, standing};
+use super::super::{Run, number, particulars};
 use super::conditions::{range, settling};
-use super::{drift, pairs, particulars};
+use super::{drift, pairs};
 use crate::plan::{Behind, Calibration, DeviceLink, Gate, Interval, PortPlan, ReadingRules, RealLink, VirtualLink};
 use crate::quantity::Dimension;
 use crate::quantity::display::significant;
@@ -44,6 +45,10 @@ fn calibration(run: &Run<'_>) -> Block {
             Text::given(channel.class.as_deref()),
             factor(channel).into(),
             Text::given(certificate),
+            channel.calibrated.map_or_else(
+                || Text::given(None),
+                |[low, high]| range(Interval { low, high }, channel.measures.dimension()).into(),
+            ),
             Text::given(due),
             state(run, due),
         ]
@@ -54,6 +59,7 @@ fn calibration(run: &Run<'_>) -> Block {
         Column::words("Class", 2),
         Column::short("Factor"),
         Column::words("Calibration certificate", 3),
+        Column::short("Calibrated over, by size"),
         Column::short("Holds until"),
         Column::short("State"),
     ];
@@ -62,7 +68,7 @@ fn calibration(run: &Run<'_>) -> Block {
 
 /// Whether a calibration held on the last day of the test.
 fn state(run: &Run<'_>, due: Option<&str>) -> Text {
-    match (due, standing::last_day(run)) {
+    match (due, last_day(run.provenance)) {
         (None, _) => Text::missing("no due date"),
         (Some(due), Some(day)) if due < day => Text::new().with(Style::Fail, "OVERDUE").and(format!(" on {day}")),
         (Some(_), Some(day)) => Text::new().with(Style::Pass, "valid").and(format!(" on {day}")),

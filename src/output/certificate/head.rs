@@ -2,7 +2,7 @@
 //! before any of it is believed. In: a run. Out: blocks.
 
 use super::super::document::{Block, Column, Style, Table, Text, Verdict as Stated};
-use super::super::{Run, amendment, deviations, expansion, number};
+use super::super::{IssueKind, Run, deviations, expansion, issue, number};
 use super::budget;
 use crate::formula::{Part, ResultValue};
 use crate::plan::{Condition, DecisionRule, Requirement};
@@ -14,7 +14,12 @@ use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 pub(super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),
-        Outcome::Aborted { reason } | Outcome::Faulted { reason } => format!(" Reason: {}.", reason.trim_end_matches('.')),
+        Outcome::Aborted { reason }
+        | Outcome::NotReleased { reason }
+        | Outcome::Blocked { reason }
+        | Outcome::Faulted { reason } => {
+            format!(" Reason: {}.", reason.trim_end_matches('.'))
+        }
     };
     Stated { name: run.assessment.verdict.name(), text: (sentence(run) + &reason).into() }
 }
@@ -23,12 +28,15 @@ fn sentence(run: &Run<'_>) -> String {
     let all = &run.assessment.requirements;
     let with = |verdict: Verdict| all.iter().filter(|requirement| requirement.verdict == verdict).count();
     match run.assessment.verdict {
-        Verdict::Pass if rehearsal::told(run.plan).is_some() => {
+        Verdict::Completed if rehearsal::told(run.plan).is_some() => {
             "A rehearsal decides no requirement: it came to its end.".to_owned()
         }
-        Verdict::Pass if all.is_empty() => "The plan states no requirement.".to_owned(),
+        Verdict::Completed => "The plan states no requirement: nothing was decided.".to_owned(),
         Verdict::Pass if all.len() == 1 => "The requirement is met.".to_owned(),
         Verdict::Pass => format!("All {} requirements are met.", all.len()),
+        Verdict::Inconclusive if matches!(run.record.outcome, Outcome::Blocked { .. }) => {
+            "The run could not go on with a value that it found; what follows is what was recorded until then.".to_owned()
+        }
         Verdict::Inconclusive if with(Verdict::Inconclusive) == 0 => {
             "The zeros of the rig drifted farther than it allows: nothing that its readings enter is decided.".to_owned()
         }
@@ -43,7 +51,7 @@ fn sentence(run: &Run<'_>) -> String {
 
 /// Why there is another report of the same run, and what it says otherwise.
 pub(super) fn amendments(run: &Run<'_>, body: &mut Vec<Block>) {
-    let told = amendment::told(run);
+    let told = issue::amendments(run);
     if told.is_empty() {
         return;
     }
@@ -55,10 +63,10 @@ pub(super) fn amendments(run: &Run<'_>, body: &mut Vec<Block>) {
     ));
 }
 
-/// The report that this one takes the place of.
+/// The report that this one amends.
 pub(super) fn replaced(run: &Run<'_>) -> Option<String> {
-    let amends = run.provenance.amends.as_ref()?;
-    amends.amendments.last().map(|amendment| amendment.replaces.clone())
+    let last = run.provenance.issues.as_ref()?.all.last()?;
+    (last.kind == IssueKind::Amendment).then(|| last.replaces.clone())
 }
 
 /// Whether deviations stand before the requirements: of a real rig, and where long requirements would push them off the
@@ -137,7 +145,9 @@ fn rule(run: &Run<'_>) -> String {
         ),
         None => "U = 2u is the expanded uncertainty (k = 2, about 95\u{a0}%) where a measured result carries one.".to_owned(),
     };
-    format!("{rule} {expanded} Conforms is the probability that what was measured lies inside the limit, by that uncertainty (JCGM 106). Margin is the distance inside the limit; a negative margin is the distance by which it is missed.")
+    format!(
+        "{rule} {expanded} Conforms is the probability that what was measured lies inside the limit, by that uncertainty (JCGM 106). Margin is the distance inside the limit; a negative margin is the distance by which it is missed."
+    )
 }
 
 fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) -> Vec<Vec<Text>> {
@@ -177,6 +187,7 @@ fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) 
 
 fn word(verdict: Verdict) -> Text {
     let style = match verdict {
+        Verdict::Completed => Style::Plain,
         Verdict::Pass => Style::Pass,
         Verdict::Inconclusive => Style::Doubt,
         Verdict::Fail | Verdict::Aborted | Verdict::Error => Style::Fail,

@@ -20,6 +20,10 @@ pub(super) fn boxed(run: &Run<'_>) -> Vec<Mark> {
         Standing::NotCertifiable { missing } => {
             Some((vec!["NOT CERTIFIABLE"], format!("This report lacks {}.", missing.join("; "))))
         }
+        Standing::ParticularsMissing { missing } => Some((
+            vec!["PARTICULARS MISSING"],
+            format!("ISO/IEC 17025, 7.8.2.1, wants of a report and this one lacks: {}.", missing.join("; ")),
+        )),
     };
     standing::grounds(run).into_iter().filter_map(of).map(|(words, text)| Mark { words, text: text.into() }).collect()
 }
@@ -32,6 +36,7 @@ pub(super) fn across(run: &Run<'_>) -> Vec<&'static str> {
         Standing::Rehearsal => Some("REHEARSAL"),
         Standing::Incomplete => Some("INCOMPLETE"),
         Standing::NotCertifiable { .. } => Some("NOT CERTIFIABLE"),
+        Standing::ParticularsMissing { .. } => Some("PARTICULARS MISSING"),
         Standing::Certifiable => None,
     });
     words.collect()

@@ -19,6 +19,7 @@ mod method;
 mod particulars;
 mod results;
 mod storey;
+mod validation;
 
 use super::document::{Block, Document, Figure, Text};
 use super::figures::Drawn;

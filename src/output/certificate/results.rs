@@ -69,7 +69,8 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     };
     let texts: Vec<String> = procedure.inputs.iter().map(text).collect();
     if !texts.is_empty() {
-        let kind = if procedure.inputs.iter().any(|(_, estimate, _)| estimate.uncertainty.is_some()) { " (u in brackets)" } else { "" };
+        let kind =
+            if procedure.inputs.iter().any(|(_, estimate, _)| estimate.uncertainty.is_some()) { " (u in brackets)" } else { "" };
         body.push(Block::note(format!("Run with{kind}: {}.", texts.join("; "))));
     }
 }

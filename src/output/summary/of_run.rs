@@ -1,11 +1,11 @@
 //! Fills a [`Summary`] from a run. Knows the record; the format itself is one file up.
 
 use super::super::budget::{Budget, Line, budgets};
-use super::super::{Amends, Change, Run, deviations, expansion, standing};
+use super::super::{Change, Issues, Run, deviations, expansion, standing};
 use super::{
-    AmendmentSummary, AmendsSummary, BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary,
-    EventSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary,
-    RequirementSummary, RigSummary, SCHEMA, Summary, Uncertainty, Value,
+    BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary, EventSummary, IssueSummary, IssuesSummary,
+    Ordered, OutcomeSummary, ParameterSummary, PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary,
+    RigSummary, SCHEMA, Summary, Uncertainty, Value,
 };
 use crate::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::quantity::Dimension;
@@ -24,6 +24,8 @@ impl Summary {
         let (kind, reason) = match &record.outcome {
             Outcome::Completed => ("completed", None),
             Outcome::Aborted { reason } => ("aborted", Some(reason.clone())),
+            Outcome::NotReleased { reason } => ("not released", Some(reason.clone())),
+            Outcome::Blocked { reason } => ("blocked", Some(reason.clone())),
             Outcome::Faulted { reason } => ("faulted", Some(reason.clone())),
         };
         Self {
@@ -52,7 +54,7 @@ impl Summary {
             verdict: assessment.verdict.name(),
             decision_rule: assessment.rule.name(),
             standing: standing::of(run).name(),
-            missing: standing::missing(run),
+            missing: standing::missing(run).into_iter().chain(standing::particulars_missing(run)).collect(),
             outcome: OutcomeSummary { kind, reason },
             procedures: Ordered(
                 record.procedures.iter().enumerate().map(|(index, p)| (p.name.clone(), procedure(run, index, p))).collect(),
@@ -78,20 +80,22 @@ impl Summary {
                     .collect(),
             ),
             deviations: deviations::of(run),
-            amends: provenance.amends.as_ref().map(amends),
+            issues: provenance.issues.as_ref().map(issues),
         }
     }
 }
 
-fn amends(amends: &Amends) -> AmendsSummary {
+fn issues(issues: &Issues) -> IssuesSummary {
     let change = |change: &Change| ChangeSummary { field: change.field, was: change.was.clone(), is: change.is.clone() };
-    let amendments = amends.amendments.iter().map(|amendment| AmendmentSummary {
-        replaces: amendment.replaces.clone(),
-        by: amendment.by.clone(),
-        reason: amendment.reason.clone(),
-        changes: amendment.changes.iter().map(change).collect(),
+    let all = issues.all.iter().map(|issue| IssueSummary {
+        kind: issue.kind.name(),
+        replaces: issue.replaces.clone(),
+        date: issue.date.clone(),
+        by: issue.by.clone(),
+        reason: issue.reason.clone(),
+        changes: issue.changes.iter().map(change).collect(),
     });
-    AmendsSummary { report_id: amends.report_id.clone(), amendments: amendments.collect() }
+    IssuesSummary { report_id: issues.report_id.clone(), issues: all.collect() }
 }
 
 /// The condition that decides a requirement: the worst, and of equal ones the first.

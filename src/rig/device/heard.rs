@@ -135,7 +135,7 @@ impl<'a> Teller<'a> {
 fn alone(decoded: Result<Sample, DeviceFault>) -> Vec<Heard> {
     match decoded {
         Ok(sample) => vec![Heard::Reading { replies: 1, sample }],
-        Err(DeviceFault::NoReading { .. }) => vec![Heard::NoReading],
+        Err(DeviceFault::NoReading { .. } | DeviceFault::Impossible { .. }) => vec![Heard::NoReading],
         Err(_) => Vec::new(),
     }
 }

@@ -162,6 +162,9 @@ pub enum DeviceFault {
     /// An answer came that is no reading: not to be used, may be asked again.
     #[error("`{}` is no reading: {reason}", raw.escape_ascii())]
     NoReading { raw: Vec<u8>, reason: String },
+    /// A reply that came whole holds no number that can be: no fault of the line.
+    #[error("`{}` is no reading: {reason}", raw.escape_ascii())]
+    Impossible { raw: Vec<u8>, reason: String },
     /// The device is not set up as it must be, or cannot do this.
     #[error("{0}")]
     Unfit(String),

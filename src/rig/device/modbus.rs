@@ -71,7 +71,7 @@ impl Modbus {
         let (words, raw) = self.words(&question)?;
         match value_of(self.map.number, &words, unit, bound) {
             Some(value) => Ok(Value { value, raw }),
-            None => Err(DeviceFault::NoReading { raw, reason: "no number that can be".to_owned() }),
+            None => Err(DeviceFault::Impossible { raw, reason: no_number(self.map.number).to_owned() }),
         }
     }
 
@@ -103,13 +103,7 @@ impl Device for Modbus {
         self.position = self.find(self.position, width)?;
         self.force = self.find(self.force, width)?;
         self.status = self.find(self.status, 1)?;
-        self.sample().map_err(|fault| match fault {
-            DeviceFault::NoReading { raw, .. } if modbus::width(self.map.number) == 2 => DeviceFault::Unfit(format!(
-                "`{}` holds no number that can be: try the other word order, or another kind of number",
-                raw.escape_ascii()
-            )),
-            other => other,
-        })?;
+        self.sample()?;
         Ok(introduced(&self.map))
     }
 
@@ -162,13 +156,28 @@ impl Device for Modbus {
     }
 }
 
+/// What is said of registers that hold no number that can be.
+const fn no_number(number: ModbusNumber) -> &'static str {
+    match number {
+        ModbusNumber::Int16 => "it holds no number that can be: look for another register or kind of number",
+        _ => "it holds no number that can be: try the other word order, or another kind of number",
+    }
+}
+
 /// Who answers as this unit.
 pub(super) fn introduced(map: &ModbusMap) -> DeviceIdentity {
     DeviceIdentity { model: format!("Modbus unit {}", map.unit), ..DeviceIdentity::default() }
 }
 
-/// What is sent to go to `target` (m) at `speed` (m/s), and what it says.
+/// What is sent to go to `target` (m) at a speed that is not above `speed` (m/s), and what it says. A drive that has its words the
+/// other way round is told a speed of next to nothing, so that it does not move: the second word of the speed is 0.
 fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    let slower = if is_float(map.number) { modbus::without_low_word(speed / map.speed_unit) * map.speed_unit } else { speed };
+    frames_saying(map, target, slower)
+}
+
+/// The same at this speed itself, as near as the registers can say it.
+fn frames_saying(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault> {
     let (target_frame, target) = target_frame(map, target)?;
     let mut going = Move { frames: Vec::new(), targets: vec![target], speed, id: None };
     // Before the target, since some drives set off as soon as they have one.
@@ -186,7 +195,7 @@ fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault>
 
 /// Whether these are the bytes of a move to this place (m) at this speed (m/s).
 pub(super) fn sends(wire: &[u8], map: &ModbusMap, target: f64, speed: f64) -> bool {
-    frames(map, target, speed).is_ok_and(|going| {
+    frames_saying(map, target, speed).is_ok_and(|going| {
         let said = going.targets[0].to_bits() == target.to_bits() && going.speed.to_bits() == speed.to_bits();
         said && going.frames.concat() == wire
     })

@@ -172,7 +172,7 @@ pub(super) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> 
             Some(axis) => format!("axis {axis} has no number where one belongs"),
             None => "a field is missing, too many or no number".to_owned(),
         };
-        return Err(DeviceFault::NoReading { raw: reply.line, reason });
+        return Err(DeviceFault::Impossible { raw: reply.line, reason });
     };
     let mut axes = data.axes.iter().map(|axis| Channel {
         displacement: Some(axis.displacement),

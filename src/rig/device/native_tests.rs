@@ -242,7 +242,7 @@ fn a_whole_reply_with_a_field_missing_is_no_reading() {
     for body in ["DATA 3 7F3A 118203 1.249871 812344 0x0000 IDLE", "DATA 3 7F3A 118203 1.249871 nan 812344 0x0000 IDLE"] {
         let (mut device, port) = identified();
         say(&port, body);
-        assert!(matches!(device.sample(), Err(DeviceFault::NoReading { .. })), "{body}");
+        assert!(matches!(device.sample(), Err(DeviceFault::Impossible { .. })), "{body}");
         say(&port, &reading(4, "1.0"));
         assert!(device.sample().is_ok(), "asked again it is a new request");
     }

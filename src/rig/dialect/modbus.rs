@@ -182,6 +182,15 @@ pub fn from_words(number: ModbusNumber, words: &[u16]) -> Option<f64> {
     }
 }
 
+/// The largest short float up to a value above 0 whose low word is 0; its 8 binary digits are within 1 % of it.
+#[must_use]
+pub fn without_low_word(value: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, reason = "what it becomes is judged")]
+    let short = value as f32;
+    let short = if f64::from(short) > value { short.next_down() } else { short };
+    f64::from(f32::from_bits(short.to_bits() & 0xFFFF_0000))
+}
+
 fn sealed(mut frame: Vec<u8>) -> Vec<u8> {
     let check = crc(&frame);
     frame.extend(check.to_le_bytes());
@@ -245,6 +254,18 @@ mod tests {
         assert_eq!(to_words(FLOAT, 12.5), Some(vec![0x4148, 0]));
         assert_eq!(to_words(ModbusNumber::Float32 { high_word_first: false }, 12.5), Some(vec![0, 0x4148]));
         assert_eq!(to_words(ModbusNumber::Int16, -2.4), Some(vec![0xFFFE]));
+    }
+
+    #[test]
+    fn a_float_without_its_low_word_is_next_to_nothing_the_other_way_round() {
+        let turned = ModbusNumber::Float32 { high_word_first: false };
+        for value in [1.0, 1.1, 0.5, 1.999_999_9, 3e-4, 250.0] {
+            let said = without_low_word(value);
+            assert!(said <= value && said > 0.99 * value, "{value} became {said}");
+            let words = to_words(FLOAT, said).unwrap();
+            assert_eq!(from_words(FLOAT, &words), Some(said));
+            assert!(from_words(turned, &words).unwrap().abs() < 1e-38, "{said}");
+        }
     }
 
     #[test]

@@ -40,7 +40,9 @@ pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
     if before.ended {
         return GoneOn::Ended;
     }
-    let mut rig = open(plan, stand).unwrap();
+    let datum = before.rig.as_ref().and_then(|rig| rig.datum.clone());
+    let at_its_datum = Plan { rig: plan.rig.with_recorded_datum(datum.as_deref()), ..plan.clone() };
+    let mut rig = open(&at_its_datum, stand).unwrap();
     let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
     let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
     let decision = match tape::decide(&before, &about, &found, &bands, false) {

@@ -14,6 +14,7 @@
 //! | 16 | reboot | `device::a_rig_that_starts_anew_is_held_and_not_moved_any_more`, `unnumbered::a_start_of_grbl_is_seen` |
 //! | 18 | lag, stuck | `motion::a_ram_that_sticks_or_lags_is_a_following_error` |
 //! | 19 | sign, unit, scale, offset | `gate::*` |
+//! | 19 | a rig that stands elsewhere, numbers that cannot be at rest | `start::*` |
 //! | 20 | what is no number | `device::what_is_no_number_is_never_integrated` |
 //! | 21 | saturation | `device::a_clipped_force_holds_the_rig` |
 //! | 22 | frozen sensor | `device::a_frozen_sensor_holds_the_rig` |
@@ -48,6 +49,7 @@ mod motion;
 mod room;
 mod several;
 pub(crate) mod stage;
+mod start;
 mod targets;
 mod two_axes;
 mod unnumbered;

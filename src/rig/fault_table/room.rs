@@ -1,7 +1,7 @@
 //! What a run on each kind of rig writes, with the bytes of its lines, against what it was reckoned to write before it moved.
 
 use super::stage::{device_link, link, plan_of, run};
-use super::unnumbered::{grbl, modbus};
+use super::unnumbered::{as_homed, grbl, modbus};
 use crate::formula::Formula::Constant;
 use crate::plan::{Dialect, Impact, Interval, Plan, ProcedureKind, StiffnessRamp, Until};
 use crate::plan::{FRAME, WALL};
@@ -33,6 +33,9 @@ fn with_cell(actuator: Dialect, cell: Option<Dialect>) -> Plan {
     let mut plan = plan_of(Vec::new());
     link(&mut plan).actuator = device_link(actuator);
     link(&mut plan).load_cell = cell.map(device_link);
+    if link(&mut plan).actuator.dialect == Dialect::Grbl {
+        as_homed(&mut plan);
+    }
     on(plan)
 }
 

@@ -3,8 +3,8 @@
 
 use crate::formula::Formula;
 use crate::plan::{
-    Behind, DeviceLink, Dialect, Gate, Interval, Limits, Link, Move, Plan, PortPlan, ProcedureKind, ReadingRules, RealLink,
-    SafeState, Settle,
+    Behind, Datum, DeviceLink, Dialect, Gate, Interval, Limits, Link, Move, Plan, PortPlan, ProcedureKind, ReadingRules,
+    RealLink, SafeState, Settle,
 };
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered, recover};
@@ -39,6 +39,7 @@ pub(super) fn plan_of(procedures: Vec<ProcedureKind>) -> Plan {
         actuator: device_link(Dialect::Native),
         load_cell: None,
         safe_state: SafeState::Hold,
+        datum: Datum::Machine,
         gate: Gate { zero: 5.0, probe: 5e-5, stiffness: Interval { low: 5e4, high: 2e5 } },
         readings: ReadingRules {
             samples: 3,
@@ -164,7 +165,10 @@ impl Ended {
     pub(super) fn reason(&self) -> &str {
         match &self.record.outcome {
             Outcome::Completed => "",
-            Outcome::Aborted { reason } | Outcome::Faulted { reason } => reason,
+            Outcome::Aborted { reason }
+            | Outcome::NotReleased { reason }
+            | Outcome::Blocked { reason }
+            | Outcome::Faulted { reason } => reason,
         }
     }
 

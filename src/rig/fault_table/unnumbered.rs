@@ -2,7 +2,7 @@
 //! Out: the numbers of a sound line, or a rig that is held.
 
 use super::stage::{device_link, link, plan, run, run_without};
-use crate::plan::{Dialect, Interval, ModbusMap, ModbusNumber, Plan};
+use crate::plan::{Datum, Dialect, Interval, ModbusMap, ModbusNumber, Plan};
 use crate::record::Outcome;
 use crate::rig::failpoint::Guarding;
 
@@ -28,10 +28,17 @@ pub(super) fn modbus() -> Plan {
     plan
 }
 
+/// A Grbl stands below its zero when it has been homed, and goes down from there.
+pub(super) fn as_homed(plan: &mut Plan) {
+    plan.rig.sign = -1.0;
+    link(plan).datum = Datum::Here;
+}
+
 pub(super) fn grbl() -> Plan {
     let mut plan = plan();
     link(&mut plan).actuator = device_link(Dialect::Grbl);
     link(&mut plan).load_cell = Some(device_link(Dialect::Hx711));
+    as_homed(&mut plan);
     plan.rig.calibration.newtons_per_count = Some(-0.01);
     link(&mut plan).readings.force_range = Interval { low: -2000.0, high: 2000.0 };
     plan

@@ -3,7 +3,7 @@
 //! came to rest.
 
 use super::*;
-use crate::plan::{AxisPlan, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, RigPlan, SafeState};
+use crate::plan::{AxisPlan, Datum, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, RigPlan, SafeState};
 use crate::rig::device::{Channel, DeviceIdentity, Force, Sample};
 use crate::rig::failpoint::without;
 use crate::rig::testing::VirtualClock;
@@ -73,6 +73,7 @@ fn plan() -> RigPlan {
         actuator: DeviceLink { port, dialect: Dialect::Native, reply_timeout: 0.4, serial_number: None },
         load_cell: None,
         safe_state: SafeState::Hold,
+        datum: Datum::Machine,
         gate: Gate { zero: 10.0, probe: 1e-4, stiffness: Interval::ALL },
         readings: ReadingRules { samples: 3, rate: 20.0, resolution: 1e-6, noise: 0.1, force_range: range, frozen_after: 100 },
         watchdog: 3.0,

@@ -61,7 +61,9 @@ impl RealRig {
                     "it still moves".clone_into(&mut last);
                 }
                 Err(DeviceFault::Interrupted) => self.wish.heed(),
-                Err(fault @ DeviceFault::NoReading { .. }) => last = self.told(Part::Actuator, &fault).to_string(),
+                Err(fault @ (DeviceFault::NoReading { .. } | DeviceFault::Impossible { .. })) => {
+                    last = self.told(Part::Actuator, &fault).to_string();
+                }
                 Err(fault) => return Err(self.told(Part::Actuator, &fault).to_string()),
             }
             self.sleep(between);

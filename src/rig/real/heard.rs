@@ -2,6 +2,7 @@
 //! bytes as they were sent and heard. Out: the numbers that the rig made of them, by the same steps. It asks nothing, and knows
 //! no record.
 
+use super::coordinate::Coordinate;
 use super::open::identity_of;
 use super::poll::{REREADS, newtons, representative};
 use crate::plan::{Calibration, RealLink, RigPlan};
@@ -17,6 +18,7 @@ pub struct ReadBack<'a> {
     plan: &'a RigPlan,
     link: &'a RealLink,
     calibrations: Vec<Calibration>,
+    coordinates: Vec<Coordinate>,
     actuators: Vec<Source<'a>>,
     cells: Vec<Source<'a>>,
     /// Of each device its own clock at its last reading, s.
@@ -57,8 +59,9 @@ impl<'a> ReadBack<'a> {
         };
         let (actuators, cells) = (of_role(link.actuators()), of_role(link.load_cells()));
         let calibrations = (0..plan.axes().unwrap_or(1)).map(|axis| plan.calibration_of(axis)).collect();
+        let coordinates = coordinates(plan, &[]);
         let clocks = vec![None; actuators.len() + cells.len()];
-        Self { plan, link, calibrations, actuators, cells, clocks }
+        Self { plan, link, calibrations, coordinates, actuators, cells, clocks }
     }
 
     /// Replies in which its devices say who they are.
@@ -81,16 +84,30 @@ impl<'a> ReadBack<'a> {
         replies.is_empty().then(|| identity_of(&self.plan.name, self.link, &said))
     }
 
-    /// The devices are asked anew from here on: their clocks are others.
-    pub fn begin(&mut self) {
+    /// The devices are asked anew from here on: their clocks are others. The plan's zero lies at these places of theirs, m, one an
+    /// axis; none: at their own.
+    pub fn begin(&mut self, datum: &[f64]) {
         self.clocks.fill(None);
+        self.coordinates = coordinates(self.plan, datum);
     }
 
-    /// Whether some bytes say a move to these places (m, of the plan) at this speed (m/s), by this number.
+    /// Whether some bytes say a move to these places (m, of the plan) at this speed (m/s), by this number. `own` are the places in the
+    /// rig's own coordinate, where that has another zero.
     #[must_use]
-    pub fn sent(&self, wire: &[u8], places: &[f64], speed: f64, id: Option<u64>) -> bool {
+    pub fn sent(&self, wire: &[u8], places: &[f64], own: Option<&[f64]>, speed: f64, id: Option<u64>) -> bool {
+        let elsewhere = self.coordinates.iter().any(|axis| axis.datum != 0.0);
+        let meant = |own: &[f64]| -> Vec<u64> {
+            self.coordinates.iter().zip(own).map(|(axis, own)| axis.in_plan(*own).to_bits()).collect()
+        };
+        if own.is_some() != elsewhere || own.is_some_and(|own| own.len() != places.len() || meant(own) != bits(places)) {
+            return false;
+        }
         let turned = |source: &Source<'_>| -> Option<Vec<f64>> {
-            source.axes.iter().map(|axis| Some(self.plan.sign_of(*axis) * places.get(*axis)?)).collect()
+            let at_device = |axis: &usize| match own {
+                Some(own) => own.get(*axis).copied(),
+                None => Some(self.coordinates.get(*axis)?.at_device(*places.get(*axis)?)),
+            };
+            source.axes.iter().map(at_device).collect()
         };
         let says =
             |source: &Source<'_>, wire: &[u8]| turned(source).is_some_and(|places| source.teller.sent(wire, &places, speed, id));
@@ -212,16 +229,26 @@ impl<'a> ReadBack<'a> {
         };
         let (mut displacement, mut force, mut usable) = (Vec::new(), Vec::new(), true);
         for (axis, calibration) in self.calibrations.iter().enumerate() {
-            let (sign, moved) = (self.plan.sign_of(axis), channel_of(&self.actuators, moved, axis)?);
+            let (coordinate, moved) = (self.coordinates.get(axis)?, channel_of(&self.actuators, moved, axis)?);
             let weighed = channel_of(&self.cells, weighed, axis).unwrap_or(moved);
             let (x, r) = (moved.displacement?, newtons(calibration, weighed.force?)?);
             usable &= !on(Guarding::Invalid) || x.is_finite() && r.is_finite() && !moved.flags.stale && !weighed.flags.stale;
-            displacement.push(sign * x);
-            force.push(sign * r);
+            displacement.push(coordinate.in_plan(x));
+            force.push(coordinate.turned(r));
         }
         let clocks = [clocks(&self.actuators, moved), clocks(&self.cells, weighed)].concat();
         Some(usable.then_some(Poll { displacement, force, clocks }))
     }
+}
+
+/// Of each axis, with the plan's zero at these places of the devices, m; none: at their own.
+fn coordinates(plan: &RigPlan, datum: &[f64]) -> Vec<Coordinate> {
+    let of = |axis| Coordinate { datum: datum.get(axis).copied().unwrap_or(0.0), ..Coordinate::of_sign(plan.sign_of(axis)) };
+    (0..plan.axes().unwrap_or(1)).map(of).collect()
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
 }
 
 /// What the devices of a role can have said from this reply on: where what follows begins, and the channel of each axis behind them

@@ -2,6 +2,7 @@
 //! judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
 //! guard's business.
 
+mod coordinate;
 mod halt;
 mod heard;
 mod motion;
@@ -17,8 +18,10 @@ use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle}
 
 use super::device::{Device, DeviceFault, Move};
 use super::failpoint::{Guarding, on};
+use super::moved::of_places;
 use super::port::Clock;
 use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig, RigFault, Tally, Wish};
+use coordinate::Coordinate;
 pub use heard::ReadBack;
 pub use open::commands_only;
 use validity::Judge;
@@ -49,7 +52,11 @@ pub struct RealRig {
     rested: Vec<Option<(f64, f64)>>,
     /// Mean speed of the last move as it was seen, m/s.
     seen_speed: Option<f64>,
+    /// Times (s, by the clock) and places (m) of the first axis on the last move, as it was seen.
+    seen_places: Vec<(f64, f64)>,
     reread: u64,
+    /// It was sent on a way since it was opened.
+    moved: bool,
     /// Why its position is not to be trusted.
     untrusted: Option<String>,
     /// The words that hold it found no ear: only those that need no answer are left.
@@ -62,8 +69,8 @@ pub struct RealRig {
 
 /// One actuator with its load cell.
 struct Axis {
-    /// +1 or −1: how displacement and force of the devices count in the plan.
-    sign: f64,
+    /// How displacement and force of the devices count in the plan.
+    coordinate: Coordinate,
     limits: Limits,
     rules: ReadingRules,
     calibration: Calibration,
@@ -107,6 +114,11 @@ impl RealRig {
     #[must_use]
     pub fn open_loop(&self) -> bool {
         open::commands_only(&self.link)
+    }
+
+    /// Places of the devices, m, one an axis, as the plan has them.
+    fn in_plan(&self, places: &[f64]) -> Vec<f64> {
+        self.axes.iter().zip(places).map(|(axis, place)| axis.coordinate.in_plan(*place)).collect()
     }
 
     /// The wall clock, for the record.
@@ -194,9 +206,9 @@ impl Rig for RealRig {
         // What it says of itself there may be a reason to hold, as anywhere.
         let polled = self.poll();
         let from = self.or_hold(polled)?.displacement;
-        let turned: Vec<f64> = self.axes.iter().zip(targets).map(|(axis, target)| axis.sign * target).collect();
+        let turned: Vec<f64> = self.axes.iter().zip(targets).map(|(axis, target)| axis.coordinate.at_device(*target)).collect();
         let going = self.actuator.encode(&turned, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
-        let said: Vec<f64> = self.axes.iter().zip(&going.targets).map(|(axis, target)| axis.sign * target).collect();
+        let said = self.in_plan(&going.targets);
         // What the devices resolve is as near as they can say it.
         let apt = |(axis, (said, target)): (&Axis, (&f64, &f64))| {
             let allowed = WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6);
@@ -211,7 +223,8 @@ impl Rig for RealRig {
             let reason = format!("asked for {asked} m, the bytes say {said} m at {} m/s: not sent", going.speed);
             return Err(RigFault::Device(reason));
         }
-        let offer = Offer { targets: said, speed: going.speed, wire: going.frames.concat(), move_id: going.id };
+        let at_the_rig = self.axes.iter().any(|axis| axis.coordinate.datum != 0.0).then(|| going.targets.clone());
+        let offer = Offer { targets: said, speed: going.speed, wire: going.frames.concat(), move_id: going.id, at_the_rig };
         self.proposed = Some(Proposed { going, targets: targets.to_vec(), from });
         Ok(offer)
     }
@@ -229,6 +242,11 @@ impl Rig for RealRig {
     fn read(&mut self) -> Result<Reading, RigFault> {
         let read = self.settled_reading();
         self.or_hold(read)
+    }
+
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        let moved = of_places(&self.seen_places).map(|ends| ends.map(|end| end - self.began));
+        Ok((self.read()?, moved))
     }
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
@@ -261,6 +279,10 @@ impl Rig for RealRig {
         Some(self.held_for_good())
     }
 
+    fn datum(&self) -> Option<Vec<f64>> {
+        Some(self.axes.iter().map(|axis| axis.coordinate.datum).collect())
+    }
+
     fn own_speed(&self) -> Option<f64> {
         Some(self.link.own_speed)
     }
@@ -276,7 +298,7 @@ impl Rig for RealRig {
 
     fn last_move(&self) -> Option<LastMove> {
         let last = self.actuator.last_move()?;
-        Some(LastMove { id: last.id, targets: self.axes.iter().zip(&last.targets).map(|(axis, at)| axis.sign * at).collect() })
+        Some(LastMove { id: last.id, targets: self.in_plan(&last.targets) })
     }
 
     fn tally(&self) -> Tally {

@@ -37,6 +37,7 @@ impl RealRig {
         loop {
             let point = self.poll()?;
             let now = self.clock.now();
+            self.seen_places.push((now, point.displacement[0]));
             self.watch(&point)?;
             let astray = first_astray(&settling, &point);
             // One that cannot say whether it moves, or says so before it has begun, is given the time that the way takes.
@@ -133,8 +134,10 @@ impl RealRig {
     pub(super) fn set_off(&mut self) -> Result<(Vec<f64>, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
         let Proposed { going, targets, from } = self.proposed.take().ok_or_else(nothing)?;
+        self.moved = true;
         self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         (self.deaf, self.settled) = (false, None);
+        self.seen_places = vec![(self.clock.now(), from[0])];
         for axis in &mut self.axes {
             (axis.outside, axis.span) = (false, 0.0);
         }

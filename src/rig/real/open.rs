@@ -1,15 +1,17 @@
 //! Opening a real rig. In: the plan's rig and its devices. Out: a rig that is who the plan says, has been told the limits
 //! and has been read once, or why not. Nothing moves.
 
+use super::coordinate::Coordinate;
 use super::validity::Judge;
 use super::{Axis, Part, RealRig, degrees_of_freedom};
-use crate::plan::{Behind, DeviceLink, Dialect, Interval, Limits, RealLink, RigPlan};
+use crate::plan::{Behind, Datum, DeviceLink, Dialect, Limits, RealLink, RigPlan};
 use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::port::Clock;
 use crate::rig::{Identity, Live, Rig as _, RigFault, Wish, named_axis};
 
 impl RealRig {
-    /// Asks both devices who they are, tells them the limits, and reads once.
+    /// Asks both devices who they are, tells them the limits, and reads once. Where the plan's zero is where the rig stands it reads
+    /// that first.
     ///
     /// # Errors
     /// A device does not answer, is another one than the plan's, or is not fit; or the reading is not to be used.
@@ -38,7 +40,9 @@ impl RealRig {
             settled: None,
             rested: Vec::new(),
             seen_speed: None,
+            seen_places: Vec::new(),
             reread: 0,
+            moved: false,
             untrusted: None,
             deaf: false,
             unheard: String::new(),
@@ -47,15 +51,50 @@ impl RealRig {
         };
         rig.meet()?;
         rig.count_axes()?;
+        match rig.link.datum.clone() {
+            Datum::Machine => {}
+            Datum::Here => {
+                rig.heard_now();
+                rig.stands_still()?;
+                let here = rig.settled_reading()?.displacement;
+                let own: Vec<f64> = rig.axes.iter().zip(&here).map(|(axis, place)| axis.coordinate.at_device(*place)).collect();
+                rig.begin_at(&own)?;
+            }
+            Datum::At(places) => rig.begin_at(&places)?,
+        }
         rig.narrow()?;
-        rig.heard = rig.clock.now();
-        // One device was not looked at while another was met.
-        let _ = rig.wish.take_absence();
-        if rig.poll()?.moving == Some(true) {
-            rig.hold();
+        rig.heard_now();
+        rig.stands_still()?;
+        Ok(rig)
+    }
+
+    /// One device was not looked at while another was met.
+    fn heard_now(&mut self) {
+        self.heard = self.clock.now();
+        let _ = self.wish.take_absence();
+    }
+
+    /// The plan's zero lies at these places of the devices, m, one an axis.
+    fn begin_at(&mut self, places: &[f64]) -> Result<(), RigFault> {
+        if places.len() != self.axes.len() || !places.iter().all(|place| place.is_finite()) {
+            return Err(RigFault::Device(format!(
+                "{places:?} m is no datum of a rig of {}",
+                degrees_of_freedom(self.axes.len())
+            )));
+        }
+        for (axis, place) in self.axes.iter_mut().zip(places) {
+            axis.coordinate.datum = *place;
+        }
+        Ok(())
+    }
+
+    /// Reads once; a rig that moves before it is told to is held.
+    fn stands_still(&mut self) -> Result<(), RigFault> {
+        if self.poll()?.moving == Some(true) {
+            self.hold();
             return Err(RigFault::Device("it was moving before it was told to: held".to_owned()));
         }
-        Ok(rig)
+        Ok(())
     }
 
     /// Asks who is there.
@@ -93,7 +132,7 @@ impl RealRig {
 
     /// Tells the devices the limits, in their own sign.
     fn narrow(&mut self) -> Result<(), RigFault> {
-        let own: Vec<Limits> = self.axes.iter().map(Axis::limits_at_the_device).collect();
+        let own: Vec<Limits> = self.axes.iter().map(|axis| axis.coordinate.limits_at_device(&axis.limits)).collect();
         self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, &fault))?;
         if let Some(cell) = &mut self.load_cell {
             cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, &fault))?;
@@ -120,20 +159,11 @@ pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) 
     }
 }
 
-impl Axis {
-    fn limits_at_the_device(&self) -> Limits {
-        let turned = |interval: Interval| {
-            if self.sign < 0.0 { Interval { low: -interval.high, high: -interval.low } } else { interval }
-        };
-        Limits { displacement: turned(self.limits.displacement), force: turned(self.limits.force), ..self.limits }
-    }
-}
-
 /// What the plan says of each axis.
 fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
     let count = plan.axes().unwrap_or(1);
     let axis = |place| Axis {
-        sign: plan.sign_of(place),
+        coordinate: Coordinate::of_sign(plan.sign_of(place)),
         limits: plan.limits_of(place, limits),
         rules: link.readings_of(place),
         calibration: plan.calibration_of(place),

@@ -50,7 +50,12 @@ impl RealRig {
                     left -= 1;
                     self.reread += 1;
                 }
-                Err(Unusable::AskAgain(fault) | Unusable::Fault(fault)) => return Err(fault),
+                Err(Unusable::Impossible(_)) if left > 0 && (self.moved || !on(Guarding::AtRest)) => {
+                    left -= 1;
+                    self.reread += 1;
+                }
+                Err(Unusable::Impossible(fault)) if !self.moved => return Err(before_the_first_move(fault)),
+                Err(Unusable::AskAgain(fault) | Unusable::Impossible(fault) | Unusable::Fault(fault)) => return Err(fault),
             }
         }
     }
@@ -180,8 +185,8 @@ impl RealRig {
             let said = Said { displacement, force, original, flags, device_time };
             let axis = &mut self.axes[place];
             let judged = axis.judge.judge(&said, &axis.rules);
-            point.displacement.push(axis.sign * displacement);
-            point.force.push(axis.sign * force);
+            point.displacement.push(axis.coordinate.in_plan(displacement));
+            point.force.push(axis.coordinate.turned(force));
             point.unsettled |= flags.unsettled;
             judged.map_err(|invalid| self.refuse(invalid))?;
         }
@@ -196,14 +201,18 @@ impl RealRig {
                 Ok(sample)
             }
             Err(fault) => {
-                let again = if let DeviceFault::NoReading { raw: bytes, .. } = &fault {
-                    raw.push(bytes.clone());
-                    true
-                } else {
-                    false
-                };
-                let fault = self.told(part, &fault);
-                Err(if again { Unusable::AskAgain(fault) } else { Unusable::Fault(fault) })
+                let told = self.told(part, &fault);
+                Err(match fault {
+                    DeviceFault::NoReading { raw: bytes, .. } => {
+                        raw.push(bytes);
+                        Unusable::AskAgain(told)
+                    }
+                    DeviceFault::Impossible { raw: bytes, .. } => {
+                        raw.push(bytes);
+                        Unusable::Impossible(told)
+                    }
+                    _ => Unusable::Fault(told),
+                })
             }
         }
     }
@@ -211,7 +220,12 @@ impl RealRig {
     fn refuse(&mut self, invalid: Invalid) -> Unusable {
         match invalid {
             Invalid::AskAgain(reason) => Unusable::AskAgain(RigFault::Device(reason)),
+            Invalid::Impossible(reason) => Unusable::Impossible(RigFault::Device(reason)),
             Invalid::Hold(reason) => Unusable::Fault(RigFault::Device(reason)),
+            Invalid::Saturated(reason) => {
+                let fault = RigFault::Device(reason);
+                Unusable::Fault(if self.moved { fault } else { before_the_first_move(fault) })
+            }
             Invalid::Untrusted(reason) => {
                 self.untrusted = Some(reason.clone());
                 Unusable::Fault(RigFault::Device(reason))
@@ -234,7 +248,19 @@ pub(super) fn newtons(calibration: &Calibration, force: Force) -> Option<f64> {
 /// Why an answer is no reading.
 enum Unusable {
     AskAgain(RigFault),
+    /// Asked again once the rig has moved; before that its readings cannot be trusted.
+    Impossible(RigFault),
     Fault(RigFault),
+}
+
+/// What a sound rig never says at rest. Nothing is sent to it.
+fn before_the_first_move(fault: RigFault) -> RigFault {
+    match fault {
+        RigFault::Device(reason) => {
+            RigFault::Device(format!("{reason}; nothing has moved: look for a wrong unit, scale or word order, or a dead sensor"))
+        }
+        other => other,
+    }
 }
 
 /// What either device says.

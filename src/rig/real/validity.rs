@@ -30,8 +30,12 @@ pub(super) struct Said {
 pub(super) enum Invalid {
     /// The next may be good.
     AskAgain(String),
+    /// No sound rig says it at rest; once it has moved, the next may be good.
+    Impossible(String),
     /// The rig holds.
     Hold(String),
+    /// The same: the force is at an end of what can be read, or beyond it.
+    Saturated(String),
     /// The rig holds, and where it stands is not known any more.
     Untrusted(String),
 }
@@ -43,7 +47,9 @@ impl Invalid {
         let named = |reason| format!("axis {axis}: {reason}");
         match self {
             Self::AskAgain(reason) => Self::AskAgain(named(reason)),
+            Self::Impossible(reason) => Self::Impossible(named(reason)),
             Self::Hold(reason) => Self::Hold(named(reason)),
+            Self::Saturated(reason) => Self::Saturated(named(reason)),
             Self::Untrusted(reason) => Self::Untrusted(named(reason)),
         }
     }
@@ -150,7 +156,7 @@ fn number(said: &Said) -> Result<(), Invalid> {
     if !on(Guarding::Invalid) || x.is_finite() && force.is_finite() {
         return Ok(());
     }
-    Err(Invalid::AskAgain(format!("{x} m and {force} N are no reading")))
+    Err(Invalid::Impossible(format!("{x} m and {force} N are no reading")))
 }
 
 /// At an end of what converter or cell can say, the truth may lie anywhere beyond. A force that is no number is not
@@ -159,7 +165,7 @@ fn saturation(said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
     if !on(Guarding::Saturation) {
         return Ok(());
     }
-    let hold = |what: String| Err(Invalid::Hold(format!("the force reading is saturated: {what}")));
+    let hold = |what: String| Err(Invalid::Saturated(format!("the force reading is saturated: {what}")));
     if said.flags.saturated {
         return hold("the device says so".to_owned());
     }
@@ -218,11 +224,12 @@ mod tests {
         let unbounded = ReadingRules { force_range: Interval::ALL, ..RULES };
         let stale = Said { flags: Flags { stale: true, ..Flags::default() }, ..said(1.0) };
         let nowhere = Said { displacement: f64::NAN, ..said(1.0) };
-        for bad in [said(f64::NAN), nowhere, stale] {
-            assert!(matches!(only_caught_by(Guarding::Invalid, unbounded, &[bad]), Invalid::AskAgain(_)));
+        assert!(matches!(only_caught_by(Guarding::Invalid, unbounded, &[stale]), Invalid::AskAgain(_)));
+        for bad in [said(f64::NAN), nowhere] {
+            assert!(matches!(only_caught_by(Guarding::Invalid, unbounded, &[bad]), Invalid::Impossible(_)));
         }
         let infinite = Judge::default().judge(&said(f64::INFINITY), &unbounded);
-        assert!(matches!(infinite, Err(Invalid::AskAgain(_))));
+        assert!(matches!(infinite, Err(Invalid::Impossible(_))));
     }
 
     #[test]
@@ -230,7 +237,7 @@ mod tests {
         let counts = |count| Said { original: Force::Counts { count, low: -8_388_608, high: 8_388_607 }, ..said(10.0) };
         let flagged = Said { flags: Flags { saturated: true, ..Flags::default() }, ..said(1.0) };
         for bad in [said(999.1), said(-5000.0), counts(8_388_607), counts(-8_380_300), flagged] {
-            assert!(matches!(only_caught_by(Guarding::Saturation, RULES, &[bad]), Invalid::Hold(_)));
+            assert!(matches!(only_caught_by(Guarding::Saturation, RULES, &[bad]), Invalid::Saturated(_)));
         }
         for good in [said(998.9), said(-998.9), said(0.0), counts(8_380_000)] {
             assert_eq!(Judge::default().judge(&good, &RULES), Ok(()));

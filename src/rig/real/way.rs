@@ -55,10 +55,10 @@ impl RealRig {
     /// Sends the way. When it ends, s by the clock.
     fn begin(&mut self, paths: &[Path]) -> Result<f64, RigFault> {
         let turned = |(axis, path): (&super::Axis, &Path)| Path {
-            from: axis.sign * path.from,
-            to: axis.sign * path.to,
-            start_velocity: axis.sign * path.start_velocity,
-            end_velocity: axis.sign * path.end_velocity,
+            from: axis.coordinate.at_device(path.from),
+            to: axis.coordinate.at_device(path.to),
+            start_velocity: axis.coordinate.turned(path.start_velocity),
+            end_velocity: axis.coordinate.turned(path.end_velocity),
             seconds: path.seconds,
         };
         let turned: Vec<Path> = self.axes.iter().zip(paths).map(turned).collect();
@@ -70,6 +70,7 @@ impl RealRig {
         if on(Guarding::WireNumber) && (going.targets.len() != paths.len() || !self.axes.iter().zip(ends).all(apt)) {
             return Err(RigFault::Device(format!("asked for {turned:?}, the bytes say {:?} m: not sent", going.targets)));
         }
+        self.moved = true;
         let left = self.actuator.set_out(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
         (self.deaf, self.settled) = (false, None);
         self.look_up()?;

@@ -3,7 +3,7 @@
 
 use super::entry::{HeldBody, IntentBody, RigBody, SampleBody, unescaped};
 use super::played::body;
-use crate::plan::{Dialect, Plan, RealLink};
+use crate::plan::{Datum, Dialect, Plan, RealLink};
 use crate::record::journal::{EntryKind, Line};
 use crate::rig::dialect::native;
 use crate::rig::real::ReadBack;
@@ -14,12 +14,14 @@ pub(super) struct Bytes<'a> {
     real: Option<(&'a RealLink, ReadBack<'a>)>,
     /// Readings are made while the rig moves.
     on_the_way: bool,
+    /// Where the plan's zero lies by the first RIG record, m.
+    datum: Option<Vec<f64>>,
 }
 
 impl<'a> Bytes<'a> {
     pub(super) fn of(plan: &'a Plan) -> Self {
         let real = plan.rig.link.as_real().map(|link| (link, ReadBack::of(&plan.rig, link)));
-        Self { real, on_the_way: false }
+        Self { real, on_the_way: false, datum: None }
     }
 
     /// Whether the bytes of a record say its numbers.
@@ -43,7 +45,16 @@ impl<'a> Bytes<'a> {
             let silent = rig.said.is_empty();
             return if silent { Ok(()) } else { Err("a virtual rig says nothing in bytes".to_owned()) };
         };
-        read_back.begin();
+        // Records of earlier builds do not say it: the rig's own zero was the plan's.
+        let datum = rig.datum.clone().unwrap_or_else(|| vec![0.0; rig.axes]);
+        let own = datum.iter().all(|place| *place == 0.0);
+        if datum.len() != rig.axes || link.datum == Datum::Machine && !own {
+            return Err(format!("a datum at {datum:?} m is not the plan's"));
+        }
+        if self.datum.get_or_insert_with(|| datum.clone()) != &datum {
+            return Err(format!("a datum at {datum:?} m is another than the run began with"));
+        }
+        read_back.begin(&datum);
         let natively = link.actuator.dialect == Dialect::Native;
         // Records of earlier builds do not keep all of it, or none.
         if rig.said.is_empty() || rig.said.len() != read_back.introductions() && !natively {
@@ -72,7 +83,7 @@ impl<'a> Bytes<'a> {
         }
         let places = intent.said.as_ref().unwrap_or(&intent.to);
         let wire = intent.wire.as_deref().and_then(unescaped);
-        if wire.is_some_and(|wire| read_back.sent(&wire, places, intent.rate, intent.id)) {
+        if wire.is_some_and(|wire| read_back.sent(&wire, places, intent.own.as_deref(), intent.rate, intent.id)) {
             return Ok(());
         }
         Err(format!("the bytes that were sent do not say {:?} m at {} m/s", intent.to, intent.rate))

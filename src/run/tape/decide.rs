@@ -190,6 +190,10 @@ pub fn same_measure(recorded: &RigPlan, now: &RigPlan) -> Result<(), Refusal> {
     if dialects(recorded) != dialects(now) {
         return differs("link");
     }
+    let datum = |rig: &RigPlan| rig.link.as_real().map(|link| link.datum.clone());
+    if datum(recorded) != datum(now) {
+        return differs("datum");
+    }
     Ok(())
 }
 

@@ -18,6 +18,9 @@ pub struct Header {
     pub psd: String,
     /// SHA-256 of the program's sources, hex.
     pub build: String,
+    /// Which rules the run is computed by ([`RULES`](super::RULES)); records of before there were others say none.
+    #[serde(default = "first_rules", skip_serializing_if = "is_first")]
+    pub rules: u32,
     /// Target, profile and compiler that it was built for and with; empty where they were not recorded.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub toolchain: String,
@@ -46,6 +49,15 @@ pub struct Header {
     pub host: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub began: Option<String>,
+}
+
+const fn first_rules() -> u32 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+const fn is_first(rules: &u32) -> bool {
+    *rules == first_rules()
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,6 +102,10 @@ pub struct RigBody {
     pub own_speed: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_move: Option<LastMove>,
+    /// Of a real rig where the plan's zero lies in its own coordinate, m, one an axis; None in records of older versions, whose zero is
+    /// the rig's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub datum: Option<Vec<f64>>,
     /// The replies in which it said who it is, escaped; empty where the dialect has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub said: Vec<String>,
@@ -115,6 +131,9 @@ pub struct IntentBody {
     pub wire: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u64>,
+    /// The targets in the rig's own coordinate, as the bytes say, m, where its zero is another than the plan's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own: Option<Vec<f64>>,
     /// Of a smooth way without a stop: its ends, their velocities, and the time between them; `samples` stands beside it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<Vec<Path>>,
@@ -137,6 +156,9 @@ pub struct SampleBody {
     /// The replies it was made of, escaped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub raw: Vec<String>,
+    /// Where it was asked for and seen: begin and end of the even motion that stands for the last move, s of rig time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moved: Option<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }

@@ -1,13 +1,17 @@
 //! Where a rig was held is on record: played back it says the same, and a rig that was moved or let go of since is not gone on with.
 
+use std::cell::Cell;
+
 use super::tests::{Standing, Witness, played};
 use super::*;
+use crate::formula::Formula;
 use crate::mechanics::path::Path;
-use crate::plan::{Plan, ProcedureKind};
+use crate::plan::{Move, Plan, ProcedureKind};
 use crate::record::EventKind;
 use crate::record::journal::Durability;
 use crate::record::journal::testing::PowerLoss;
 use crate::rig::{DeclaredNoise, EachReading, Halted, Identity, Offer, Reading, RigFault};
+use crate::run::Inspection;
 use crate::run::testing::{elastic_plan, header, ramp};
 
 /// Held by a person on the way to a target, at 40 % of it.
@@ -17,11 +21,13 @@ struct HeldOnTheWay {
     moves: u32,
     /// Whether it is known to hold.
     heard: bool,
+    /// It is real, and held at a look instead, once a person looks.
+    at_a_look: Option<Rc<Cell<bool>>>,
 }
 
 impl Rig for HeldOnTheWay {
     fn identity(&self) -> Identity {
-        self.rig.identity()
+        Identity { simulated: self.at_a_look.is_none(), ..self.rig.identity() }
     }
     fn degrees_of_freedom(&self) -> usize {
         1
@@ -35,10 +41,11 @@ impl Rig for HeldOnTheWay {
     }
     fn execute(&mut self) -> Result<(), RigFault> {
         self.moves += 1;
-        if self.moves == 3 { Err(RigFault::Interrupted) } else { self.rig.execute() }
+        if self.moves == 3 && self.at_a_look.is_none() { Err(RigFault::Interrupted) } else { self.rig.execute() }
     }
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        self.rig.pause(seconds)
+        let held = self.at_a_look.as_ref().is_some_and(|looks| looks.get());
+        if held { Err(RigFault::Interrupted) } else { self.rig.pause(seconds) }
     }
     fn read(&mut self) -> Result<Reading, RigFault> {
         self.rig.read()
@@ -78,7 +85,7 @@ fn plan() -> Plan {
 /// What a person left who held it there, and its journal.
 fn held(heard: bool) -> (Recorded, Vec<u8>) {
     let (plan, disk) = (plan(), PowerLoss::new());
-    let mut rig = HeldOnTheWay { rig: Standing::new(&plan), target: 0.0, moves: 0, heard };
+    let mut rig = HeldOnTheWay { rig: Standing::new(&plan), target: 0.0, moves: 0, heard, at_a_look: None };
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
     begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
     let recorded = record(&plan, &mut rig, &mut Witness, journal, Box::new(|| None));
@@ -101,6 +108,33 @@ fn what_became_of_the_rig_plays_back() {
         assert_eq!(replayed.record.events, recorded.record.events, "times too");
         assert_eq!(replayed.record.outcome, recorded.record.outcome);
     }
+}
+
+/// Looks, and has not decided yet.
+struct Looking(Rc<Cell<bool>>);
+
+impl Observer for Looking {
+    fn inspect(&mut self, _: &str) -> Inspection {
+        self.0.set(true);
+        Inspection::Wait
+    }
+}
+
+#[test]
+fn a_hold_at_a_look_behind_a_step_is_played_back_as_one_at_the_look() {
+    let to = Move { to: Formula::Constant(1e-4), speed: None };
+    let look = ProcedureKind::Inspect { note: "look".to_owned() };
+    let (plan, disk) = (elastic_plan(300.0, vec![ProcedureKind::Move(to), look]), PowerLoss::new());
+    let looks = Rc::new(Cell::new(false));
+    let at_a_look = Some(Rc::clone(&looks));
+    let mut rig = HeldOnTheWay { rig: Standing::new(&plan), target: 0.0, moves: 0, heard: true, at_a_look };
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let recorded = record(&plan, &mut rig, &mut Looking(looks), journal, Box::new(|| None));
+    assert!(matches!(recorded.record.outcome, Outcome::Aborted { .. }), "{:?}", recorded.record.outcome);
+    let replayed = replay(&plan, played(&disk.written()).1);
+    assert_eq!(replayed.mismatch, None);
+    assert_eq!(replayed.record.events, recorded.record.events);
 }
 
 /// What is decided of a rig that is found there, feeling that.

@@ -34,6 +34,7 @@ pub use entry::{
     StrokeBody,
 };
 pub use observer::TapedObserver;
+pub use older::RULES;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;
 pub use state::CUT_OFF;
@@ -97,7 +98,7 @@ pub fn replay(plan: &Plan, played: Played) -> Replayed {
             driven.record
         })
     } else {
-        perform(None, &mut Unwatched, state, |rig, observer, _| run(plan, rig, observer))
+        perform(None, &mut Unwatched, state, |rig, observer, _| run(as_run.as_ref(), rig, observer))
     };
     Replayed { record, mismatch, steps }
 }
@@ -114,7 +115,12 @@ pub fn rehearse(plan: &Plan, played: &Played) -> Result<(), Refusal> {
         return Err(mismatch.into());
     }
     match record.outcome {
-        Outcome::Aborted { reason } | Outcome::Faulted { reason } if !reason.contains(state::CUT_OFF) => {
+        Outcome::Aborted { reason }
+        | Outcome::NotReleased { reason }
+        | Outcome::Blocked { reason }
+        | Outcome::Faulted { reason }
+            if !reason.contains(state::CUT_OFF) =>
+        {
             Err(Refusal::EndsAgain { reason })
         }
         _ => Ok(()),
@@ -130,8 +136,9 @@ pub fn resume(
     journal: Journal,
     wall: Wall,
 ) -> Recorded {
+    let as_run = older::as_it_was_run(plan, &played);
     let state = State::resuming(played, journal, wall);
-    perform(Some(rig), observer, state, |rig, observer, _| run(plan, rig, observer))
+    perform(Some(rig), observer, state, |rig, observer, _| run(as_run.as_ref(), rig, observer))
 }
 
 /// A run, and what became of its journal.

@@ -5,10 +5,11 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use super::entry::{AxisBody, OperatorBody, OperatorEntry, StepBody};
+use super::older::is_recorded;
 use super::state::State;
 use crate::record::Event;
 use crate::record::journal::EntryKind;
-use crate::run::{AxisReport, Inspection, Next, Observer, Request, StepReport, UNLOADING};
+use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepReport, UNLOADING};
 
 /// Who watches a run, with every word on record.
 pub struct TapedObserver<'run> {
@@ -16,11 +17,13 @@ pub struct TapedObserver<'run> {
     state: Rc<RefCell<State>>,
     /// Whether a person was asked last, and has not answered.
     inspecting: bool,
+    /// The procedure that runs.
+    procedure: Option<String>,
 }
 
 impl<'run> TapedObserver<'run> {
     pub(super) fn new(inner: &'run mut dyn Observer, state: Rc<RefCell<State>>) -> Self {
-        Self { inner, state, inspecting: false }
+        Self { inner, state, inspecting: false, procedure: None }
     }
 
     /// Appends, where the run is alive. A record that fails stops the run at the next call on the rig.
@@ -50,6 +53,7 @@ impl<'run> TapedObserver<'run> {
 
 impl Observer for TapedObserver<'_> {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.procedure = Some(name.to_owned());
         self.inner.procedure_started(name, keyword, steps);
     }
 
@@ -86,7 +90,7 @@ impl Observer for TapedObserver<'_> {
         if playing {
             let mut state = self.state.borrow_mut();
             if let Ok(recorded) = state.peek::<Event>(EntryKind::Event, &event.text) {
-                if recorded == *event {
+                if is_recorded(event, &recorded) {
                     state.consume();
                 } else {
                     state.disagrees(event.text.clone());
@@ -152,7 +156,7 @@ impl Observer for TapedObserver<'_> {
                     Ok(OperatorBody::AskedToStop) => Next::Wait,
                     _ => Next::GoOn,
                 },
-                Some(EntryKind::Fault) if state.front_is_pause_fault() => Next::Wait,
+                Some(EntryKind::Fault) if state.front_is_pause_fault_in(self.procedure.as_deref()) => Next::Wait,
                 _ => Next::GoOn,
             };
         }
@@ -166,7 +170,7 @@ impl Observer for TapedObserver<'_> {
         next
     }
 
-    fn may_unload(&mut self, question: &str) -> Option<Inspection> {
+    fn may_unload(&mut self, question: &str, motion: &Motion, declared: bool) -> Option<Inspection> {
         let playing = self.state.borrow().playing();
         if playing {
             let mut state = self.state.borrow_mut();
@@ -187,7 +191,7 @@ impl Observer for TapedObserver<'_> {
                 _ => None,
             };
         }
-        let answer = self.state.borrow().goes_on().then(|| self.inner.may_unload(question)).flatten()?;
+        let answer = self.state.borrow().goes_on().then(|| self.inner.may_unload(question, motion, declared)).flatten()?;
         if answer != Inspection::Wait {
             self.append_said(OperatorBody::AnsweredToUnload { question: question.to_owned(), answer: answer.clone() });
         }
@@ -195,6 +199,17 @@ impl Observer for TapedObserver<'_> {
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {
+        self.answer(note, |observer| observer.inspect(note))
+    }
+
+    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
+        self.answer(note, |observer| observer.release(note, motion))
+    }
+}
+
+impl TapedObserver<'_> {
+    /// What a person answers to `note`: as the record has it, else as `ask` finds out.
+    fn answer(&mut self, note: &str, ask: impl FnOnce(&mut dyn Observer) -> Inspection) -> Inspection {
         let playing = self.state.borrow().playing();
         if playing {
             let mut state = self.state.borrow_mut();
@@ -217,7 +232,7 @@ impl Observer for TapedObserver<'_> {
         if !self.state.borrow().goes_on() {
             return stopped(super::state::ended().to_string());
         }
-        let answer = self.inner.inspect(note);
+        let answer = ask(self.inner);
         self.inspecting = answer == Inspection::Wait;
         if answer != Inspection::Wait {
             self.append_said(OperatorBody::Answered { note: note.to_owned(), answer: answer.clone() });

@@ -5,18 +5,43 @@ use std::borrow::Cow;
 
 use super::entry::OperatorBody;
 use super::played::{Played, body};
-use crate::plan::Plan;
+use crate::plan::{Plan, ProcedureKind};
+use crate::record::Event;
 use crate::record::journal::{EntryKind, Line};
 use crate::run::zero::READINGS;
 
-/// A rig that says how far its zeros may drift has them read before the first client that drives it. The first versions that served a
-/// rig read none: their records go from the gate to the first request, and are played back so, with a drift that nobody looked at.
+/// The rules that this version computes a run by, as its records say in their header. 1: an `unload` may pass the place without load, and a
+/// `cycle` has ten targets a quarter unless it says another number. 2: neither.
+pub const RULES: u32 = 2;
+
+/// Targets between the middle and an amplitude where the plan gave no number, now and by the rules of 1.
+const POINTS: u32 = 25;
+const OLDER_POINTS: u32 = 10;
+
+/// The plan as the version ran it that wrote the record.
 pub(super) fn as_it_was_run<'a>(plan: &'a Plan, played: &Played) -> Cow<'a, Plan> {
-    if plan.rig.drift.is_none() || !serves_without_zeros(played) {
+    let without_zeros = plan.rig.drift.is_some() && serves_without_zeros(played);
+    if !without_zeros && played.header.rules >= RULES {
         return Cow::Borrowed(plan);
     }
     let mut plan = plan.clone();
-    plan.rig.drift = None;
+    // The first versions that served a rig which says how far its zeros may drift read none before the first client: their records go from
+    // the gate to the first request, and are played back so, with a drift that nobody looked at.
+    if without_zeros {
+        plan.rig.drift = None;
+    }
+    if played.header.rules < RULES {
+        plan.unloads_at_once = true;
+        let said = played.texts.iter().any(|text| text.contains("points"));
+        for procedure in &mut plan.procedures {
+            if let ProcedureKind::Cycle(cycle) = &mut procedure.kind
+                && cycle.points == POINTS
+                && !said
+            {
+                cycle.points = OLDER_POINTS;
+            }
+        }
+    }
     Cow::Owned(plan)
 }
 
@@ -35,4 +60,34 @@ fn serves_without_zeros(played: &Played) -> bool {
 
 fn is_request(line: &Line) -> bool {
     line.kind == EntryKind::Operator && matches!(body(line), Ok(OperatorBody::Asked { .. }))
+}
+
+/// Whether an event is the one on record. An input that cannot be used was said of in SI units, as a number without one.
+pub(super) fn is_recorded(event: &Event, recorded: &Event) -> bool {
+    const CAME_OUT: &str = " came out as ";
+    let field = |event: &Event| event.text.split_once(CAME_OUT).map(|(field, _)| field.to_owned());
+    let older = field(recorded).is_some() && recorded.text.contains(" in SI units, but must be ");
+    recorded == event
+        || older && field(recorded) == field(event) && Event { text: event.text.clone(), ..recorded.clone() } == *event
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::EventKind;
+
+    #[test]
+    fn an_input_that_was_told_in_si_units_is_the_one_on_record() {
+        let told = |text: &str| Event { time: 1.5, procedure: None, step: None, kind: EventKind::Fault, text: text.to_owned() };
+        let now = told("`damping` came out as \u{2212}0.33 N·s/m, but must be at least 0");
+        let older = told("`damping` came out as -0.3284410318426494 in SI units, but must be at least 0");
+        assert!(is_recorded(&now, &now) && is_recorded(&now, &older));
+        for other in [
+            told("`stiffness` came out as -0.3284410318426494 in SI units, but must be at least 0"),
+            told("`damping` came out as \u{2212}0.34 N·s/m, but must be at least 0"),
+            Event { time: 2.0, ..older.clone() },
+        ] {
+            assert!(!is_recorded(&now, &other), "{}", other.text);
+        }
+    }
 }

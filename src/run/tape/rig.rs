@@ -104,14 +104,37 @@ impl<'rig> TapedRig<'rig> {
         Err(state.disagrees(format!("a target of {targets:?} m at {speed:?} m/s")))
     }
 
-    fn played_reading(&self) -> Result<Reading, RigFault> {
+    fn played_reading(&self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
         let mut state = self.state.borrow_mut();
         if let Some(fault) = state.played_fault(Call::Read) {
             return Err(fault);
         }
         let sample: SampleBody = state.peek(EntryKind::Sample, "a reading")?;
         state.consume();
-        Ok(Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() })
+        Ok((Reading { time: sample.t, displacement: sample.x, force: sample.r, raw: Vec::new() }, sample.moved))
+    }
+
+    /// A reading, with when the rig went on its last move where that was asked for.
+    fn take_reading(
+        &mut self,
+        read: impl FnOnce(&mut dyn Rig) -> Result<(Reading, Option<[f64; 2]>), RigFault>,
+    ) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        if self.state.borrow().playing() {
+            return self.played_reading();
+        }
+        let read = read(self.rig()?);
+        let offset = self.offset.unwrap_or(0.0);
+        let checked = read.and_then(|(reading, moved)| {
+            let reading = finite(Reading { time: reading.time + offset, ..reading })?;
+            Ok((reading, moved.map(|ends| ends.map(|end| end + offset)).filter(|ends| ends.iter().all(|end| end.is_finite()))))
+        });
+        let (reading, moved) = checked.or_else(|fault| self.failed(Call::Read, fault))?;
+        self.count()?;
+        append_sample(&mut self.state.borrow_mut(), &reading, moved)?;
+        if failpoint::on(Guarding::SampleDurable) {
+            self.state.borrow_mut().promise()?;
+        }
+        Ok((reading, moved))
     }
 
     /// What the guard would not have is on record too, so that the run can be played back to here.
@@ -151,7 +174,7 @@ impl<'rig> TapedRig<'rig> {
                 return Err(self.state.borrow_mut().disagrees(format!("a stroke of at most {samples} readings")));
             }
             taken += 1;
-            each(self.played_reading()?)?;
+            each(self.played_reading()?.0)?;
         }
     }
 }
@@ -180,12 +203,19 @@ impl Rig for TapedRig<'_> {
                 Some(self.played_intent(targets, speed, None)?)
             };
             // Of what was proposed and never sent, no bytes are on record.
-            let unsent = || Offer { targets: targets.to_vec(), speed: speed.unwrap_or(0.0), wire: Vec::new(), move_id: None };
+            let unsent = || Offer {
+                targets: targets.to_vec(),
+                speed: speed.unwrap_or(0.0),
+                wire: Vec::new(),
+                move_id: None,
+                at_the_rig: None,
+            };
             let offer = intent.map_or_else(unsent, |intent| Offer {
                 targets: intent.said.clone().unwrap_or_else(|| intent.to.clone()),
                 speed: intent.rate,
                 wire: Vec::new(),
                 move_id: intent.id,
+                at_the_rig: intent.own.clone(),
             });
             self.pending = Some((targets.to_vec(), speed, offer.clone()));
             return Ok(offer);
@@ -244,19 +274,11 @@ impl Rig for TapedRig<'_> {
     }
 
     fn read(&mut self) -> Result<Reading, RigFault> {
-        if self.state.borrow().playing() {
-            return self.played_reading();
-        }
-        let read = self.rig()?.read();
-        let offset = self.offset.unwrap_or(0.0);
-        let checked = read.and_then(|reading| finite(Reading { time: reading.time + offset, ..reading }));
-        let reading = checked.or_else(|fault| self.failed(Call::Read, fault))?;
-        self.count()?;
-        append_sample(&mut self.state.borrow_mut(), &reading)?;
-        if failpoint::on(Guarding::SampleDurable) {
-            self.state.borrow_mut().promise()?;
-        }
-        Ok(reading)
+        self.take_reading(|rig| Ok((rig.read()?, None))).map(|(reading, _)| reading)
+    }
+
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        self.take_reading(|rig| rig.read_moved())
     }
 
     fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
@@ -303,6 +325,10 @@ impl Rig for TapedRig<'_> {
         self.about.noise
     }
 
+    fn datum(&self) -> Option<Vec<f64>> {
+        self.about.datum.clone()
+    }
+
     fn own_speed(&self) -> Option<f64> {
         self.about.own_speed
     }
@@ -336,6 +362,7 @@ impl RigBody {
             noise: rig.declared_noise(),
             own_speed: rig.own_speed(),
             last_move: rig.last_move(),
+            datum: rig.datum(),
             said: rig.introduction().iter().map(|reply| escaped(reply)).collect(),
         }
     }
@@ -346,7 +373,16 @@ fn nobody() -> RigBody {
     let unknown = String::new;
     let identity =
         Identity { name: unknown(), model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: true };
-    RigBody { t: 0.0, identity, axes: 1, noise: DeclaredNoise::default(), own_speed: None, last_move: None, said: Vec::new() }
+    RigBody {
+        t: 0.0,
+        identity,
+        axes: 1,
+        noise: DeclaredNoise::default(),
+        own_speed: None,
+        last_move: None,
+        datum: None,
+        said: Vec::new(),
+    }
 }
 
 pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples: Option<usize>) -> IntentBody {
@@ -359,19 +395,21 @@ pub(super) fn intent(targets: &[f64], speed: Option<f64>, offer: &Offer, samples
         rate: offer.speed,
         wire: (!offer.wire.is_empty()).then(|| escaped(&offer.wire)),
         id: offer.move_id,
+        own: offer.at_the_rig.clone(),
         path: None,
         samples,
         wall: None,
     }
 }
 
-pub(super) fn append_sample(state: &mut State, reading: &Reading) -> Result<(), RigFault> {
+pub(super) fn append_sample(state: &mut State, reading: &Reading, moved: Option<[f64; 2]>) -> Result<(), RigFault> {
     state.time = reading.time;
     let sample = SampleBody {
         t: reading.time,
         x: reading.displacement.clone(),
         r: reading.force.clone(),
         raw: reading.raw.iter().map(|raw| escaped(raw)).collect(),
+        moved,
         wall: state.wall(),
     };
     state.append(EntryKind::Sample, &sample)

@@ -206,6 +206,12 @@ impl State {
         front.is_some_and(|line| line.body().get("call").and_then(|call| call.as_str()) == Some("pause"))
     }
 
+    /// The same, of a pause in this procedure and not at the look that comes after it.
+    pub(super) fn front_is_pause_fault_in(&self, procedure: Option<&str>) -> bool {
+        let ended = || self.lines.iter().find(|line| line.kind == EntryKind::Event).and_then(|line| body::<Event>(line).ok());
+        self.front_is_pause_fault() && ended().is_none_or(|event| event.procedure.as_deref() == procedure)
+    }
+
     /// The run and the record part ways here.
     pub(super) fn differs(&mut self, mismatch: Mismatch) -> RigFault {
         let fault = RigFault::Device(mismatch.to_string());

@@ -25,7 +25,7 @@ impl Way<'_> {
                 (paths.iter().map(|path| path.to).collect(), paths.iter().map(Path::fastest).fold(0.0, f64::max))
             }
         };
-        let offer = Offer { targets: targets.clone(), speed, wire: Vec::new(), move_id: None };
+        let offer = Offer { targets: targets.clone(), speed, wire: Vec::new(), move_id: None, at_the_rig: None };
         let path = match self {
             Self::Stroke(..) => None,
             Self::Paths(paths) => Some(paths.to_vec()),
@@ -101,7 +101,7 @@ impl TapedRig<'_> {
         let (mut refused, mut taken) = (false, done);
         let followed = goes(rig, &mut |reading| {
             let recorded = finite(Reading { time: reading.time + offset, ..reading }).and_then(|reading| {
-                append_sample(&mut state.borrow_mut(), &reading)?;
+                append_sample(&mut state.borrow_mut(), &reading, None)?;
                 Ok(reading)
             });
             recorded.and_then(|reading| {

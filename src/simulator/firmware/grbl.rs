@@ -1,5 +1,6 @@
 //! A Grbl 1.1 board with one axis that matters, X. In: lines and real-time bytes. Out: `ok`, errors, status reports.
-//! `ok` says that a line was understood. A target beyond the travel is `error:15` and moves nothing.
+//! `ok` says that a line was understood. Its machine space is 0 down to −`$130`, its end switch at 0; a target beyond that is
+//! `error:15` and moves nothing.
 
 use std::collections::VecDeque;
 use std::fmt::Write as _;
@@ -8,6 +9,8 @@ use crate::simulator::{Bench, Firmware};
 
 /// Longest line, bytes.
 const LONGEST: usize = 80;
+/// How far down from 0 it may go, m: `$130` as it is delivered.
+const TRAVEL: f64 = 0.2;
 /// Jogs the planner takes before it lets the host wait.
 const PLANNER: usize = 15;
 
@@ -116,7 +119,6 @@ impl Grbl {
 
     fn settings(bench: &Bench) -> String {
         let settings = bench.settings();
-        let travel = settings.limits.high - settings.limits.low;
         let numbers = [
             (0, "10".to_owned()),
             (1, "255".to_owned()),
@@ -128,7 +130,7 @@ impl Grbl {
             (100, "1250.000".to_owned()),
             (110, format!("{:.3}", known(settings.top_speed * 6e4))),
             (120, "100.000".to_owned()),
-            (130, format!("{:.3}", known(travel * 1e3))),
+            (130, format!("{:.3}", TRAVEL * 1e3)),
         ];
         let mut text = String::new();
         for (number, value) in numbers {
@@ -196,17 +198,18 @@ impl Grbl {
         let target = target.ok_or(16_u32)? * millimetres / 1e3;
         let speed = feed.filter(|feed| *feed > 0.0).ok_or(22_u32)? * millimetres / 6e4;
         let target = if absolute { target } else { self.end + target };
-        let limits = bench.settings().limits;
-        // The board's numbers have 24 bits: a target on the limit is within it.
+        // The board's numbers have 24 bits: a target on a limit is within it.
         let rounding = 2e-7 * target.abs();
-        if !(limits.low - rounding <= target && target <= limits.high + rounding) {
+        if !(-TRAVEL - rounding <= target && target <= 0.0) {
             bench.refuse(target);
             return Err(15);
         }
         if self.planned.len() >= PLANNER {
             return Err(13);
         }
-        self.end = target.clamp(limits.low, limits.high);
+        let limits = bench.settings().limits;
+        let on_the_limit = target.clamp(limits.low, limits.high);
+        self.end = if (target - on_the_limit).abs() <= rounding { on_the_limit } else { target };
         self.planned.push_back(Jog { target: self.end, speed });
         self.state = State::Jog;
         self.proceed(bench);
@@ -301,32 +304,39 @@ mod tests {
     }
 
     fn board() -> (Grbl, Bench) {
-        (Grbl::new("PSD-SIM"), bench())
+        (Grbl::new("PSD-SIM"), bench().standing_at(&[-0.001]))
     }
 
     #[test]
     fn a_jog_is_understood_at_once_and_done_later() {
         let mut board = board();
-        assert_eq!(say(&mut board, b"$J=G21G90G53X1.2500F60.000\n"), "ok\r\n");
+        assert_eq!(say(&mut board, b"$J=G21G90G53X-2.2500F60.000\n"), "ok\r\n");
         wait(&mut board, 0.5);
-        assert_eq!(say(&mut board, b"?"), "<Jog|MPos:0.500,0.000,0.000|FS:60,0>\r\n");
+        assert_eq!(say(&mut board, b"?"), "<Jog|MPos:-1.500,0.000,0.000|FS:60,0>\r\n");
         wait(&mut board, 1.0);
-        assert_eq!(say(&mut board, b"?"), "<Idle|MPos:1.250,0.000,0.000|FS:0,0>\r\n");
-        assert_eq!(say(&mut board, b"$J=G91X0.25F60\n$J=G91X0.25F60\n"), "ok\r\nok\r\n", "the second is planned");
+        assert_eq!(say(&mut board, b"?"), "<Idle|MPos:-2.250,0.000,0.000|FS:0,0>\r\n");
+        assert_eq!(say(&mut board, b"$J=G91X-0.25F60\n$J=G91X-0.25F60\n"), "ok\r\nok\r\n", "the second is planned");
         wait(&mut board, 0.3);
         wait(&mut board, 0.3);
-        assert_eq!(board.1.targets(), [0.001_25, 0.001_5, 0.001_75]);
+        let near = |(target, wanted): (&f64, f64)| (target - wanted).abs() < 1e-12;
+        assert!(board.1.targets().iter().zip([-0.002_25, -0.002_5, -0.002_75]).all(near), "{:?}", board.1.targets());
+        assert_eq!(board.1.targets().len(), 3);
     }
 
     #[test]
     fn a_target_beyond_the_travel_is_refused_and_counted() {
         let mut board = board();
-        assert_eq!(say(&mut board, b"$J=G21G90G53X10.001F60\n"), "error:15\r\n");
-        assert_eq!((board.1.violations().len(), board.1.moves().len()), (1, 0));
-        assert_eq!(say(&mut board, b"$J=G21G90G53X10.000F60\n"), "ok\r\n");
-        assert_eq!(board.1.violations().len(), 1);
+        for beyond in ["0.001", "-200.001", "-1000"] {
+            assert_eq!(say(&mut board, format!("$J=G21G90G53X{beyond}F60\n").as_bytes()), "error:15\r\n", "{beyond}");
+        }
+        // 0.001 mm is within the limits of whoever runs the test, the others are not.
+        assert_eq!((board.1.violations().len(), board.1.moves().len()), (2, 0));
+        for within in ["0.000", "-1.000"] {
+            assert_eq!(say(&mut board, format!("$J=G21G90G53X{within}F60\n").as_bytes()), "ok\r\n", "{within}");
+        }
+        assert_eq!(board.1.violations().len(), 2);
         for (line, answer) in [
-            ("$J=X1", "error:22"),
+            ("$J=X-1", "error:22"),
             ("$J=F60", "error:16"),
             ("$J=X1e0F60", "error:20"),
             ("$J=X-F60", "error:2"),
@@ -342,24 +352,24 @@ mod tests {
     #[test]
     fn a_hold_cancels_the_jog_and_at_rest_stays_until_it_is_let_go() {
         let mut board = board();
-        say(&mut board, b"$J=X5F60\n");
+        say(&mut board, b"$J=X-6F60\n");
         wait(&mut board, 1.0);
-        assert_eq!(say(&mut board, b"!?"), "<Idle|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
-        assert_eq!(say(&mut board, b"!?"), "<Hold:0|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
-        assert_eq!(say(&mut board, b"$J=X5F60\n"), "error:8\r\n");
-        assert_eq!(say(&mut board, b"~$J=X5F60\n"), "ok\r\n");
-        assert_eq!(say(&mut board, b"\x85?"), "<Idle|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
+        assert_eq!(say(&mut board, b"!?"), "<Idle|MPos:-2.000,0.000,0.000|FS:0,0>\r\n");
+        assert_eq!(say(&mut board, b"!?"), "<Hold:0|MPos:-2.000,0.000,0.000|FS:0,0>\r\n");
+        assert_eq!(say(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
+        assert_eq!(say(&mut board, b"~$J=X-6F60\n"), "ok\r\n");
+        assert_eq!(say(&mut board, b"\x85?"), "<Idle|MPos:-2.000,0.000,0.000|FS:0,0>\r\n");
     }
 
     #[test]
     fn a_reset_in_motion_is_an_alarm() {
         let mut board = board();
         assert_eq!(say(&mut board, b"\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
-        say(&mut board, b"$J=X5F60\n");
+        say(&mut board, b"$J=X-6F60\n");
         assert!(say(&mut board, b"\x18").starts_with("ALARM:3\r\n\r\nGrbl 1.1h "));
-        assert_eq!(say(&mut board, b"$J=X5F60\n"), "error:8\r\n");
+        assert_eq!(say(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
         assert_eq!(say(&mut board, b"$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
-        assert_eq!(say(&mut board, b"!\x18?"), "\r\nGrbl 1.1h ['$' for help]\r\n<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
+        assert_eq!(say(&mut board, b"!\x18?"), "\r\nGrbl 1.1h ['$' for help]\r\n<Idle|MPos:-1.000,0.000,0.000|FS:0,0>\r\n");
         assert_eq!(board.0.reboot(&mut board.1), b"\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n");
         assert!(say(&mut board, b"?").starts_with("<Alarm|"), "not homed");
     }
@@ -368,7 +378,8 @@ mod tests {
     fn it_says_how_it_is_set_up() {
         let mut board = board();
         let settings = say(&mut board, b"$$\n");
-        for setting in ["$1=255\r\n", "$13=0\r\n", "$20=1\r\n", "$21=1\r\n", "$22=1\r\n", "$110=600.000\r\n", "$130=11.000\r\n"] {
+        for setting in ["$1=255\r\n", "$13=0\r\n", "$20=1\r\n", "$21=1\r\n", "$22=1\r\n", "$110=600.000\r\n", "$130=200.000\r\n"]
+        {
             assert!(settings.contains(setting), "{setting} is not in\n{settings}");
         }
         assert!(say(&mut board, b"$I\n").starts_with("[VER:1.1h.20190825:PSD-SIM]\r\n"));
@@ -377,7 +388,7 @@ mod tests {
     #[test]
     fn a_dwell_answers_once_the_axis_is_at_rest() {
         let mut board = board();
-        assert_eq!(say(&mut board, b"$J=X0.5F60\nG4P0.01\n"), "ok\r\n");
+        assert_eq!(say(&mut board, b"$J=X-1.5F60\nG4P0.01\n"), "ok\r\n");
         assert_eq!(wait(&mut board, 0.4), "");
         assert_eq!(wait(&mut board, 0.2), "");
         assert_eq!(wait(&mut board, 0.02), "ok\r\n");

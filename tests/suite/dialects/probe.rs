@@ -58,6 +58,8 @@ fn every_dialect_is_probed_and_watched_and_nothing_moves() {
         for expected in ["real", "  model ", "  displacement  0", "  force ", "-1 mm", "margin 1.000 mm", "margin 5.000 kN"] {
             assert!(probed.out.contains(expected), "{}: {expected} in\n{}", case.name, probed.out);
         }
+        let homed = probed.out.contains("stands at -1 mm of its own: a run would begin there, at 0");
+        assert_eq!(homed, case.name.starts_with("grbl"), "{}", probed.out);
         let open_loop = probed.out.contains("open loop");
         assert_eq!(open_loop, case.name.starts_with("grbl"), "{}", probed.out);
 

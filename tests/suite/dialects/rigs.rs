@@ -35,7 +35,7 @@ pub const CASES: &[Case] = &[
         ..serial(
             "grbl with hx711",
             "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: hx711)\n  \
-             force_per_count = 0.01 N\n  zero_count = 8123",
+             force_per_count = 0.01 N\n  zero_count = 8123\n  sign = negative\n  datum = here",
         )
     },
     // Hundredths of a kilogram, ten a second.
@@ -44,14 +44,14 @@ pub const CASES: &[Case] = &[
         duration: 4.0,
         ..serial(
             "grbl with indicator",
-            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)\n  sign = negative\n  datum = here",
         )
     },
     Case {
         force_error: 0.05,
         ..serial(
             "grbl with scpi",
-            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))\n  sign = negative\n  datum = here",
         )
     },
     // Eight decimals of 1 m and of 15 kN; it bears ten polls a second.

@@ -14,8 +14,8 @@ use psd::plan::{
 };
 use psd::quantity::Dimension;
 use psd::record::{
-    Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome, ProcedureRecord, RampHistory, RampStep, Record,
-    SweepHistory, SweepStep,
+    BroughtTogether, Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome, ProcedureRecord, RampHistory,
+    RampStep, Record, SweepHistory, SweepStep,
 };
 use psd::rig::Identity;
 use psd::verdict::{Assessment, Bound, ConditionOutcome, RequirementOutcome, Verdict};
@@ -88,6 +88,7 @@ pub fn finished() -> Finished {
             pairs: sweep_pairs(&sweep_steps()),
             middles: Vec::new(),
             stiffness: Some(327.72),
+            together: BroughtTogether::default(),
             own_stiffness: None,
             steps: sweep_steps(),
             fit: Some(line(4.02, 0.08, 0.31, 0.02)),
@@ -388,6 +389,7 @@ fn plan() -> Plan {
         report: Report { title: None, figures, formats: Vec::new(), sign: vec!["Test engineer".into(), "Quality".into()] },
         golden: psd::plan::Golden::default(),
         rehearses: None,
+        unloads_at_once: false,
         files: vec![
             PlanFile {
                 name: "beam.psd".into(),
@@ -414,6 +416,8 @@ fn assessment(largest: f64, error: f64) -> Assessment {
             margin: Some(limit - value),
             guard_band: None,
             margin_degrees: f64::INFINITY,
+            conforms: None,
+            wider_than_tolerance: false,
             reason: None,
         }],
     };

@@ -1,8 +1,8 @@
 //! What the outputs of a run on a real rig say of it: its standing, its equipment, its record.
 
 use psd::output::standing::{self, Standing};
-use psd::output::{RealRun, console};
-use psd::plan::{Calibration, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, ReadingRules, RealLink, SafeState};
+use psd::output::{Change, Issue, IssueKind, Issues, RealRun, console};
+use psd::plan::{Calibration, Datum, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, ReadingRules, RealLink, SafeState};
 use psd::record::{Event, EventKind, Outcome};
 
 use super::fixture::{Finished, finished};
@@ -25,6 +25,7 @@ fn real() -> Finished {
             serial_number: None,
         }),
         safe_state: SafeState::Hold,
+        datum: Datum::Machine,
         gate: Gate { zero: 20.0, probe: 20e-6, stiffness: Interval { low: 250e3, high: 350e3 } },
         readings: ReadingRules {
             samples: 5,
@@ -38,8 +39,27 @@ fn real() -> Finished {
         own_speed: 1e-3,
         axes: Vec::new(),
     });
-    finished.plan.rig.calibration =
-        Calibration { reference: Some("UKAS 4711".into()), due: Some("2027-03-01".into()), ..Calibration::default() };
+    finished.plan.particulars = [
+        ("standard", "SOP 17"),
+        ("specimen_id", "B-17"),
+        ("laboratory", "Test House"),
+        ("address", "1 Mill Lane"),
+        ("customer", "Somebody Ltd"),
+        ("contact", "test@example.org"),
+        ("issued", "2027-03-02"),
+        ("authorised_by", "Q. Head"),
+        ("receipt_date", "2027-02-20"),
+    ]
+    .map(|(field, text)| (field, text.to_owned()))
+    .to_vec();
+    finished.plan.rig.calibration = Calibration {
+        reference: Some("UKAS 4711".into()),
+        due: Some("2027-03-01".into()),
+        force_calibrated: Some(Interval { low: 10.0, high: 12e3 }),
+        displacement_calibrated: Some(Interval { low: 0.0, high: 0.2 }),
+        ..Calibration::default()
+    };
+    finished.provenance.date = Some("2027-02-28".into());
     finished.record.rig.simulated = false;
     finished.record.rig.boot = Some("7F3A".into());
     finished.provenance.real = Some(RealRun {
@@ -73,6 +93,7 @@ fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with()
         "7F3A",
         "UKAS 4711",
         "valid</span> on 2027-03-01",
+        "0.01 kN to 12 kN",
         "displacement to 1 µm",
         "median of 5 settled readings",
         "at most 20 N at rest; 250 kN/m to 350 kN/m in a move of 20 µm",
@@ -99,7 +120,9 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     assert_eq!(missing(&anonymous), ["the operator's name"]);
     let mut uncalibrated = real();
     uncalibrated.plan.rig.calibration = Calibration::default();
-    assert_eq!(missing(&uncalibrated), ["the calibration's reference", "the day until which the calibration holds"]);
+    let ranges = ["displacement", "force"].map(|channel| format!("the range over which the {channel} is calibrated"));
+    let lacks = ["the calibration's reference", &ranges[0], &ranges[1], "the day until which the calibration holds"];
+    assert_eq!(missing(&uncalibrated), lacks);
     // It held when the run began, and no more when it ended, a day later.
     let mut expired = real();
     expired.plan.rig.calibration.due = Some("2027-02-28".into());
@@ -115,8 +138,117 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     undated.provenance.real = Some(RealRun { operator: Some("A. Tester".into()), ..RealRun::default() });
     undated.provenance.date = Some("next week, perhaps".into());
     assert_eq!(missing(&undated), ["the day of the test"]);
-    undated.provenance.date = Some("2026-05-31".into());
+    undated.provenance.date = Some("2027-02-28".into());
     assert_eq!(standing::of(&undated.run()), Standing::Certifiable);
+}
+
+#[test]
+fn what_lies_outside_the_range_of_its_calibration_is_told() {
+    let told = |force: [f64; 2], displacement: [f64; 2]| -> Vec<String> {
+        let mut finished = real();
+        let range = |[low, high]: [f64; 2]| Some(Interval { low, high });
+        finished.plan.rig.calibration.force_calibrated = range(force);
+        finished.plan.rig.calibration.displacement_calibrated = range(displacement);
+        let summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+        let deviations = summary["deviations"].as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned());
+        deviations.filter(|text| text.contains("calibrated")).collect()
+    };
+    // 157 mm and 51.6 N at most.
+    assert_eq!(told([10.0, 100.0], [0.0, 0.2]), [""; 0]);
+    let (weak, far) = (told([300.0, 15e3], [0.0, 0.2]), told([0.0, 100.0], [0.0, 0.1]));
+    assert!(weak.len() == 1 && weak[0].starts_with("The largest force, ") && weak[0].contains("is below the range"), "{weak:?}");
+    assert!(far.len() == 1 && far[0].starts_with("The largest displacement, ") && far[0].contains("is beyond"), "{far:?}");
+}
+
+fn particulars_missing(change: impl FnOnce(&mut Vec<(&'static str, String)>)) -> Vec<String> {
+    let mut finished = real();
+    change(&mut finished.plan.particulars);
+    match standing::of(&finished.run()) {
+        Standing::ParticularsMissing { missing } => missing,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
+    for (field, name) in [
+        ("standard", "method"),
+        ("specimen_id", "item tested"),
+        ("laboratory", "laboratory"),
+        ("address", "address"),
+        ("customer", "customer"),
+        ("contact", "contact"),
+        ("issued", "date of issue"),
+        ("authorised_by", "authorised by"),
+    ] {
+        assert_eq!(particulars_missing(|all| all.retain(|(own, _)| *own != field)), [name]);
+        let blank = |all: &mut Vec<(&'static str, String)>| all.iter_mut().find(|(own, _)| *own == field).unwrap().1 = " ".into();
+        assert_eq!(particulars_missing(blank), [name]);
+    }
+    // What matters only to some tests is said to be missing, and bars nothing.
+    let mut bare = real();
+    bare.plan.particulars.retain(|(field, _)| *field != "receipt_date");
+    assert_eq!(standing::of(&bare.run()), Standing::Certifiable);
+    assert!(text(&files(&bare), "certificate.html").contains("Not given: Condition, Item received."));
+
+    bare.plan.particulars.clear();
+    let files = files(&bare);
+    let html = text(&files, "certificate.html");
+    for told in ["<div>PARTICULARS MISSING</div>", "wants of a report and this one lacks: laboratory; address; "] {
+        assert!(html.contains(told), "{told}");
+    }
+    assert!(html.contains("Not given: Condition, Item received."), "what the mark names is not told twice");
+    let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
+    assert_eq!((&summary["standing"], summary["missing"].as_array().unwrap().len()), (&"particulars missing".into(), 8));
+    let told = console::verdict_text(&bare.run(), false);
+    assert!(told.contains("(PARTICULARS MISSING: laboratory, address, ") && told.contains("psd issue"), "{told}");
+    // A rehearsal is issued by nobody.
+    bare.record.rig.simulated = true;
+    assert_eq!(standing::grounds(&bare.run()), [Standing::Rehearsal]);
+}
+
+#[test]
+fn days_out_of_their_order_are_told() {
+    let dated = |field: &'static str, day: &str| {
+        let day = day.to_owned();
+        particulars_missing(|all| {
+            all.retain(|(own, _)| *own != field);
+            all.push((field, day));
+        })
+    };
+    // Tested from 2027-02-28 to 2027-03-01, by UTC.
+    assert_eq!(dated("issued", "2020-01-01"), ["days in their order (tested 2027-03-01, issued 2020-01-01)"]);
+    assert_eq!(dated("issued", "2027-02-27"), ["days in their order (tested 2027-03-01, issued 2027-02-27)"]);
+    assert_eq!(dated("receipt_date", "2027-03-02"), ["days in their order (received 2027-03-02, tested 2027-02-28)"]);
+    assert_eq!(dated("receipt_date", "in spring"), ["a day on which the item was received (“in spring” is none)"]);
+    let mut near = real();
+    for (field, day) in [("issued", "2027-02-28"), ("receipt_date", "2027-03-01")] {
+        near.plan.particulars.retain(|(own, _)| *own != field);
+        near.plan.particulars.push((field, day.into()));
+    }
+    assert_eq!(standing::of(&near.run()), Standing::Certifiable, "the days of a laboratory may be one off those of UTC");
+}
+
+#[test]
+fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_provenance() {
+    let mut amended = real();
+    let change = Change { field: "operator", was: "A. Tester".into(), is: "A. B. Tester".into() };
+    let issue = Issue {
+        kind: IssueKind::Amendment,
+        replaces: "0123".into(),
+        date: Some("2027-03-09".into()),
+        by: "B. Editor".into(),
+        reason: Some("a letter".into()),
+        changes: vec![change],
+    };
+    amended.plan.particulars.push(("operator", "A. B. Tester".into()));
+    amended.provenance.issues = Some(Issues { report_id: "4567".into(), all: vec![issue] });
+    let files = files(&amended);
+    let html = text(&files, "certificate.html");
+    assert!(html.contains("Operator</span><span>A. B. Tester</span>"));
+    assert!(html.contains("Operator</th><td>A. Tester</td>"), "the record says who stood by");
+    let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
+    assert_eq!(summary["record"]["operator"], "A. Tester");
 }
 
 #[test]

@@ -229,6 +229,43 @@ proptest! {
     }
 }
 
+/// Two parts in series that give way at one force share a way between them in many manners: of these a large move takes the one
+/// that small moves take. Without force, a table between its toes and a spring that has pinched; at the yield force, two alike.
+#[test]
+fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
+    let toes = vec![[-1.1, -0.5], [-0.1, -0.0], [0.0, 0.0], [0.1, 0.0], [1.1, 0.5]];
+    let table =
+        |unloading| Behaviour::Table(Table { file: "points.csv".to_owned(), points: toes.clone(), unloading, scale: 1.0 });
+    let pinching = Behaviour::Pinching(Pinching {
+        stiffness: 1.948_780_769_769_375_6,
+        yield_force: 0.5,
+        hardening: 0.0,
+        force_factor: 0.0,
+        displacement_factor: 0.0,
+        unloading_exponent: 0.0,
+        capping: None,
+        deterioration: None,
+    });
+    let yields = || Behaviour::Bilinear { stiffness: 2.0, yield_force: 0.5, hardening: 0.0 };
+    let turns = [-3.988_847_520_979_166_3, 0.0, -0.633_495_342_963_283];
+    for (first, second) in [
+        (table(Unloading::InitialStiffness), pinching.clone()),
+        (pinching, table(Unloading::AlongTheCurve)),
+        (yields(), yields()),
+    ] {
+        for parts in [vec![first.clone(), second.clone()], vec![second, first]] {
+            let behaviour = Behaviour::Series(parts);
+            let (mut large, mut small) = (SpecimenModel::new(&behaviour), SpecimenModel::new(&behaviour));
+            let mut small_places = places(&turns, 37).into_iter();
+            for to in turns {
+                let by_small = small_places.by_ref().take(37).map(|place| small.move_to(place)).last().unwrap();
+                let by_large = large.move_to(to);
+                assert!((by_large - by_small).abs() < 1e-12, "{behaviour:?}: {by_large} N is not {by_small} N at {to} m");
+            }
+        }
+    }
+}
+
 /// A joint bears before its faces slip, and a Bouc–Wen spring with β = 1 unloads: twice as stiff as at first, both.
 #[test]
 fn a_stiffest_slope_is_reached() {

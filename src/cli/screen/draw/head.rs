@@ -6,7 +6,8 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
-use crate::cli::screen::dialogue::{Typing, What};
+use crate::cli::question::Kind;
+use crate::cli::screen::dialogue::{After, Typing, What};
 use crate::cli::screen::model::{Ended, INSPECT};
 use crate::quantity::Dimension;
 use crate::quantity::display::{readable, significant};
@@ -17,9 +18,9 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     let rig = if view.model.simulated { "simulated rig" } else { "REAL RIG" };
     let rig = format!("{rig} {} ", fitted(&shown(&view.model.rig), 24));
     sides(frame, title, title_line(view, title.width.into(), &rig), Line::raw(rig.clone()));
-    let clock = format!("{} ", clock(view.elapsed));
+    let clock = format!("{} ", clock(view.now.as_secs()));
     sides(frame, state, state_line(view), Line::raw(clock));
-    frame.render_widget(Line::raw(numbers_line(view, numbers.width >= 80)), numbers);
+    frame.render_widget(Line::raw(numbers_line(view, numbers.width.into())), numbers);
 }
 
 fn sides(frame: &mut Frame<'_>, area: Rect, left: Line<'_>, right: Line<'_>) {
@@ -71,8 +72,8 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
         ("HOLDING", Color::Red)
     } else if view.wish.wants_end() {
         ("STOPPING", Color::Red)
-    } else if view.dialogue.question.is_some() {
-        ("INSPECTION", Color::Yellow)
+    } else if let Some(question) = &view.dialogue.question {
+        (if question.kind == Kind::Release { "NOT RELEASED YET" } else { "INSPECTION" }, Color::Yellow)
     } else if view.dialogue.paused {
         (if view.dialogue.waiting { "PAUSED" } else { "PAUSING" }, Color::Yellow)
     } else {
@@ -80,12 +81,26 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
     }
 }
 
-fn numbers_line(view: &View<'_>, wide: bool) -> String {
+/// The last numbers, in words as long as there is room for.
+fn numbers_line(view: &View<'_>, width: usize) -> String {
     let felt = view.model.felt();
     if felt.is_empty() {
         return String::new();
     }
-    let error_word = if wide { " error" } else { "" };
+    let line = |words: [&str; 3], between: &str| format!(" {}", numbers(view, &felt, words).join(between));
+    let long = line(["tracking error", "energy error", "tracking energy"], "   ");
+    let short = line(["error", "energy", "Et"], "   ");
+    if long.chars().count() <= width {
+        long
+    } else if short.chars().count() <= width {
+        short
+    } else {
+        line(["e", "E", "Et"], "  ")
+    }
+}
+
+/// The numbers by name; `words`: of the tracking error, the energy error, the energy error of tracking.
+fn numbers(view: &View<'_>, felt: &[(f64, f64)], [tracking, energy, tracking_energy]: [&str; 3]) -> Vec<String> {
     let several = view.model.axes() > 1;
     let (highest, sum) = felt.iter().fold((0.0, 0.0), |(_, sum), (displacement, force)| (*displacement, sum + force));
     let (displacement, force) = if several { ("top floor", "base shear") } else { ("X", "R") };
@@ -96,18 +111,18 @@ fn numbers_line(view: &View<'_>, wide: bool) -> String {
     if let Some(error) = view.model.tracking_error() {
         // What the last bit of a float leaves is no error.
         let error = if error.abs() < 1e-12 { 0.0 } else { error };
-        words.push(format!("tracking{error_word} {}", readable(error, Dimension::LENGTH)));
+        words.push(format!("{tracking} {}", readable(error, Dimension::LENGTH)));
     } else if view.model.open_loop {
         words.push("open loop".to_owned());
     }
     let last = view.model.last.as_ref();
     if let Some(error) = last.and_then(|last| last.energy_error) {
-        words.push(format!("energy{error_word} {}", percent(error)));
+        words.push(format!("{energy} {}", percent(error)));
     }
-    if let Some(share) = last.and_then(|last| last.tracking_energy_error).filter(|_| wide) {
-        words.push(format!("tracking energy {}", percent(share)));
+    if let Some(share) = last.and_then(|last| last.tracking_energy_error) {
+        words.push(format!("{tracking_energy} {}", percent(share)));
     }
-    format!(" {}", words.join("   "))
+    words
 }
 
 /// A fraction for people; rounding noise is nothing.
@@ -122,29 +137,41 @@ fn clock(seconds: u64) -> String {
 
 /// The last line: the keys that do something now.
 pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
+    let dialogue = view.dialogue;
+    let answering = dialogue.typing.as_ref().is_some_and(|typing| typing.what == What::Answer);
     let text = if view.model.ended == Some(Ended::Unloading) {
         " h or Ctrl-C: hold now"
-    } else if let Some(Typing { what: What::Answer, .. }) = view.dialogue.typing.as_ref().filter(|_| view.dialogue.unload) {
-        " y unload, the rig MOVES   n leave it held"
-    } else if view.model.ended == Some(Ended::Held) && view.dialogue.typing.is_none() {
+    } else if dialogue.after.is_some() && !dialogue.hears(view.now) {
+        " the rig is held"
+    } else if answering && !dialogue.hears(view.now) {
+        " Ctrl-C stop, twice: hold now   other keys do not count yet"
+    } else if let Some(question) = dialogue.question.as_ref().filter(|_| answering) {
+        let word = question.kind.word();
+        let stop = if question.kind == Kind::Unload { "Esc back" } else { "q stop   h hold now   ? help" };
+        &format!(" type {word}   n no   i remark   {stop}")
+    } else if let Some(Typing { what, .. }) = &dialogue.typing {
+        match what {
+            What::Reason => " Enter resume   Esc back   Ctrl-U clear",
+            _ => " Enter done   Esc back   Ctrl-U clear   Ctrl-C stop",
+        }
+    } else if let Some(After::Held { resume, unload }) = dialogue.after {
+        match (resume, unload) {
+            (true, true) => " r resume   u unload   x leave",
+            (true, false) => " r resume   x leave",
+            (false, _) => " x leave",
+        }
+    } else if view.model.ended == Some(Ended::Held) {
         " the rig is held"
     } else if view.wish.wants_hold() {
         " the rig holds now"
     } else if view.wish.wants_end() {
         " stops at the end of this step   h or Ctrl-C again: hold now"
-    } else if let Some(Typing { what, .. }) = &view.dialogue.typing {
-        match what {
-            What::Answer => " y go on   n end the run here   q stop   h hold now",
-            What::Note | What::NoteName { .. } | What::Remark { .. } | What::AnswerName { .. } => {
-                " Enter done   Esc back   Ctrl-U clear   Ctrl-C stop"
-            }
-        }
-    } else if view.dialogue.monitor {
+    } else if dialogue.monitor {
         " q end   ? help"
-    } else if view.dialogue.paused {
+    } else if dialogue.paused {
         " p go on   s step   i note   q stop   h hold now   ? help"
     } else {
         " p pause   i note   q stop   h hold now   ? help"
     };
-    Line::styled(text, view.quiet())
+    Line::styled(text.to_owned(), view.quiet())
 }

@@ -1,6 +1,7 @@
 //! Model and dialogue → one picture. In: what is known. Out: cells of a frame. Pure: the same view is the same picture;
 //! whatever a plan or a person wrote is shown escaped.
 
+mod alarm;
 mod charts;
 mod events;
 mod head;
@@ -9,6 +10,8 @@ mod popup;
 #[cfg(test)]
 mod tests;
 
+use std::time::Duration;
+
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -16,7 +19,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Block, Borders};
 
 use super::dialogue::Dialogue;
-use super::model::Model;
+use super::model::{Ended, Model};
 use crate::diagnostic::excerpt::escape;
 use crate::rig::Wish;
 
@@ -28,18 +31,22 @@ pub struct View<'a> {
     pub model: &'a Model,
     pub dialogue: &'a Dialogue,
     pub wish: &'a Wish,
-    /// Wall time since the run began, s.
-    pub elapsed: u64,
+    /// Wall time since the screen was wanted.
+    pub now: Duration,
     pub color: bool,
 }
 
 /// Draws the whole screen.
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
     let area = frame.area();
+    if view.model.ended == Some(Ended::NotHeld) {
+        alarm::draw(frame, view, area);
+        return;
+    }
     if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
         let too_small = format!("psd: this screen needs {} x {}", SMALLEST.0, SMALLEST.1);
         frame.render_widget(Line::raw(too_small), Rect { height: area.height.min(1), ..area });
-        popup::draw(frame, view, area, area);
+        popup::draw(frame, view, area, area, area);
         return;
     }
     // Head, curves, the heading of the limits and the keys are always there.
@@ -63,7 +70,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
     limits::draw(frame, view, &rows, all.len(), limits);
     events::draw(frame, view, events);
     frame.render_widget(head::keys(view), keys);
-    popup::draw(frame, view, charts, charts.union(limits));
+    popup::draw(frame, view, charts, charts.union(limits), area);
 }
 
 impl View<'_> {

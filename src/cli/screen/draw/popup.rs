@@ -7,37 +7,43 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Clear, Padding, Paragraph};
 
 use super::{View, shown};
-use crate::cli::screen::dialogue::{Typing, What};
+use crate::cli::question::Kind;
+use crate::cli::screen::dialogue::{After, Typing, What};
+use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::record::EventKind;
 
 const WIDEST: u16 = 72;
 
 const HELP: &[&str] = &[
     "p        pause at the end of this step; p again goes on",
     "s space  one single step while paused",
-    "i        a note for the record, with your name",
+    "i        a note for the record, with your name; at a question a remark",
     "q        stop at the end of this step; the rig holds",
     "h        hold the rig now, in the middle of a step too",
     "Ctrl-C   once as q, twice as h",
     "",
+    "A rig is released by a typed word, never by a key.",
     "After a stop by a person the rig holds: nothing moves unasked.",
     "",
     "any key closes this; h, q and Ctrl-C do what they say too",
 ];
 
-/// Draws it in the middle of `charts`; where that is too low, in the middle of `whole`.
-pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, charts: Rect, whole: Rect) {
+/// Draws it in the middle of `charts`; where that is too low, of `whole`, else of everything.
+pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, charts: Rect, whole: Rect, everything: Rect) {
     let width = whole.width.min(WIDEST).saturating_sub(2);
     let room = usize::from(width.saturating_sub(4)).max(1);
     let Some((title, text)) = content(view, room) else { return };
     let lines: Vec<Line<'_>> = text.iter().flat_map(|line| wrapped(line, room)).map(Line::raw).collect();
     let wanted = u16::try_from(lines.len()).unwrap_or(u16::MAX).saturating_add(2);
-    let over = if wanted <= charts.height { charts } else { whole };
+    let over = [charts, whole].into_iter().find(|over| wanted <= over.height).unwrap_or(everything);
     let [row] = Layout::vertical([Constraint::Length(wanted.min(over.height))]).flex(Flex::Center).areas(over);
     let [area] = Layout::horizontal([Constraint::Length(width)]).flex(Flex::Center).areas(row);
+    let moves = view.dialogue.question.as_ref().is_some_and(|question| question.kind != Kind::Look);
     let block = Block::bordered()
         .border_type(BorderType::Double)
-        .border_style(view.paint(Color::Yellow))
-        .title(Span::styled(title, Style::new().add_modifier(Modifier::BOLD)))
+        .border_style(view.paint(if moves { Color::Red } else { Color::Yellow }))
+        .title(Span::styled(format!(" {title} "), Style::new().add_modifier(Modifier::BOLD)))
         .padding(Padding::horizontal(1));
     frame.render_widget(Clear, area);
     frame.render_widget(Paragraph::new(lines).block(block), area);
@@ -46,52 +52,72 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, charts: Rect, whole: Rect) {
 fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)> {
     let dialogue = view.dialogue;
     if dialogue.help {
-        return Some((" Help ", HELP.iter().map(|line| (*line).to_owned()).collect()));
+        return Some(("Help", HELP.iter().map(|line| (*line).to_owned()).collect()));
     }
-    let Typing { what, text } = dialogue.typing.as_ref()?;
+    let Some(Typing { what, text }) = dialogue.typing.as_ref() else { return dialogue.after.map(|after| held(view, after)) };
     let typed = format!("> {}▏", tail(&shown(text), width.saturating_sub(3)));
-    let question = || shown(dialogue.question.as_deref().unwrap_or_default());
-    let unload = dialogue.unload;
-    let title = match what {
-        What::Note | What::NoteName { .. } => " Note ",
-        _ if unload => " Held ",
-        _ => " Inspection ",
-    };
-    let answer = |yes: bool| match (yes, unload) {
-        (true, true) => "Yes, unload: the rig moves.",
-        (false, true) => "No, it stays held.",
-        (true, false) => "Yes, go on.",
-        (false, false) => "No, the run ends here and the rig holds.",
-    };
-    let lines = match what {
-        What::Note => {
-            let waits = dialogue.question.is_some().then(|| "An inspection waits until this note is done.".to_owned());
-            let rest = ["A note for the record; Enter keeps it, Esc does not:".to_owned(), typed];
-            waits.into_iter().chain(rest).collect()
-        }
-        What::NoteName { note } => vec![shown(note), "Your name:".to_owned(), typed],
-        What::Answer if unload => {
-            vec![question(), String::new(), "Unload?   y yes, the rig MOVES   n no, it stays held".to_owned()]
-        }
-        What::Answer => {
-            let mut lines =
-                vec![question(), String::new(), "Go on?   y yes   n no, the run ends here and the rig holds".to_owned()];
-            if view.model.unloads {
-                lines.push("After a limit on the way the rig unloads by itself; after a stop by you it holds.".to_owned());
+    let Some(question) = dialogue.question.as_ref().filter(|_| !matches!(what, What::Note | What::NoteName { .. })) else {
+        let waits = dialogue.question.is_some().then(|| "A question waits until this note is done.".to_owned());
+        return Some(match what {
+            What::Reason => {
+                let asks = "Why was the run held, and why may it go on? With the reason you say that the rig was not switched off. \
+                            Both are recorded. Enter, Esc back:";
+                ("RESUME", vec![asks.to_owned(), typed])
             }
-            lines
-        }
-        What::Remark { yes } => {
-            let answer = answer(*yes);
-            let asks = format!("{answer} A remark for the record; Enter without one, Esc back:");
-            vec![question(), String::new(), asks, typed]
-        }
-        What::AnswerName { yes, .. } => {
-            let answer = answer(*yes);
-            vec![question(), String::new(), format!("{answer} Your name; Esc back:"), typed]
-        }
+            What::NoteName { note } => ("Note", vec![shown(note), "Your name:".to_owned(), typed]),
+            _ => {
+                let rest = ["A note for the record; Enter keeps it, Esc does not:".to_owned(), typed];
+                ("Note", waits.into_iter().chain(rest).collect())
+            }
+        });
     };
-    Some((title, lines))
+    let mut lines: Vec<String> = question.lines.iter().map(|line| shown(line)).collect();
+    lines.push(String::new());
+    lines.extend(dialogue.remark.as_ref().map(|remark| format!("Remark: {}", shown(remark))));
+    lines.extend(match what {
+        What::Remark => vec!["A remark for the record; Enter keeps it, Esc back:".to_owned(), typed],
+        What::AnswerName { .. } => vec!["Your name; Esc back:".to_owned(), typed],
+        _ if !dialogue.hears(view.now) => vec!["Read this first: keys do not count yet.".to_owned()],
+        _ => vec![asked(view, question.kind), typed],
+    });
+    Some((question.kind.title(), lines))
+}
+
+/// What is to be typed.
+fn asked(view: &View<'_>, kind: Kind) -> String {
+    let (word, declined) = (kind.word(), kind.declined());
+    let unclear = if view.dialogue.unclear { "That was no answer. " } else { "" };
+    let unloads = if view.model.unloads && kind != Kind::Unload {
+        " After a limit on the way the rig unloads by itself; after a stop by you it holds."
+    } else {
+        ""
+    };
+    format!("{unclear}Type {word} and Enter, or n and Enter: {declined}.{unloads}")
+}
+
+/// A rig that holds after the early end of its run, and what may be done with it.
+fn held(view: &View<'_>, after: After) -> (&'static str, Vec<String>) {
+    let last = view
+        .model
+        .events
+        .iter()
+        .rev()
+        .find(|event| matches!(event.kind, EventKind::Hold | EventKind::LimitBreach | EventKind::Fault));
+    let numbers = |(displacement, force): (f64, f64)| {
+        format!("X {}   R {}", readable(displacement, Dimension::LENGTH), readable(force, Dimension::FORCE))
+    };
+    let mut lines = vec![last.map_or_else(String::new, |event| shown(&event.text)), String::new()];
+    lines.extend(view.model.felt().into_iter().map(numbers));
+    lines.push(String::new());
+    lines.extend(match after {
+        After::Held { resume, unload } if view.dialogue.hears(view.now) => {
+            let resume = resume.then(|| "r   resume the run; the rig is released first".to_owned());
+            let unload = unload.then(|| "u   unload; the rig is released first".to_owned());
+            resume.into_iter().chain(unload).chain(["x   leave; the rig stays held".to_owned()]).collect()
+        }
+        _ => vec!["Keys do not count yet.".to_owned()],
+    });
+    ("HELD", lines)
 }
 
 /// The end of a long line: where it is being typed.

@@ -1,0 +1,81 @@
+//! The coordinate of one axis: how places and forces of its devices count in the plan. In: numbers of one side. Out: those of the
+//! other. It knows no device and no record.
+
+use crate::plan::{Interval, Limits};
+
+/// Direction and zero of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Coordinate {
+    /// +1 or −1.
+    pub(super) sign: f64,
+    /// Where the plan's zero lies in the device's own coordinate, m.
+    pub(super) datum: f64,
+}
+
+impl Coordinate {
+    /// Of an axis whose own zero is the plan's.
+    pub(super) const fn of_sign(sign: f64) -> Self {
+        Self { sign, datum: 0.0 }
+    }
+
+    /// A place of the device, m, as the plan has it.
+    pub(super) fn in_plan(self, place: f64) -> f64 {
+        // Where the zero lies elsewhere, it is read as 0 and not as −0.
+        if self.datum == 0.0 { self.sign * place } else { self.sign * (place - self.datum) + 0.0 }
+    }
+
+    /// A place of the plan, m, as the device has it.
+    pub(super) fn at_device(self, place: f64) -> f64 {
+        let turned = self.sign * place;
+        // A sum with 0 would make 0 of −0, and other bytes of it.
+        if self.datum == 0.0 { turned } else { turned + self.datum }
+    }
+
+    /// A force or a velocity, of either side as the other has it.
+    pub(super) fn turned(self, value: f64) -> f64 {
+        self.sign * value
+    }
+
+    /// Limits of the plan as the device has them.
+    pub(super) fn limits_at_device(self, limits: &Limits) -> Limits {
+        let between = |ends: [f64; 2]| Interval { low: ends[0].min(ends[1]), high: ends[0].max(ends[1]) };
+        let (place, force) = (limits.displacement, limits.force);
+        Limits {
+            displacement: between([place.low, place.high].map(|end| self.at_device(end))),
+            force: between([force.low, force.high].map(|end| self.turned(end))),
+            ..*limits
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_axis_with_its_zero_elsewhere_has_places_and_limits_of_its_own() {
+        let axis = Coordinate { sign: -1.0, datum: -0.5 };
+        assert_eq!((axis.at_device(0.25), axis.in_plan(-0.75)), (-0.75, 0.25));
+        assert_eq!((axis.in_plan(-0.5).to_bits(), axis.turned(3.0)), (0.0_f64.to_bits(), -3.0));
+        let limits = Limits {
+            displacement: Interval { low: -0.25, high: 2.0 },
+            force: Interval { low: -1.0, high: f64::INFINITY },
+            ..Limits::NONE
+        };
+        let own = axis.limits_at_device(&limits);
+        assert_eq!(own.displacement, Interval { low: -2.5, high: -0.25 });
+        assert_eq!(own.force, Interval { low: f64::NEG_INFINITY, high: 1.0 });
+        assert_eq!(own.speed, limits.speed);
+    }
+
+    #[test]
+    fn an_axis_with_its_own_zero_changes_no_bit_but_its_sign() {
+        for sign in [1.0, -1.0] {
+            for place in [0.0_f64, -0.0, 1.25e-3] {
+                let axis = Coordinate::of_sign(sign);
+                assert_eq!(axis.at_device(place).to_bits(), (sign * place).to_bits());
+                assert_eq!(axis.in_plan(place).to_bits(), (sign * place).to_bits());
+            }
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! What a rig does once a person releases it, as that person must read it before. In: the rig, the plan's limits, what is known of the
+//! motion. Out: lines of text. Pure: every prompt that lets a rig move says the same things in the same order.
+
+use crate::plan::{Interval, Limits, Plan};
+use crate::quantity::Dimension;
+use crate::quantity::display::{plain, readable, stated};
+use crate::rig::Identity;
+
+/// A motion that waits for its release.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Name of the rig in the plan.
+    pub rig: String,
+    /// Who answered there.
+    pub identity: Identity,
+    /// Where it stands, where that was read: `at 0 mm, 0.2 N`.
+    pub stands: Option<String>,
+    /// What the rig does, as a sentence has it behind its name: `it moves to 1 mm`.
+    pub does: String,
+    /// What the motion takes.
+    pub expected: Extent,
+    /// What stops it.
+    pub limits: Limits,
+}
+
+/// How far, how hard, how fast and how long, SI. None: not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extent {
+    /// m, over all axes.
+    pub travel: Option<Interval>,
+    /// N, over all axes.
+    pub force: Option<Interval>,
+    /// The fastest, m/s.
+    pub speed: Option<f64>,
+    /// s
+    pub duration: Option<f64>,
+}
+
+impl Motion {
+    /// What the rig of a plan does, as far as its plan alone says.
+    #[must_use]
+    pub fn of(plan: &Plan, identity: Identity, does: String) -> Self {
+        Self { rig: plan.rig.name.clone(), identity, stands: None, does, expected: Extent::default(), limits: plan.limits }
+    }
+
+    /// The same motion, of which this is known where nothing was known before.
+    #[must_use]
+    pub fn expecting(mut self, expected: Extent) -> Self {
+        let before = self.expected;
+        self.expected = Extent {
+            travel: before.travel.or(expected.travel),
+            force: before.force.or(expected.force),
+            speed: before.speed.or(expected.speed),
+            duration: before.duration.or(expected.duration),
+        };
+        self
+    }
+
+    /// The lines of a prompt: which rig, what it does, how far, how hard, how fast, how long.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let Extent { travel, force, speed, duration } = self.expected;
+        let speed = speed.map(|speed| format!("up to {}", readable(speed, Dimension::VELOCITY)));
+        let stands = self.stands.as_ref().map(|stands| row("stands", stands));
+        let first = std::iter::once(row("rig", &self.who())).chain(stands);
+        let rest = [
+            row("motion", &self.does),
+            row(
+                "travel",
+                &within(
+                    travel.map(|travel| span(travel, Dimension::LENGTH, readable)),
+                    self.limits.displacement,
+                    Dimension::LENGTH,
+                ),
+            ),
+            row(
+                "force",
+                &within(force.map(|force| span(force, Dimension::FORCE, readable)), self.limits.force, Dimension::FORCE),
+            ),
+            row("speed", &within(speed, self.limits.speed, Dimension::VELOCITY)),
+            row("duration", &duration.map_or_else(|| "not known".to_owned(), about)),
+        ];
+        first.chain(rest).collect()
+    }
+
+    /// The rig's name, and who answered there.
+    fn who(&self) -> String {
+        let Identity { model, serial, simulated, .. } = &self.identity;
+        let said: Vec<&str> = [model.as_str(), serial.as_str()].into_iter().filter(|word| !word.is_empty()).collect();
+        let simulated = if *simulated { ", simulated" } else { "" };
+        format!("{} ({}{simulated})", self.rig, said.join(" "))
+    }
+}
+
+fn row(name: &str, text: &str) -> String {
+    format!("{name:<9} {text}")
+}
+
+/// What is expected, and the limit that stops it.
+fn within(expected: Option<String>, limit: Interval, dimension: Dimension) -> String {
+    let expected = expected.unwrap_or_else(|| "not known".to_owned());
+    let limit = match (limit.low.is_finite(), limit.high.is_finite()) {
+        (true, true) if limit.low == 0.0 || dimension == Dimension::VELOCITY => {
+            format!("limit {}", stated(limit.high, dimension))
+        }
+        (true, true) => format!("limits {}", span(limit, dimension, stated)),
+        (false, true) => format!("limit {}", stated(limit.high, dimension)),
+        (true, false) => format!("limit {}", stated(limit.low, dimension)),
+        (false, false) => "no limit".to_owned(),
+    };
+    format!("{expected}; {limit}")
+}
+
+fn span(interval: Interval, dimension: Dimension, written: fn(f64, Dimension) -> String) -> String {
+    format!("{} .. {}", written(interval.low, dimension), written(interval.high, dimension))
+}
+
+/// How long a motion takes, in words.
+fn about(seconds: f64) -> String {
+    match seconds {
+        seconds if seconds < 60.0 => format!("about {} s", plain(seconds.max(0.1), Dimension::NUMBER, 2)),
+        seconds if seconds < 5400.0 => format!("about {} min", plain(seconds / 60.0, Dimension::NUMBER, 2)),
+        seconds => format!("about {} h", plain(seconds / 3600.0, Dimension::NUMBER, 2)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::testing::empty_plan;
+
+    #[test]
+    fn a_motion_names_the_rig_and_how_far_how_hard_how_fast_and_how_long() {
+        let mut plan = empty_plan();
+        plan.rig.name = "bench".to_owned();
+        plan.limits.displacement = Interval { low: -5e-3, high: 10e-3 };
+        plan.limits.speed = Interval { low: 0.0, high: 0.2 };
+        let text = |word: &str| word.to_owned();
+        let identity = Identity {
+            name: text("bench"),
+            model: text("ACT-1"),
+            serial: text("17"),
+            firmware: text("1"),
+            boot: None,
+            simulated: false,
+        };
+        let unknown = Motion::of(&plan, identity, "it moves to 1 mm".to_owned());
+        assert_eq!(
+            unknown.lines(),
+            [
+                "rig       bench (ACT-1 17)",
+                "motion    it moves to 1 mm",
+                "travel    not known; limits −5 mm .. 10 mm",
+                "force     not known; no limit",
+                "speed     not known; limit 200 mm/s",
+                "duration  not known",
+            ]
+        );
+        let expected = Extent {
+            travel: Some(Interval { low: 0.0, high: 8.165e-3 }),
+            force: Some(Interval { low: 0.0, high: 2450.0 }),
+            speed: Some(0.02),
+            duration: Some(90.0),
+        };
+        let known = unknown.expecting(expected);
+        let lines = known.lines();
+        assert!(lines[2].ends_with("8.165 mm; limits −5 mm .. 10 mm") && lines[3].ends_with("2.450 kN; no limit"), "{lines:#?}");
+        assert!(lines[4].contains("20.00 mm/s") && lines[5] == "duration  about 1.5 min", "{lines:#?}");
+        let moved = known.expecting(Extent { duration: Some(1.0), ..Extent::default() });
+        assert_eq!(moved.expected, expected, "what is known stays");
+    }
+}

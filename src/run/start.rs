@@ -1,0 +1,71 @@
+//! Where a real rig must stand when a run begins: at the plan's zero. The plan's targets count from there, so that a rig that stands
+//! elsewhere would be sent all the way there by its first one. In: readings at rest. Out: why the run does not begin.
+
+use super::gate::{remedy, within};
+use super::session::Session;
+use super::stop::Stop;
+use super::tape::Bands;
+use crate::plan::{Datum, Plan, RealLink};
+use crate::quantity::Dimension;
+use crate::quantity::display::{plain, readable, stated};
+use crate::record::EventKind;
+use crate::rig::failpoint::{self, Guarding};
+use crate::rig::{named_axis, place_and_force};
+
+/// Displacements of every axis, m, and forces, N.
+pub(super) type AtRest<'a> = (&'a [f64], &'a [f64]);
+
+/// How near the axis at this place must stand to the plan's zero, m: as near as it settles at a target.
+pub fn band(plan: &Plan, link: &RealLink, axis: usize) -> f64 {
+    let settled = Bands::of(&plan.rig, link).displacement.get(axis).copied().unwrap_or(0.0);
+    // A rig that settles anywhere is near enough where its tiny move is nothing to the specimen.
+    if settled > 0.0 { settled } else { link.gate_of(axis).probe }
+}
+
+/// Whether the rig stands at the plan's zero. Records of older versions say nothing of where that lies, and nobody asked.
+pub(super) fn check(plan: &Plan, link: &RealLink, session: &Session<'_>, (places, forces): AtRest<'_>) -> Result<(), Stop> {
+    if session.guard.datum().is_none() || !failpoint::on(Guarding::GateStart) {
+        return Ok(());
+    }
+    for (axis, (place, force)) in places.iter().zip(forces).enumerate() {
+        let (band, gate) = (band(plan, link, axis), link.gate_of(axis));
+        if within(place.abs(), 0.0, band) {
+            continue;
+        }
+        let who = named_axis(axis, places.len()).map_or_else(|| "it".to_owned(), |axis| format!("axis {axis}"));
+        let at = readable(*place, Dimension::LENGTH);
+        let remedy = match link.datum {
+            Datum::Machine if within(force.abs(), 0.0, gate.zero) => {
+                "bring it there with `psd rig jog`; or, where the specimen carries no load here, say `datum = here`".to_owned()
+            }
+            Datum::Machine => remedy(*place, *force, &gate),
+            Datum::Here | Datum::At(_) => "it does not rest: something moves it".to_owned(),
+        };
+        return Err(Stop::Gate {
+            reason: format!(
+                "{who} stands at {at}, and the plan begins at 0, within {}: {remedy}",
+                stated(band, Dimension::LENGTH)
+            ),
+        });
+    }
+    Ok(())
+}
+
+/// Where the rig stands and what it feels there, and where that is of its own where the plan's zero is not.
+pub(super) fn told(session: &Session<'_>) -> String {
+    let (places, forces) = session.guard.found();
+    let stands = format!("at {}", place_and_force(places, forces));
+    let own = session.guard.datum().unwrap_or_default();
+    if own.iter().all(|place| *place == 0.0) {
+        return stands;
+    }
+    let own: Vec<String> = own.iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect();
+    format!("{stands}; the plan's zero is {} of the rig's own", own.join(", "))
+}
+
+/// Puts on record where the plan's zero lies, where that is not the rig's own.
+pub(super) fn tell(link: &RealLink, session: &mut Session<'_>) {
+    let Some(datum) = session.guard.datum().filter(|_| link.datum != Datum::Machine) else { return };
+    let places: Vec<String> = datum.iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect();
+    session.event(EventKind::Note, format!("the plan's zero is where the rig stands: {} of its own", places.join(", ")));
+}
