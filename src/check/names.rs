@@ -175,10 +175,9 @@ impl<'a> Checker<'a> {
             return self.reads_allowed(Typed { span, ..typed }, span, place);
         }
         let (kind, owner) = (declared.kind, declared.name);
-        // `hit.max-displacement` is read as a difference.
+        // `hit.max-displacement` is read as a difference, and `psd fmt` writes it as one: `hit.max - displacement`.
         let text = &self.sources.file(name.span.file).text[name.span.range().start..];
-        let end = text.find(|c: char| !c.is_ascii_alphanumeric() && !matches!(c, '_' | '-')).unwrap_or(text.len());
-        let joined = text[..end].replace('-', "_");
+        let (end, joined) = with_minus_signs(text);
         if kind.result(&joined).is_some() {
             let whole = Span { end: name.span.start + u32::try_from(end).unwrap_or(0), ..name.span };
             self.explained.push(whole);
@@ -234,5 +233,40 @@ impl<'a> Checker<'a> {
     pub fn declared_value(&mut self, index: usize, asked_at: Span) -> Option<Typed> {
         self.used.insert(index);
         self.once(Node::Value(index), asked_at, |checker| checker.value_of_declaration(index))
+    }
+}
+
+/// A name and all that a minus sign joins to it, with blanks or without: how long that is, bytes, and the name that it would be.
+fn with_minus_signs(text: &str) -> (usize, String) {
+    let word = |from: usize| {
+        let rest = &text[from..];
+        from + rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len())
+    };
+    let blanks = |from: usize| from + text[from..].len() - text[from..].trim_start_matches(' ').len();
+    let (mut end, mut joined) = (word(0), text[..word(0)].to_owned());
+    while text[blanks(end)..].starts_with('-') {
+        let begin = blanks(blanks(end) + 1);
+        if word(begin) == begin {
+            break;
+        }
+        end = word(begin);
+        joined = format!("{joined}_{}", &text[begin..end]);
+    }
+    (end, joined)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_with_minus_signs_is_one_however_it_is_laid_out() {
+        for text in ["max-displacement < 1 mm", "max - displacement < 1 mm", "max- displacement"] {
+            let (end, joined) = with_minus_signs(text);
+            assert!(joined == "max_displacement" && text[..end].ends_with("displacement"), "{text}: {joined}");
+        }
+        assert_eq!(with_minus_signs("max - 3 mm"), (7, "max_3".to_owned()));
+        assert_eq!(with_minus_signs("max - (a)"), (3, "max".to_owned()));
+        assert_eq!(with_minus_signs("max"), (3, "max".to_owned()));
     }
 }

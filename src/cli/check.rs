@@ -5,6 +5,7 @@ use super::exit::{Exit, Failure};
 use super::output::{give, tell};
 use super::settings::Settings;
 use super::{explain_plan, plan_file};
+use crate::diagnostic::excerpt::one_line;
 use crate::diagnostic::json;
 
 /// Checks every plan, and says what each would do where asked.
@@ -38,7 +39,8 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
                 Format::Json => tell(&dry.text(settings)),
             }
         } else if arguments.format == Format::Human {
-            tell(&format!("{}: {}\n", path.display(), settings.paint_note("the plan is sound")));
+            let name = one_line(&path.display().to_string());
+            tell(&format!("{name}: {}\n", settings.paint_note("the plan is sound")));
         }
     }
     if arguments.format == Format::Json {

@@ -8,8 +8,10 @@ use super::evidence::Folder;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::{tell, tell_words};
+use super::record_file::{self, journal_of};
 use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
+use super::writing::Telling;
 use super::{held, provenance, rehearse};
 use crate::diagnostic::excerpt::escape;
 use crate::output::{self, Listed, OutputError, Provenance, Run, Shelf};
@@ -27,8 +29,11 @@ pub fn conclude(
     recorded: &Recorded,
     settings: Settings,
 ) -> Result<Exit, Failure> {
+    let provenance = &as_recorded(folder, plan, provenance, recorded).inspect_err(|_| {
+        // Without a report, but not without where the rig stands.
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    })?;
     let assessment = verdict::assess(plan, &recorded.record);
-    let provenance = &as_recorded(folder, plan, provenance, recorded);
     let run = Run { plan, record: &recorded.record, assessment: &assessment, provenance };
     if !held::is_held(&recorded.record) {
         // Nothing comes before it, and nothing beside it says how to go on.
@@ -38,8 +43,12 @@ pub fn conclude(
     if held::is_held(&recorded.record) {
         tell(&how_it_stands(folder, plan, &recorded.record, settings));
     }
+    tell(&into(folder));
     let kept = Folder::digests(folder)?.kept();
-    write_made(folder, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
+    write_made(FolderShelf::new(folder), &kept, |shelf| {
+        let shelf = &mut Telling::over(shelf, settings);
+        made_of(plan, &recorded.record, &assessment, provenance, None, shelf)
+    })?;
     let exit = Exit::from(assessment.verdict);
     match (&recorded.fault, &recorded.mismatch) {
         (None, None) => Ok(exit),
@@ -52,6 +61,11 @@ pub fn conclude(
             Ok(exit.max(Exit::Fault))
         }
     }
+}
+
+/// Said with the verdict: where the record lies, and the results will.
+pub fn into(folder: &Path) -> String {
+    format!("  run folder {}\n", escape(&folder.display().to_string()))
 }
 
 /// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.
@@ -95,13 +109,14 @@ pub fn made_of(
     output::put_everything(&Run { plan, record, assessment, provenance }, shelf)
 }
 
-/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest.
+/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest. The manifest is the
+/// last: results without one are none that came to their end.
 pub fn write_made(
-    folder: &Path,
+    mut shelf: FolderShelf<'_>,
     beside: &[Listed],
     make: impl FnOnce(&mut dyn Shelf) -> Result<Vec<Listed>, OutputError>,
 ) -> Result<(), Failure> {
-    let mut shelf = FolderShelf::new(folder);
+    let folder = shelf.folder();
     let listed = match make(&mut shelf) {
         Ok(listed) => listed,
         Err(error) => return Err(shelf.failed(error)),
@@ -119,11 +134,24 @@ pub fn summary(folder: &Path, record: &Record) -> Result<String, Failure> {
     std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
 }
 
-/// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where
-/// it cannot be read back, what the run began with is told, and no head of the record.
-fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance, recorded: &Recorded) -> Provenance {
-    let read = plan.rig.link.as_real().and_then(|_| super::record_file::read(folder).ok());
-    read.map_or_else(|| numbered(began.clone(), plan, recorded), |read| read.provenance)
+/// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where the record could
+/// not be kept, and cannot be read back, what the run began with is told, and no head of the record. One that could be kept, and is not
+/// what was written, proves nothing: somebody has changed it under way, and no results are made of it.
+fn as_recorded(folder: &Path, plan: &Plan, began: &Provenance, recorded: &Recorded) -> Result<Provenance, Failure> {
+    if plan.rig.link.as_real().is_none() {
+        return Ok(numbered(began.clone(), plan, recorded));
+    }
+    let read = record_file::read(folder);
+    if recorded.fault.is_some() {
+        return Ok(read.map_or_else(|_| numbered(began.clone(), plan, recorded), |read| read.provenance));
+    }
+    let read = read?;
+    let lies_there = (read.recovered.lines.len() as u64, read.recovered.head().to_owned());
+    if recorded.sealed.as_ref() != Some(&lies_there) {
+        return Err(Failure::file(journal_of(folder), "is not what this run has written: no results are made of it")
+            .help("look for who else writes there; `psd verify` says what is wrong with it"));
+    }
+    Ok(read.provenance)
 }
 
 /// With the number of the report, where the record gives one.

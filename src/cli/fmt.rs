@@ -12,6 +12,7 @@ use super::loader::{plain, read_plan};
 use super::output::{give, tell};
 use super::plan_file::name_of;
 use super::settings::Settings;
+use crate::diagnostic::excerpt::one_line;
 use crate::diagnostic::render::render_all;
 use crate::source::Sources;
 use crate::syntax;
@@ -36,7 +37,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
         return Ok(Exit::Met);
     }
     if check {
-        let name = path.display().to_string();
+        let name = one_line(&path.display().to_string());
         let diff = TextDiff::from_lines(&text, &formatted);
         give(&diff.unified_diff().context_radius(3).header(&name, &format!("{name} (formatted)")).to_string())?;
         return Ok(Exit::Missed);
@@ -46,7 +47,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
         return Err(Failure::file(path, "left as it is: its formatted text would not stay the same"));
     }
     replace(path, &formatted).map_err(|error| Failure::file(path, plain(&error)))?;
-    tell(&format!("formatted {}\n", path.display()));
+    tell(&format!("formatted {}\n", one_line(&path.display().to_string())));
     Ok(Exit::Met)
 }
 

@@ -6,13 +6,12 @@ use std::path::Path;
 use super::args::ResumeArguments;
 use super::exit::{Exit, Failure};
 use super::output::tell;
-use super::real_rig::Opened;
 use super::record_file;
 use super::resume::resume;
 use super::settings::Settings;
-use super::watch::Stay;
+use super::watch::{Stay, Watcher};
 use crate::record::{Event, EventKind, Outcome, Record};
-use crate::rig::Rig as _;
+use crate::rig::Rig;
 use crate::run::tape::Recorded;
 use crate::run::{Observer as _, UNLOADING};
 
@@ -20,13 +19,12 @@ use crate::run::{Observer as _, UNLOADING};
 const BREATH: f64 = 0.05;
 
 /// Stays as long as somebody looks at the rig. Gives the reason for which the run is to go on, where it is to.
-pub fn stay(opened: &mut Opened, record: &Record) -> Option<String> {
+pub fn stay(rig: &mut dyn Rig, watcher: &mut Watcher, record: &Record) -> Option<String> {
     let mut held = is_held(record);
     let unmoved = matches!(record.outcome, Outcome::NotReleased { .. }) && held;
     if record.outcome == Outcome::Completed || unmoved {
         return None;
     }
-    let (rig, watcher) = (&mut opened.connected.rig, &mut opened.watcher);
     loop {
         match watcher.stay(held && can_go_on(record)) {
             Stay::Leave => return None,

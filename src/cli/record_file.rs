@@ -80,13 +80,13 @@ pub fn texts(plan: &Plan) -> Vec<String> {
 /// Opens the record of a run that is about to begin, where there is room for all of it.
 pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     let path = journal_of(folder);
-    let storage = FileStorage::create(&path)?;
+    // Nothing is left of a run that did not begin, not even its folder if it is empty.
+    let storage = FileStorage::create(&path).inspect_err(|_| drop(std::fs::remove_dir(folder)))?;
     // What a client will ask for nobody knows.
     if header.served.is_none()
         && let Err(failure) = room::enough(folder, &storage, plan, 0)
     {
         drop(storage);
-        // Nothing is left of a run that did not begin, not even its folder if it is empty.
         let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(folder));
         return Err(failure);
     }
@@ -148,6 +148,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
         }
     }
     let plan = plan_of(&played).map_err(damaged)?;
+    tape::well_formed(&recovered, &plan).map_err(|fault| damaged(fault.to_string()))?;
     if played.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
         return Err(damaged("its header does not say what was measured with".to_owned()));
     }

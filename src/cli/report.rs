@@ -1,20 +1,21 @@
 //! `psd report RUN`: the results anew, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
-//! for byte, into a folder that has none, with a copy of the record where that is another folder; with an amendment, a report
+//! for byte, into a folder that has none, or not all of them, with a copy of the record where that is another folder; with an amendment, a report
 //! of its own beside the one it takes the place of. It opens no rig, changes no record and overwrites nothing; of a run that is
 //! still going on it makes nothing.
 
 use std::path::{Path, PathBuf};
 
 use super::args::ReportArguments;
-use super::conclude::write_made;
-use super::evidence::{Folder, ISSUE, IssueFile, OLDER_ISSUE, PlayedBack, held_issue};
+use super::conclude::{into, write_made};
+use super::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stands};
 use super::exit::{Exit, Failure};
 use super::issue::amend;
 use super::loader::plain;
 use super::output::{give, tell, tell_words};
-use super::record_file::{self, JOURNAL, journal_of};
-use super::run_folder::RunFolder;
+use super::record_file::{self, journal_of};
+use super::run_folder::{FolderShelf, RunFolder};
 use super::settings::Settings;
+use super::writing::Telling;
 use crate::output::{self, Run};
 use crate::record::journal::FileStorage;
 
@@ -28,7 +29,9 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     let _still = journal.exists().then(|| FileStorage::keep_still(&journal)).transpose()?;
     let kept = Folder::read(run)?;
     let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
-    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
+    let read = record_file::read(run)?;
+    stands(&read).map_err(|fault| Failure::file(journal, fault).help("no report is made of a record that does not verify"))?;
+    let played = PlayedBack::of(read, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,
@@ -65,23 +68,18 @@ pub fn conclude_played(
     if steps.is_none() {
         tell_words(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color), settings);
     }
-    write_made(folder, beside, |shelf| played.results(shelf))?;
+    tell(&into(folder));
+    write_made(FolderShelf::replacing(folder), beside, |shelf| played.results(&mut Telling::over(shelf, settings)))?;
     let exit = Exit::from(assessment.verdict);
     let Some(mismatch) = mismatch else { return Ok(exit) };
     tell(&format!("  the record does not fit the plan: {mismatch}\n"));
     Ok(exit.max(Exit::Fault))
 }
 
-/// The run folder itself, if nothing but the record lies in it.
+/// The run folder itself, if its results did not come to their end: the manifest is written last.
 fn without_results(run: &Path) -> Result<PathBuf, Failure> {
-    let failed = |error: std::io::Error| Failure::file(run, plain(&error));
-    for entry in std::fs::read_dir(run).map_err(failed)? {
-        let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
-        if !name.starts_with(JOURNAL) && !name.starts_with("before-resume-") && name != ISSUE && name != OLDER_ISSUE {
-            return Err(
-                Failure::file(run, format!("has results already, such as `{name}`")).help("name a new folder with `--out`")
-            );
-        }
+    if run.join(MANIFEST).exists() {
+        return Err(Failure::file(run, "has results already").help("name a new folder with `--out`"));
     }
     Ok(run.to_owned())
 }

@@ -1,26 +1,28 @@
 //! `psd resume RUN`: goes on with a run on a real rig. In: the folder of a run that was stopped or cut off, and who takes
-//! it upon them. Out: the same run, to its end. Nothing moves before record, plan, program and rig are known to be those of
-//! the run, and the target in doubt is settled by asking the rig.
+//! it upon them. Out: the same run, to its end. The record is played before a port is opened. Nothing moves before record, plan,
+//! program and rig are known to be those of the run, and the target in doubt is settled by asking the rig.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use super::args::ResumeArguments;
 use super::conclude::conclude;
+use super::evidence::MANIFEST;
 use super::exit::{Exit, Failure};
 use super::loader::plain;
 use super::output::{give, tell};
 use super::provenance::{BUILD, TOOLCHAIN};
-use super::real_rig::Opened;
 use super::record_file::{self, ReadRecord, journal_of};
 use super::settings::Settings;
-use super::watch::Attendance;
+use super::watch::{Attendance, Shared, Signals, Watcher};
 use super::{expected, held, plan_file, provenance, real_rig, release, room};
 use crate::output::Provenance;
 use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
-use crate::rig::{Rig, Wish};
-use crate::run::tape::{self, AmendBody, Assurance, Bands, Header, Played, RecoverBody, ResumeBody, RigBody};
+use crate::rig::real::RealRig;
+use crate::rig::{Rig as _, Wish, connect};
+use crate::run::tape::{self, AmendBody, Assurance, Bands, GoesOn, Header, Played, RecoverBody, ResumeBody, RigBody};
 
 /// Goes on with one run.
 pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -33,7 +35,14 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let mut storage = FileStorage::open_existing(&path)?;
     let read = record_file::from_bytes(&path, &storage.contents()?)?;
     if read.played.ended {
-        return Err(tape::Refusal::Ended.into());
+        let run = arguments.run.display();
+        let failure = Failure::file(&arguments.run, tape::Refusal::Ended.to_string());
+        // The manifest is written last.
+        return Err(if arguments.run.join(MANIFEST).exists() {
+            failure
+        } else {
+            failure.help(format!("its results are not all there: `psd report {run}` makes them from the record"))
+        });
     }
     if read.played.header.served.as_deref() == Some(tape::BY_HAND) {
         return Err(Failure::command_line("this was done by hand: there is nothing to go on with")
@@ -49,9 +58,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     };
     let (plan, provenance, amendment) = what_holds(arguments, &read)?;
 
-    // Before a port is opened or a byte written: the record, by the plan that is to go on.
     tape::same_measure(&read.plan.rig, &plan.rig)?;
-    tape::rehearse(&plan, &read.played)?;
+    tape::not_restarted(&read.played, &assured(arguments))?;
     room::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
 
     let steps = read.played.lines.iter().filter(|line| line.kind == EntryKind::Step).count() as u64;
@@ -60,33 +68,51 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let wish = Wish::default().letting_go(arguments.let_go);
     // Its zero is where it was when the run began, wherever the rig stands now.
     let datum = read.played.rig.as_ref().and_then(|rig| rig.datum.as_deref());
-    let at_its_datum = Plan { rig: plan.rig.with_recorded_datum(datum), ..plan.clone() };
-    let mut opened = real_rig::open(&at_its_datum, &attendance, &wish, settings)?;
-    opened.watcher.expect(expected);
-    let resumption = settle(arguments, &plan, &link, &read.played, &mut opened)?;
+    let at_its_datum = plan.rig.with_recorded_datum(datum);
+    let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+    let simulated = read.played.last_rig.as_ref().is_some_and(|rig| rig.identity.simulated);
+    let watcher = RefCell::new(Watcher::new(settings, &attendance, &plan, simulated, signals));
+    let (mut connected, mut torn) = (None, None);
+    let (opened, put_aside) = (&mut connected, &mut torn);
+    let begin = || {
+        if wish.wants_end() {
+            return Err(Failure::NotReleased { reason: "stopped on request".to_owned() });
+        }
+        let rig = &mut opened.insert(connect(&at_its_datum, &plan.limits, &wish)?).rig;
+        watcher.borrow().watch(rig.live());
+        watcher.borrow_mut().expect(expected);
+        let resumption = settle(arguments, &plan, &link, &read.played, rig, &mut watcher.borrow_mut())?;
 
-    // From here on the run goes on: until now the record has not changed.
-    let torn = storage.truncate_to(read.recovered.whole)?;
-    let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
-    if let Some(torn) = &torn {
-        let name = torn.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        journal.append(EntryKind::Recover, &RecoverBody { t: read.played.time, put_aside: name })?;
-    }
-    if let Some((amendment, texts)) = &amendment {
-        tape::amend(&mut journal, amendment, texts)?;
-    }
-    let about = RigBody { t: read.played.time, ..RigBody::of(&opened.connected.rig) };
-    journal.append(EntryKind::Rig, &about)?;
-    journal.append(EntryKind::Resume, &resumption)?;
-    journal.sync()?;
-
-    let played = played(&path)?;
-    put_results_aside(&arguments.run)?;
-    let wall = real_rig::wall_clock();
-    let recorded = tape::resume(&plan, played, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
-    let wanted = held::stay(&mut opened, &recorded.record);
-    opened.watcher.finish();
-    drop(opened);
+        // From here on the run goes on: until now the record has not changed.
+        *put_aside = storage.truncate_to(read.recovered.whole)?;
+        let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
+        let mut played = read.played.clone();
+        if let Some(torn) = put_aside {
+            let name = torn.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            journal.append(EntryKind::Recover, &RecoverBody { t: played.time, put_aside: name })?;
+            played.recovered();
+        }
+        if let Some((amendment, texts)) = amendment {
+            tape::amend(&mut journal, &amendment, &texts)?;
+            played.amended(amendment);
+        }
+        journal.append(EntryKind::Rig, &RigBody { t: played.time, ..RigBody::of(rig) })?;
+        journal.append(EntryKind::Resume, &resumption)?;
+        journal.sync()?;
+        played.resumed(resumption);
+        put_results_aside(&arguments.run)?;
+        Ok(GoesOn { rig, journal, played })
+    };
+    let recorded = tape::resume(&plan, &read.played, &mut Shared(&watcher), real_rig::wall_clock(), begin);
+    let mut watcher = watcher.into_inner();
+    let wanted = match (&recorded, &mut connected) {
+        (Ok(recorded), Some(connected)) => held::stay(&mut connected.rig, &mut watcher, &recorded.record),
+        _ => None,
+    };
+    watcher.finish();
+    // Nobody speaks with the rig while the results are written: it is left as it stands.
+    drop((connected, watcher));
+    let recorded = recorded?;
     if let Some(torn) = torn {
         tell(&format!("  a torn end of the record was put aside: {}\n", torn.display()));
     }
@@ -179,9 +205,9 @@ fn settle(
     plan: &Plan,
     link: &RealLink,
     played: &Played,
-    opened: &mut Opened,
+    rig: &mut RealRig,
+    watcher: &mut Watcher,
 ) -> Result<ResumeBody, Failure> {
-    let (rig, watcher) = (&mut opened.connected.rig, &mut opened.watcher);
     let recorded = played.last_rig.as_ref().ok_or(tape::Refusal::NothingRecorded)?;
     let assured = assured(arguments);
     tape::same_rig(&recorded.identity, &rig.identity(), &assured)?;
@@ -204,12 +230,6 @@ fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
         (arguments.let_go, Assurance::LetGo),
     ];
     said.into_iter().filter(|(said, _)| *said).map(|(_, assured)| assured).collect()
-}
-
-/// The record as it counts now, with the resumption in it.
-fn played(path: &Path) -> Result<Played, Failure> {
-    let bytes = std::fs::read(path).map_err(|error| Failure::file(path, plain(&error)))?;
-    Ok(record_file::from_bytes(path, &bytes)?.played)
 }
 
 /// The results of the interrupted run are kept, beside those to come.

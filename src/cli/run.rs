@@ -130,7 +130,7 @@ fn on_a_real_rig(plan: &Plan, arguments: &RunArguments, attendance: &Attendance,
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let wall = real_rig::wall_clock();
     let recorded = tape::record(plan, &mut opened.connected.rig, &mut opened.watcher, journal, wall);
-    let resume = held::stay(&mut opened, &recorded.record);
+    let resume = held::stay(&mut opened.connected.rig, &mut opened.watcher, &recorded.record);
     opened.watcher.finish();
     Ok(Ran { folder, provenance, recorded, resume })
 }

@@ -1,8 +1,9 @@
 //! The run folder: new or empty, each file created once. In: where the person wants it, and the files. Out: the
-//! folder on disk. Never overwrites, and deletes nothing but what it has just written.
+//! folder on disk. Overwrites nothing but a part of results that are made again, and deletes nothing but what it has just written.
 
 use std::fs::OpenOptions;
 use std::io::{BufWriter, ErrorKind, IntoInnerError, Write};
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Component, Path, PathBuf};
 
 use super::exit::Failure;
@@ -96,10 +97,14 @@ fn written(path: &Path, write: &mut dyn FnMut(&mut dyn Write) -> std::io::Result
     if let Some(parent) = path.parent() {
         std::fs::create_dir_all(parent)?;
     }
-    let mut created = BufWriter::with_capacity(WRITE_BYTES, OpenOptions::new().write(true).create_new(true).open(path)?);
+    let created = OpenOptions::new().write(true).create_new(true).mode(MODE).open(path)?;
+    let mut created = BufWriter::with_capacity(WRITE_BYTES, created);
     write(&mut created)?;
     created.into_inner().map_err(IntoInnerError::into_error)?.sync_all()
 }
+
+/// Results say what the record says, and like it are for their owner alone until the owner gives them to others.
+const MODE: u32 = 0o600;
 
 /// Bytes of a file that are given to the disk at once.
 const WRITE_BYTES: usize = 64 * 1024;
@@ -107,13 +112,24 @@ const WRITE_BYTES: usize = 64 * 1024;
 /// Files put into a folder as they are made.
 pub struct FolderShelf<'a> {
     folder: &'a Path,
+    /// What lies at a file's place is a piece of results that did not come to their end.
+    replaces: bool,
     created: Vec<PathBuf>,
     failure: Option<Failure>,
 }
 
 impl<'a> FolderShelf<'a> {
     pub const fn new(folder: &'a Path) -> Self {
-        Self { folder, created: Vec::new(), failure: None }
+        Self { folder, replaces: false, created: Vec::new(), failure: None }
+    }
+
+    /// For a folder with a part of the results, which are made again.
+    pub const fn replacing(folder: &'a Path) -> Self {
+        Self { folder, replaces: true, created: Vec::new(), failure: None }
+    }
+
+    pub const fn folder(&self) -> &'a Path {
+        self.folder
     }
 
     /// Why not all files are there. Where one could not be made, none of those before it stays: the results can be made again.
@@ -136,6 +152,10 @@ impl Shelf for FolderShelf<'_> {
                 return Err(ErrorKind::InvalidInput.into());
             }
         };
+        // A link goes, and not what it leads to.
+        if self.replaces && place.is_symlink() | place.is_file() {
+            std::fs::remove_file(&place).inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
+        }
         written(&place, write).inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
         self.created.push(place);
         Ok(())
@@ -197,5 +217,14 @@ mod tests {
         );
         let mut shelf = FolderShelf::new(root.path());
         assert!(shelf.put("../a.csv", &mut |_| Ok(())).is_err());
+
+        std::os::unix::fs::symlink(root.path().join("tables/a.csv"), root.path().join("link")).unwrap();
+        let mut shelf = FolderShelf::replacing(root.path());
+        shelf.put("link", &mut |out| out.write_all(b"z")).unwrap();
+        assert_eq!(std::fs::read(root.path().join("tables/a.csv")).unwrap(), b"x", "what a link leads to stays");
+        shelf.put("tables/a.csv", &mut |out| out.write_all(b"z")).unwrap();
+        assert_eq!(std::fs::read(root.path().join("tables/a.csv")).unwrap(), b"z");
+        let mode = std::os::unix::fs::PermissionsExt::mode(&root.path().join("tables/a.csv").metadata().unwrap().permissions());
+        assert_eq!(mode & 0o777, 0o600, "for their owner alone, as the record");
     }
 }

@@ -83,7 +83,11 @@ pub fn keygen(arguments: &KeygenArguments, settings: Settings) -> Result<Exit, F
 }
 
 fn warn(key: &Path, protection: Protection) {
+    let name = one_line(&key.display().to_string());
     if protection == Protection::None {
-        tell(&format!("  {} has no password: whoever reads it can sign with it\n", one_line(&key.display().to_string())));
+        tell(&format!("  {name} has no password: whoever reads it can sign with it\n"));
+    }
+    if keys::is_readable_by_others(key) {
+        tell(&format!("  {name} can be read by others than its owner: `chmod 600` keeps it from them\n"));
     }
 }

@@ -12,9 +12,15 @@ use super::output::give;
 use super::record_file::{JOURNAL, journal_of};
 use super::settings::Settings;
 use crate::diagnostic::excerpt::one_line;
+use crate::record::journal::{FileFault, FileStorage};
 
-/// Proves what can be proven of a run folder.
+/// Proves what can be proven of a run folder. Of a run that is still going on nothing can.
 pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {
+    let _still = match FileStorage::keep_still(&journal_of(&arguments.run)) {
+        Err(fault @ FileFault::InUse { .. }) => return Err(fault.into()),
+        // Whatever else is wrong with it is told below; a file system may know no locks.
+        still => still.ok(),
+    };
     let mut folder = Folder::read(&arguments.run)?;
     if !folder.files.contains_key(JOURNAL) {
         return Err(Failure::file(journal_of(&arguments.run), "no such file").help("a run folder is told by its record"));

@@ -27,10 +27,10 @@ pub struct Guard<'rig> {
     pub(super) heard: f64,
     /// Where holds are to be told.
     pub(super) holds: Option<Holds>,
-    /// The reading that broke a limit last, if it is one.
-    pub(super) broken: Option<Reading>,
     /// The first reading: displacements, m, and forces, N.
     pub(super) found: (Vec<f64>, Vec<f64>),
+    /// The reading that broke a limit last, if it is one.
+    pub(super) broken: Option<Reading>,
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -67,8 +67,8 @@ impl<'rig> Guard<'rig> {
             speed: None,
             heard,
             holds: None,
-            broken: None,
             found,
+            broken: None,
         };
         let Reading { displacement, force, .. } = guard.read()?;
         guard.commanded.clone_from(&displacement);
@@ -155,14 +155,9 @@ impl<'rig> Guard<'rig> {
         Ok(())
     }
 
-    /// The reading that broke a limit, once: it was made all the same.
-    pub fn take_broken(&mut self) -> Option<Reading> {
-        self.broken.take()
-    }
-
-    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way; the last is the one that broke a limit, if any did.
-    /// The limit on the increment is not for
-    /// it, since its target goes along evenly; the one on the tracking error is for settled readings.
+    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way; the last reading is the one that broke a limit, if
+    /// any did. The limit on the increment is not for it, since its target goes along evenly; the one on the tracking error is for
+    /// settled readings.
     pub fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Traversed {
         let refused = |fault| Traversed { readings: Vec::new(), fault: Some(fault) };
         let allowed =
@@ -469,8 +464,8 @@ mod tests {
                 speed,
                 heard,
                 holds,
-                broken: None,
                 found,
+                broken: None,
             };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);

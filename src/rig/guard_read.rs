@@ -51,6 +51,11 @@ impl Guard<'_> {
         Ok(())
     }
 
+    /// The reading that broke a limit, once: it was made all the same.
+    pub fn take_broken(&mut self) -> Option<Reading> {
+        self.broken.take()
+    }
+
     fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
         let found = outside(&self.limits, &self.own, reading).filter(|_| on(Guarding::ReadingLimits));
         let judged = found.map_or(Ok(()), Err);

@@ -1,8 +1,8 @@
 //! What a person wants of a run that is under way. In: wishes from signal handlers, keys and other threads. Out: the
 //! wish, for whoever waits on a rig. It knows no rig and does nothing itself.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 const NOTHING: u8 = 0;
 const STOP_AFTER_STEP: u8 = 1;
@@ -18,6 +18,29 @@ pub struct Wish {
     unasked: Arc<AtomicBool>,
     /// The bits of the longest time, s, that a line was not looked at.
     absence: Arc<AtomicU64>,
+    client: Client,
+}
+
+/// Tells whether the client that asked for the move under way is gone; None: no client asked for it.
+#[derive(Clone, Default)]
+struct Client(Arc<Mutex<Option<IsGone>>>);
+
+type IsGone = Box<dyn Fn() -> bool + Send>;
+
+impl Client {
+    fn set(&self, is_gone: Option<IsGone>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = is_gone;
+    }
+
+    fn is_gone(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).as_ref().is_some_and(|is_gone| is_gone())
+    }
+}
+
+impl std::fmt::Debug for Client {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Client")
+    }
 }
 
 impl Wish {
@@ -68,15 +91,24 @@ impl Wish {
         self.what.store(HOLD_NOW, Ordering::SeqCst);
     }
 
+    /// Does a client's move. The rig is to hold at once where the client is gone meanwhile; the run does not end with that.
+    pub fn for_client<T>(&self, is_gone: impl Fn() -> bool + Send + 'static, moves: impl FnOnce() -> T) -> T {
+        self.client.set(Some(Box::new(is_gone)));
+        let moved = moves();
+        self.client.set(None);
+        moved
+    }
+
     /// Says that the wish to hold was seen, so that the words that hold the rig can be said and answered.
     pub fn heed(&self) {
         self.what.compare_exchange(HOLD_NOW, HEEDED, Ordering::SeqCst, Ordering::SeqCst).ok();
+        self.client.set(None);
     }
 
     /// Whether a hold is wanted that nobody has seen yet.
     #[must_use]
     pub fn wants_hold(&self) -> bool {
-        self.what.load(Ordering::SeqCst) == HOLD_NOW
+        self.what.load(Ordering::SeqCst) == HOLD_NOW || self.client.is_gone()
     }
 
     /// Whether the run is to end, now or after the step.
@@ -117,5 +149,24 @@ mod tests {
         clone.ask_nobody();
         assert!(!wish.may_ask());
         assert!(!wish.lets_go() && Wish::default().letting_go(true).clone().lets_go());
+    }
+
+    #[test]
+    fn a_client_that_is_gone_holds_its_own_move_and_ends_nothing() {
+        let wish = Wish::default();
+        let gone = Arc::new(AtomicBool::new(false));
+        let seen = Arc::clone(&gone);
+        wish.for_client(
+            move || seen.load(Ordering::SeqCst),
+            || {
+                assert!(!wish.wants_hold(), "it is there");
+                gone.store(true, Ordering::SeqCst);
+                assert!(wish.clone().wants_hold() && !wish.wants_end());
+                wish.heed();
+                assert!(!wish.wants_hold(), "the words that hold are not interrupted");
+            },
+        );
+        wish.for_client(|| true, || assert!(wish.wants_hold()));
+        assert!(!wish.wants_hold() && !wish.wants_end(), "the next client's rig");
     }
 }

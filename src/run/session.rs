@@ -304,17 +304,24 @@ impl<'run> Session<'run> {
 
     /// One reading of every axis, and what ends the run where it breaks a limit: it was made all the same, and is kept.
     pub(super) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
-        match self.guard.read() {
-            Ok(reading) => Ok((reading, None)),
-            Err(fault) => self.kept(fault).map(|(reading, stop)| (reading, Some(stop))),
-        }
+        let read = self.guard.read();
+        self.kept(read)
     }
 
-    /// The reading that broke a limit, with the end that it makes; the end alone of a fault that is none of a reading's.
-    pub(super) fn kept(&mut self, fault: RigFault) -> Result<(Reading, Stop), Stop> {
-        match self.guard.take_broken() {
-            Some(reading) => Ok((reading, fault.into())),
-            None => Err(fault.into()),
+    /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
+    pub(super) fn read_moved_kept(&mut self) -> Result<(Reading, Option<[f64; 2]>, Option<Stop>), Stop> {
+        let read = self.guard.read_moved();
+        let (read, moved) = read.map_or_else(|fault| (Err(fault), None), |(reading, moved)| (Ok(reading), moved));
+        self.kept(read).map(|(reading, stop)| (reading, moved, stop))
+    }
+
+    fn kept(&mut self, read: Result<Reading, RigFault>) -> Result<(Reading, Option<Stop>), Stop> {
+        match read {
+            Ok(reading) => Ok((reading, None)),
+            Err(fault) => match self.guard.take_broken() {
+                Some(reading) => Ok((reading, Some(fault.into()))),
+                None => Err(fault.into()),
+            },
         }
     }
 

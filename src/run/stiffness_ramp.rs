@@ -111,17 +111,8 @@ impl Ramp {
     ) -> Result<Point, Stop> {
         session.guard.move_to(&[command], speed)?;
         let (settled, moved, mut broken) = match asked {
-            Some(_) => match session.guard.read_moved() {
-                Ok((settled, moved)) => (settled, moved, None),
-                Err(fault) => {
-                    let (settled, stop) = session.kept(fault)?;
-                    (settled, None, Some(stop))
-                }
-            },
-            None => {
-                let (settled, stop) = session.read_kept()?;
-                (settled, None, stop)
-            }
+            Some(_) => session.read_moved_kept()?,
+            None => session.read_kept().map(|(reading, broken)| (reading, None, broken))?,
         };
         let (_, settled_force) = first(&settled);
         let mut readings = Vec::new();

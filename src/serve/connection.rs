@@ -1,5 +1,5 @@
 //! The line to a client. In: a stream, bytes to send. Out: bytes that came, without delay. It knows no protocol. While it
-//! waits, the rig is heard.
+//! waits, the rig is heard; while the rig moves, the line is looked after, so that nothing moves for a client that is gone.
 //!
 //! Clients of the field leave Nagle's delay on: with a delayed acknowledgement of ours every message of theirs would wait
 //! 40 ms. So what comes is acknowledged at once, after every read, for the system forgets the wish.
@@ -8,14 +8,23 @@ use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::net::sockopt::set_tcp_quickack;
+use rustix::net::{RecvFlags, recv};
 
-use super::LOOK;
-use crate::rig::RigFault;
+use super::{Ended, LOOK};
+use crate::rig::{RigFault, Wish};
 use crate::run::driven::Specimen;
 
 /// A client that takes nothing for so long is gone.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// A client that has begun a message and does not end it for so long is sent away, and so is one that comes and says nothing: nobody
+/// else is let in meanwhile.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Bytes that a client may have sent ahead, and that are looked through for its leave.
+const SENT_AHEAD: usize = 1 << 16;
 
 /// Why there is nothing more to read or write.
 #[derive(Debug)]
@@ -23,6 +32,8 @@ pub enum Broken {
     HungUp,
     /// A person wants the end.
     Stopped,
+    /// It owes the rest of what it has begun.
+    Silent,
     Lost(io::Error),
     /// The rig failed while the client was waited for.
     Rig(RigFault),
@@ -31,7 +42,8 @@ pub enum Broken {
 /// A client's stream, and who may want the end.
 pub struct Connection<'a> {
     stream: TcpStream,
-    stop: &'a dyn Fn() -> bool,
+    wish: &'a Wish,
+    pub(super) patience: Duration,
 }
 
 impl<'a> Connection<'a> {
@@ -39,22 +51,49 @@ impl<'a> Connection<'a> {
     ///
     /// # Errors
     /// The stream cannot be set up: it is gone already.
-    pub fn new(stream: TcpStream, wait: Duration, stop: &'a dyn Fn() -> bool) -> io::Result<Self> {
+    pub fn new(stream: TcpStream, wait: Duration, wish: &'a Wish) -> io::Result<Self> {
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(wait.min(LOOK)))?;
         stream.set_write_timeout(Some(wait.min(LOOK)))?;
         set_tcp_quickack(&stream, true)?;
-        Ok(Self { stream, stop })
+        Ok(Self { stream, wish, patience: PATIENCE })
     }
 
-    /// Waits for bytes and gives how many came, at least one.
+    /// Has the rig carry out what the client proposed. Where the client goes away meanwhile, the rig holds where it is; not where it has
+    /// taken its leave in what it sent ahead.
+    ///
+    /// # Errors
+    /// The rig fails, or was held on its way.
+    pub fn execute(
+        &self,
+        specimen: &mut Specimen<'_, '_>,
+        takes_leave: impl Fn(&[u8]) -> bool + Send + 'static,
+    ) -> Result<(), Ended> {
+        let line = self.stream.try_clone().map_err(|error| Ended::Lost(error.to_string()))?;
+        let executed = self.wish.for_client(move || is_gone(&line, &takes_leave), || specimen.execute());
+        executed.map_err(|fault| match fault {
+            RigFault::Interrupted if !self.wish.wants_end() => Ended::HungUp,
+            fault => fault.into(),
+        })
+    }
+
+    /// Waits for bytes and gives how many came, at least one. Between two messages a client may think as long as it likes; `owed_since`
+    /// is when it began one.
     ///
     /// # Errors
     /// None will come.
-    pub fn read(&mut self, buffer: &mut [u8], specimen: &mut Specimen<'_, '_>) -> Result<usize, Broken> {
+    pub fn read(
+        &mut self,
+        buffer: &mut [u8],
+        specimen: &mut Specimen<'_, '_>,
+        owed_since: Option<Instant>,
+    ) -> Result<usize, Broken> {
         loop {
-            if (self.stop)() {
+            if owed_since.is_some_and(|since| since.elapsed() > self.patience) {
+                return Err(Broken::Silent);
+            }
+            if self.wish.wants_end() {
                 return Err(Broken::Stopped);
             }
             specimen.listen().map_err(Broken::Rig)?;
@@ -70,14 +109,14 @@ impl<'a> Connection<'a> {
         }
     }
 
-    /// Waits until the buffer is full.
+    /// Waits until the buffer is full: it holds what the client must say next.
     ///
     /// # Errors
     /// It will not be.
     pub fn read_all(&mut self, buffer: &mut [u8], specimen: &mut Specimen<'_, '_>) -> Result<(), Broken> {
-        let mut filled = 0;
+        let (mut filled, since) = (0, Instant::now());
         while filled < buffer.len() {
-            filled += self.read(&mut buffer[filled..], specimen)?;
+            filled += self.read(&mut buffer[filled..], specimen, Some(since))?;
         }
         Ok(())
     }
@@ -121,6 +160,19 @@ impl<'a> Connection<'a> {
         }
         Ok(())
     }
+}
+
+/// Whether the other side will send nothing more, and did not say that it would.
+fn is_gone(line: &TcpStream, takes_leave: &dyn Fn(&[u8]) -> bool) -> bool {
+    let mut watched = [PollFd::new(line, PollFlags::RDHUP)];
+    let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+    let ended = PollFlags::RDHUP | PollFlags::HUP | PollFlags::ERR;
+    if !poll(&mut watched, Some(&at_once)).is_ok_and(|_| watched[0].revents().intersects(ended)) {
+        return false;
+    }
+    let mut ahead = vec![0; SENT_AHEAD];
+    let (_, count) = recv(line, &mut ahead[..], RecvFlags::PEEK | RecvFlags::DONTWAIT).unwrap_or_default();
+    !takes_leave(&ahead[..count])
 }
 
 /// Whether nothing happened yet.

@@ -99,7 +99,7 @@ fn talk(
     let (mut settings, mut longest) = (0_u64, 0);
     loop {
         begun.clear();
-        let first = connection.read(&mut message[..1], specimen)?;
+        let first = connection.read(&mut message[..1], specimen, None)?;
         if message[0] == SETTING {
             // The rest of it goes past; the action of any other message begins with a zero.
             let mut rest = [0; SETTING_MESSAGE - 1];
@@ -112,8 +112,9 @@ fn talk(
         }
         // Kept as it comes: where it is broken off here, its end comes all the same.
         begun.extend_from_slice(&message[..first]);
+        let since = Some(Instant::now());
         while begun.len() < message.len() {
-            let came = connection.read(&mut message[begun.len()..], specimen)?;
+            let came = connection.read(&mut message[begun.len()..], specimen, since)?;
             begun.extend_from_slice(&message[begun.len()..begun.len() + came]);
         }
         begun.clear();
@@ -124,7 +125,8 @@ fn talk(
                 let targets: Vec<f64> = (1..=axes).map(|at| word(&message, at)).collect();
                 if targets != specimen.commanded() {
                     specimen.propose(&targets)?;
-                    specimen.execute()?;
+                    let words = layout.words;
+                    connection.execute(specimen, move |ahead| takes_leave(ahead, words))?;
                 }
                 continue;
             }
@@ -153,6 +155,18 @@ fn talk(
             place.copy_from_slice(&value.to_le_bytes());
         }
         connection.write(&answer, specimen)?;
+    }
+}
+
+/// Whether one of the messages that were sent ahead, of so many words, is the last.
+fn takes_leave(mut ahead: &[u8], words: usize) -> bool {
+    loop {
+        let length = if ahead.first() == Some(&SETTING) { SETTING_MESSAGE } else { 8 * words };
+        let Some((message, more)) = ahead.split_at_checked(length) else { return false };
+        if message[0] != SETTING && matches!(word(message, 0), action::SHUT_DOWN | action::DIE) {
+            return true;
+        }
+        ahead = more;
     }
 }
 

@@ -20,7 +20,7 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-use crate::rig::RigFault;
+use crate::rig::{RigFault, Wish};
 use crate::run::Parting;
 pub use crate::run::driven::Driven;
 use crate::run::driven::Specimen;
@@ -99,6 +99,7 @@ impl From<Broken> for Ended {
         match broken {
             Broken::HungUp => Self::HungUp,
             Broken::Stopped => Self::Stopped,
+            Broken::Silent => Self::Misspoken("it is silent, and has not said what it must say next".to_owned()),
             Broken::Lost(error) => Self::Lost(error.to_string()),
             Broken::Rig(fault) => fault.into(),
         }
@@ -119,7 +120,7 @@ pub enum Event<'a> {
     Ended(&'a Session),
 }
 
-/// Serves one client after the other, or only `once`; a second one at the same time is refused. Ends when `stop` says so,
+/// Serves one client after the other, or only `once`; a second one at the same time is refused. Ends when a person wants the end,
 /// and after a session that a limit or the rig ended.
 ///
 /// # Errors
@@ -129,7 +130,7 @@ pub fn serve(
     protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
     once: bool,
-    stop: &(dyn Fn() -> bool + Sync),
+    wish: &Wish,
     told: &mut dyn FnMut(Event<'_>),
 ) -> io::Result<()> {
     listener.set_nonblocking(true)?;
@@ -138,7 +139,7 @@ pub fn serve(
         let (sender, clients) = channel();
         let door = scope.spawn(|| keep_door(listener, &busy, &closing, sender));
         loop {
-            let (stream, address) = match next_client(&clients, stop, specimen) {
+            let (stream, address) = match next_client(&clients, wish, specimen) {
                 Ok(Some(client)) => client,
                 Ok(None) => break,
                 Err(fault) => {
@@ -149,7 +150,7 @@ pub fn serve(
                 }
             };
             told(Event::Connected(address));
-            let session = session(stream, address, protocol, specimen, &|| stop());
+            let session = session(stream, address, protocol, specimen, wish);
             told(Event::Ended(&session));
             if once || !session.ended.allows_another() {
                 break;
@@ -168,11 +169,11 @@ pub fn session(
     address: SocketAddr,
     protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
-    stop: &dyn Fn() -> bool,
+    wish: &Wish,
 ) -> Session {
     let ended = match specimen.come(address.to_string()) {
         Err(fault) => fault.into(),
-        Ok(()) => match Connection::new(stream, specimen.wait(LOOK), stop) {
+        Ok(()) => match Connection::new(stream, specimen.wait(LOOK), wish) {
             Err(error) => Ended::Lost(error.to_string()),
             Ok(mut connection) => match protocol {
                 Protocol::Nees { control_points } => nees::session(&mut connection, specimen, control_points),
@@ -217,11 +218,15 @@ fn keep_door(
 /// Waits for a client, and hears the rig meanwhile.
 fn next_client(
     clients: &Receiver<(TcpStream, SocketAddr)>,
-    stop: &dyn Fn() -> bool,
+    wish: &Wish,
     specimen: &mut Specimen<'_, '_>,
 ) -> Result<Option<(TcpStream, SocketAddr)>, RigFault> {
-    while !stop() {
-        specimen.listen()?;
+    while !wish.wants_end() {
+        match specimen.listen() {
+            // Whoever wants it held wants the end, and nothing was moving.
+            Err(RigFault::Interrupted) => break,
+            listened => listened?,
+        }
         match clients.recv_timeout(specimen.wait(LOOK)) {
             Ok(client) => return Ok(Some(client)),
             Err(RecvTimeoutError::Timeout) => {}

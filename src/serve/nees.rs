@@ -6,6 +6,8 @@
 //! was sent last. Control points of cameras and the like (`MDL-AUX`) move nothing. Names and directions are echoed as they were written;
 //! answers end as the client ends its lines.
 
+use std::time::Instant;
+
 use super::Ended;
 use super::connection::Connection;
 use super::nees_message::{self, Refusal, Request, Why};
@@ -41,6 +43,29 @@ struct Proposed {
     moves: bool,
 }
 
+/// Who asks, and what of the lines after this one has been read already.
+struct Client<'a> {
+    connection: &'a Connection<'a>,
+    ahead: &'a [u8],
+}
+
+impl Client<'_> {
+    fn execute(&self, specimen: &mut Specimen<'_, '_>) -> Result<(), Ended> {
+        let begun = self.ahead.to_vec();
+        self.connection.execute(specimen, move |ahead| takes_leave(&[&begun, ahead].concat()))
+    }
+}
+
+/// Whether one of the lines that were sent ahead is the last.
+fn takes_leave(ahead: &[u8]) -> bool {
+    let mut lines = ahead.split_inclusive(|byte| *byte == b'\n').filter(|line| line.ends_with(b"\n"));
+    let is_leave = |line: &[u8]| {
+        let text = String::from_utf8_lossy(line);
+        matches!(nees_message::parse(text.trim_end_matches(['\r', '\n'])), Ok(Request::CloseSession))
+    };
+    lines.any(is_leave)
+}
+
 /// An answer, and whether it is the last.
 struct Answer {
     line: String,
@@ -58,19 +83,26 @@ fn talk(connection: &mut Connection<'_>, specimen: &mut Specimen<'_, '_>, names:
     let mut state = State { open: false, names, directions, proposed: None };
     let mut begun: Vec<u8> = Vec::new();
     let mut buffer = [0; 1024];
+    // It owes the rest of a line, and first of all a session.
+    let mut owed_since = Some(Instant::now());
     loop {
-        let count = connection.read(&mut buffer, specimen)?;
+        let count = connection.read(&mut buffer, specimen, owed_since)?;
+        let mut answered = false;
         begun.extend_from_slice(&buffer[..count]);
         while let Some(end) = begun.iter().position(|byte| *byte == b'\n') {
             let line: Vec<u8> = begun.drain(..=end).collect();
             let text = String::from_utf8_lossy(&line);
-            let answer = state.answer(text.trim_end_matches(['\r', '\n']), specimen);
+            let client = Client { connection, ahead: &begun };
+            let answer = state.answer(text.trim_end_matches(['\r', '\n']), &client, specimen);
             let end = if line.ends_with(b"\r\n") { "\r\n" } else { "\n" };
             connection.write(format!("{}{end}", answer.line).as_bytes(), specimen)?;
             if let Some(ended) = answer.ended {
                 return Ok(ended);
             }
+            answered = true;
         }
+        let owes = !begun.is_empty() || !state.open;
+        owed_since = owed_since.filter(|_| !answered || !state.open).or_else(|| Some(Instant::now())).filter(|_| owes);
         if begun.len() > LONGEST {
             return Err(Ended::Misspoken(format!("a line of more than {LONGEST} bytes")));
         }
@@ -82,12 +114,17 @@ impl State<'_> {
         if self.names.is_empty() { Some(0) } else { nees_message::place_of(self.names, name) }
     }
 
-    fn answer(&mut self, line: &str, specimen: &mut Specimen<'_, '_>) -> Answer {
-        let answered = nees_message::parse(line).and_then(|request| self.request(&request, specimen));
+    fn answer(&mut self, line: &str, client: &Client<'_>, specimen: &mut Specimen<'_, '_>) -> Answer {
+        let answered = nees_message::parse(line).and_then(|request| self.request(&request, client, specimen));
         answered.unwrap_or_else(|refusal| refusal.line().into())
     }
 
-    fn request<'a>(&mut self, request: &Request<'a>, specimen: &mut Specimen<'_, '_>) -> Result<Answer, Refusal<'a>> {
+    fn request<'a>(
+        &mut self,
+        request: &Request<'a>,
+        client: &Client<'_>,
+        specimen: &mut Specimen<'_, '_>,
+    ) -> Result<Answer, Refusal<'a>> {
         if self.open == (*request == Request::OpenSession) {
             return Err(Refusal::new(Why::Order, "", if self.open { "a session is open" } else { "no session is open" }));
         }
@@ -112,7 +149,7 @@ impl State<'_> {
                         Err(fault @ RigFault::LimitBreached { .. }) => {
                             return Err(Refusal::new(Why::Limit, transaction, fault.to_string()));
                         }
-                        Err(fault) => return Ok(failed(transaction, fault)),
+                        Err(fault) => return Ok(failed(transaction, fault.into())),
                     }
                 }
                 for (axis, wish) in &wishes {
@@ -127,8 +164,8 @@ impl State<'_> {
                     return Err(Refusal::new(Why::Order, transaction, "not the transaction that was proposed last"));
                 };
                 if proposed.moves {
-                    if let Err(fault) = specimen.execute() {
-                        return Ok(failed(transaction, fault));
+                    if let Err(ended) = client.execute(specimen) {
+                        return Ok(failed(transaction, ended));
                     }
                     specimen.commit();
                 }
@@ -138,7 +175,7 @@ impl State<'_> {
                 let no_such = || Refusal::new(Why::Message, transaction, "no such control point");
                 let axis = self.place_of(point).ok_or_else(no_such)?;
                 if let Err(fault) = specimen.read() {
-                    return Ok(failed(transaction, fault));
+                    return Ok(failed(transaction, fault.into()));
                 }
                 let felt = specimen.felt();
                 let (displacement, force) = (felt.displacement[axis], felt.force[axis]);
@@ -155,8 +192,7 @@ impl State<'_> {
 }
 
 /// The rig failed: the coordinator is told, and nothing more will move.
-fn failed(transaction: &str, fault: RigFault) -> Answer {
-    let why = if matches!(fault, RigFault::LimitBreached { .. }) { Why::Limit } else { Why::Rig };
-    let line = Refusal::new(why, transaction, fault.to_string()).line();
-    Answer { line, ended: Some(Ended::from(fault)) }
+fn failed(transaction: &str, ended: Ended) -> Answer {
+    let why = if matches!(ended, Ended::Limit(_)) { Why::Limit } else { Why::Rig };
+    Answer { line: Refusal::new(why, transaction, ended.to_string()).line(), ended: Some(ended) }
 }

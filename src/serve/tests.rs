@@ -51,7 +51,7 @@ pub(super) fn served_on<T: Send>(
         };
         let mut nobody = Unwatched;
         let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
-        serve(&listener, protocol, &mut specimen, true, &|| false, &mut told).unwrap();
+        serve(&listener, protocol, &mut specimen, true, &Wish::default(), &mut told).unwrap();
         let [session] = sessions.try_into().expect("one session");
         (client.join().unwrap(), session)
     })
@@ -308,4 +308,37 @@ fn a_line_without_end_is_not_gathered_for_ever_and_what_is_no_message_is_answere
     let (answers, session) = served(NEES, LIMITS, |address| coordinator(address, &["\u{1b}[2Jhello\n", "\n"]));
     assert!(answers.iter().all(|answer| answer.starts_with("NOT OK\t2\t")), "{answers:?}");
     assert_eq!(session, Session { ended: Ended::HungUp, driven: Driven::default() });
+}
+
+/// How a session ends whose client sends this and then nothing more.
+fn ended_in_silence(protocol: &Protocol, sent: &[u8]) -> Ended {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+    client.write_all(sent).unwrap();
+    let (mut rig, mut nobody, wish) = (spring(), Unwatched, Wish::default());
+    let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+    let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
+    let mut connection = Connection::new(listener.accept().unwrap().0, LOOK, &wish).unwrap();
+    connection.patience = Duration::from_millis(50);
+    match protocol {
+        Protocol::Nees { control_points } => nees::session(&mut connection, &mut specimen, control_points),
+        Protocol::GenericClient { stiffness } => generic_client::session(&mut connection, &mut specimen, stiffness),
+    }
+}
+
+#[test]
+fn a_client_that_owes_a_word_and_is_silent_is_sent_away() {
+    let header: Vec<u8> = SMALLEST.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let asks: Vec<u8> = [header.as_slice(), &3.0_f64.to_le_bytes()[..5]].concat();
+    for (protocol, sent) in [
+        (generic(), &b""[..]),
+        (generic(), &header[..20]),
+        (generic(), asks.as_slice()),
+        (NEES, b""),
+        (NEES, b"open-session\ttest\npropose\tt1"),
+        (NEES, b"hello\n"),
+    ] {
+        let ended = ended_in_silence(&protocol, sent);
+        assert!(matches!(&ended, Ended::Misspoken(reason) if reason.contains("silent")), "{sent:?}: {ended:?}");
+    }
 }

@@ -93,6 +93,12 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
     assert!(bench.ends(0, &["keygen", "yours", "--no-password"]).contains("has no password"));
     assert_eq!(fs::metadata(bench.path("mine")).unwrap().permissions().mode() & 0o777, 0o600);
     assert!(bench.ends(3, &["keygen", "mine", "--no-password"]).contains("mine"), "no key is overwritten");
+    fs::remove_file(bench.path("mine.pub")).unwrap();
+    bench.ends(3, &["keygen", "mine", "--no-password"]);
+    assert!(!bench.path("mine.pub").exists(), "no public key without its secret one");
+    fs::remove_file(bench.path("mine")).unwrap();
+    assert!(!bench.ends(0, &["keygen", "mine", "--no-password"]).contains("chmod"));
+    fs::set_permissions(bench.path("mine"), fs::Permissions::from_mode(0o644)).unwrap();
 
     assert!(bench.ends(0, &["verify", "run"]).contains("unsigned"));
     bench.ends(3, &["verify", "run", "--key", "mine.pub"]);
@@ -100,6 +106,7 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
     assert!(bench.ends(2, &["sign", "run", "--key", "mine", "--role", "Cook"]).contains("nobody signs as"));
     let signed = bench.ends(0, &["sign", "run", "--key", "mine", "--role", "Quality", "--name", "A. Engineer"]);
     assert!(signed.contains("run/manifest.sha256.quality.minisig"), "{signed}");
+    assert!(signed.contains("`chmod 600` keeps it from them"), "{signed}");
     assert!(bench.ends(3, &["sign", "run", "--key", "yours", "--role", "Quality"]).contains("never overwritten"));
     bench.ends(0, &["sign", "run", "--key", "yours", "--role", "Test engineer"]);
 

@@ -4,8 +4,10 @@
 use std::fs;
 use std::process::Command;
 
+use rustix::process::Signal;
+
 use crate::needs;
-use crate::stage::{PSD, Stage, wait};
+use crate::stage::{PSD, Stage, finish, signal, start, wait};
 
 /// The last word about moving is the one to stop.
 fn held(stage: &Stage) {
@@ -91,7 +93,7 @@ fn a_storm_of_interrupted_and_short_writes_loses_and_doubles_nothing() {
 }
 
 #[test]
-fn a_disk_that_lies_about_what_it_took_is_found_out_by_verify() {
+fn a_disk_that_lies_about_what_it_took_is_found_out_before_a_report_is_made() {
     if !needs::strace() {
         return;
     }
@@ -100,9 +102,36 @@ fn a_disk_that_lies_about_what_it_took_is_found_out_by_verify() {
     command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(stage.journal());
     command.args(["-e", "trace=write", "-e", "inject=write:retval=2:when=70", PSD]);
     stage.run_arguments(&mut command, &["--yes"]);
-    wait(&mut command);
+    let ran = wait(&mut command);
+    assert!(ran.code == Some(3) && ran.told.contains("the record is damaged"), "{}", ran.told);
+    assert!(!stage.path("run").join("certificate.html").exists());
     let verified = stage.verify();
     assert!(verified.code == Some(3) && verified.told.contains("WRONG"), "{}", verified.told);
+}
+
+#[test]
+fn a_record_that_somebody_takes_away_under_way_ends_the_run_and_proves_nothing() {
+    for removed in [true, false] {
+        let stage = Stage::new();
+        let run = start(&mut stage.run_with(&["--yes"]));
+        stage.after_moves(8);
+        signal(&run, Signal::STOP);
+        let moves = stage.moves().len();
+        if removed {
+            fs::remove_dir_all(stage.path("run")).unwrap();
+        } else {
+            fs::rename(stage.journal(), stage.path("elsewhere")).unwrap();
+        }
+        signal(&run, Signal::CONT);
+        let ran = finish(run);
+        assert_eq!(ran.code, Some(3), "{}", ran.told);
+        assert!(!stage.path("run").join("certificate.html").exists());
+        if removed {
+            held(&stage);
+            assert!(ran.told.contains("somebody has removed it"), "{}", ran.told);
+            assert!(stage.moves().len() <= moves + 1, "nothing moves that nobody records");
+        }
+    }
 }
 
 #[test]

@@ -4,10 +4,11 @@
 
 use std::fs;
 use std::io::Write as _;
+use std::process::Command;
 
 use rustix::process::Signal;
 
-use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
+use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until, wait};
 use crate::terminal::{RELEASE, Terminal, UNLOAD};
 
 /// A stepper frame with an indicator beside it.
@@ -154,4 +155,35 @@ fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
     assert!(stage.proven().contains("INCOMPLETE"));
     refused(&stage, &[], "the specimen was unloaded when the run stopped");
     assert_eq!(stage.moves(), moves);
+}
+
+#[test]
+fn a_run_that_came_to_its_end_without_its_results_has_them_made_of_its_record() {
+    let stage = Stage::new();
+    let ran = wait(&mut stage.run_with(&["--yes"]));
+    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    refused(&stage, &[], "came to its end");
+    let run = stage.path("run");
+    let whole = fs::read(run.join("summary.json")).unwrap();
+    // As a program leaves it that is killed while it writes them: a part of the files, the last of them not whole.
+    for file in ["manifest.sha256", "certificate.html"] {
+        fs::remove_file(run.join(file)).unwrap();
+    }
+    fs::write(run.join("summary.json"), &whole[..whole.len() / 2]).unwrap();
+    refused(&stage, &[], "`psd report");
+    let report = || wait(Command::new(PSD).arg("report").arg(&run));
+    let made = report();
+    assert_eq!(made.code, Some(0), "{}", made.told);
+    assert!(fs::read(run.join("summary.json")).unwrap() == whole && !stage.proven().contains("INCOMPLETE"));
+    let again = report();
+    assert!(again.code == Some(3) && again.told.contains("has results already"), "{}", again.told);
+}
+
+#[test]
+fn a_restart_on_record_is_outweighed_by_nobodys_word_that_there_was_none() {
+    let stage = Stage::of(stepper, "after 5 moves: reboot");
+    let run = wait(&mut stage.run_with(&["--yes"]));
+    assert!(run.code == Some(3) && run.told.contains("started anew"), "{}", run.told);
+    refused(&stage, &["--same-power-up"], "the record says that it started anew");
+    refused(&stage, &["--same-power-up", "--let-go"], "the record says that it started anew");
 }

@@ -214,7 +214,7 @@ fn an_element_beyond_a_limit_gets_no_number_until_it_leaves() {
 
 #[test]
 fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
-    for sent in [Signal::INT, Signal::TERM, Signal::HUP] {
+    for sent in [Signal::INT, Signal::TERM, Signal::HUP, Signal::QUIT] {
         let mut served = Served::nees("");
         let mut client = Coordinator::come(&served);
         client.go(1e-3);
@@ -291,6 +291,70 @@ fn a_client_that_goes_away_leaves_it_held_and_the_next_one_goes_on() {
     assert_eq!(code, Some(3), "the worst session counts: {printed}");
     assert_eq!(printed.matches("session: ").count(), 2, "{printed}");
     served.held();
+}
+
+/// The stage whose rig takes 400 s to where its client sends it, and 2 s for the gate's probe.
+fn endless() -> Stage {
+    let slower = |plan: &str| plan.replace("speed      = 20 mm/s", "speed      = 0.01 mm/s\n  resolution = 1 um");
+    Stage::of(|plan| slower(plan).replace("probe(0.1 mm", "probe(0.02 mm"), "")
+}
+
+#[test]
+fn a_client_that_goes_away_in_the_middle_of_a_move_has_the_rig_held_at_once() {
+    let mut served = Served::start_on(endless(), "generic-client", &[]);
+    let mut element = Element::come(&served);
+    // Its next question is sent already, as an element sends it.
+    element.send([3.0, 4e-3]);
+    element.send([10.0, 0.0]);
+    served.stage.after_moves(3);
+    drop(element);
+    served.says("session ended: the client went away without closing");
+    served.held();
+    // The next one finds it where it was held, and is served.
+    let mut next = Element::come(&served);
+    next.send([99.0, 0.0]);
+    served.says("session ended: closed by the client");
+    assert_eq!(served.stop(Signal::TERM).0, Some(3));
+
+    let mut served = Served::start_on(endless(), "nees", &["--once"]);
+    let mut client = Coordinator::come(&served);
+    client.ask("propose\tt1\tMDL-00-01\tx\tdisplacement\t4.0E-3");
+    client.send("execute\tt1");
+    served.stage.after_moves(3);
+    drop(client);
+    assert_eq!(served.ended().0, Some(3));
+    served.held();
+}
+
+#[test]
+fn a_signal_in_the_middle_of_a_clients_move_holds_at_once() {
+    let mut served = Served::start_on(endless(), "generic-client", &[]);
+    let mut element = Element::come(&served);
+    element.send([3.0, 4e-3]);
+    served.stage.after_moves(3);
+    assert_eq!(served.stop(Signal::TERM).0, Some(4));
+    served.held();
+}
+
+#[test]
+fn a_client_that_took_its_leave_before_it_went_away_has_its_last_move() {
+    let mut served = Served::start("", "generic-client", &["--once"]);
+    let mut element = Element::come(&served);
+    element.send([3.0, 1e-3]);
+    element.send([5.0, 0.0]);
+    element.send([99.0, 0.0]);
+    drop(element);
+    let (code, printed) = served.ended();
+    assert!(code == Some(0) && printed.contains("session: closed by the client\ntargets: 1\n"), "{printed}");
+
+    let mut served = Served::start("", "nees", &["--once"]);
+    let mut client = Coordinator::come(&served);
+    client.ask("propose\tt1\tMDL-00-01\tx\tdisplacement\t1.0E-3");
+    client.send("execute\tt1\nclose-session\ttest");
+    // It says nothing more, and reads what it is answered.
+    client.lines.get_mut().shutdown(std::net::Shutdown::Write).unwrap();
+    assert!(is_closed(client.lines.get_mut()));
+    assert_eq!(served.ended().0, Some(0));
 }
 
 #[test]

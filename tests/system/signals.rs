@@ -1,4 +1,4 @@
-//! A person's end of a run in every phase: INT, TERM and HUP, and a terminal that dies. In: a moment of a run, of a jog, of a
+//! A person's end of a run in every phase: INT, TERM, HUP and QUIT, and a terminal that dies. In: a moment of a run, of a jog, of a
 //! serving. Out: the rig held, exit code 4, a record that is sound and can be gone on with.
 
 use std::process::Command;
@@ -11,10 +11,20 @@ use crate::served::Served;
 use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until};
 use crate::terminal::{GO_ON, MOVE, RELEASE, Terminal};
 
-const SIGNALS: [Signal; 3] = [Signal::INT, Signal::TERM, Signal::HUP];
+const SIGNALS: [Signal; 4] = [Signal::INT, Signal::TERM, Signal::HUP, Signal::QUIT];
 
 /// Each signal at the same moment of a run of its own; of the first the run is gone on with, where that is `quick`.
 fn each(plan: impl Fn(&str) -> String + Sync, quick: bool, moment: impl Fn(&Stage) + Sync, then: impl Fn(&Stage) + Sync) {
+    each_of(&SIGNALS, plan, quick, moment, then);
+}
+
+fn each_of(
+    signals: &[Signal],
+    plan: impl Fn(&str) -> String + Sync,
+    quick: bool,
+    moment: impl Fn(&Stage) + Sync,
+    then: impl Fn(&Stage) + Sync,
+) {
     let one = |sent| {
         let stage = Stage::of(&plan, "");
         let run = start(&mut stage.run_with(&["--yes"]));
@@ -27,8 +37,8 @@ fn each(plan: impl Fn(&str) -> String + Sync, quick: bool, moment: impl Fn(&Stag
         }
     };
     std::thread::scope(|scope| {
-        for sent in SIGNALS {
-            scope.spawn(move || one(sent));
+        for sent in signals {
+            scope.spawn(|| one(*sent));
         }
     });
 }
@@ -40,6 +50,12 @@ fn as_it_is(plan: &str) -> String {
 /// So slow that a signal comes while it moves: the probe takes 0.4 s, a step of the ramp 2 s.
 fn slow(plan: &str) -> String {
     plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um").replace("probe(0.1 mm", "probe(0.02 mm")
+}
+
+/// So slow that nobody waits for the end of a move: the probe takes 2 s, the first step of the ramp 400 s.
+fn endless(plan: &str) -> String {
+    let slower = plan.replace("speed      = 20 mm/s", "speed      = 0.01 mm/s\n  resolution = 1 um");
+    slower.replace("probe(0.1 mm", "probe(0.02 mm").replace("0.1 mm .. 0.8 mm step 0.1 mm", "[4, 5, 6] mm")
 }
 
 /// How often the rig was asked for a reading.
@@ -65,7 +81,35 @@ fn at_rest_before_the_probe_of_the_gate() {
 #[test]
 fn in_the_probe_of_the_gate() {
     let out_and_back = |stage: &Stage| assert_eq!(stage.moves().len(), 2, "and nothing after it");
-    each(slow, false, |stage| stage.after_moves(1), out_and_back);
+    each_of(&SIGNALS[..1], slow, false, |stage| stage.after_moves(1), out_and_back);
+    each_of(&SIGNALS[1..], slow, false, |stage| stage.after_moves(1), |stage| assert_eq!(stage.moves().len(), 1));
+}
+
+/// Nobody waits for the end of the move: a system that shuts down kills what has not ended after some seconds.
+#[test]
+fn in_the_middle_of_a_move_all_but_one_ctrl_c_hold_at_once() {
+    each_of(&SIGNALS[1..], endless, false, |stage| stage.after_moves(3), |stage| assert_eq!(stage.moves().len(), 3));
+    let stage = Stage::of(endless, "");
+    let run = start(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(3);
+    signal(&run, Signal::INT);
+    // Two signals that are one to the program would be one Ctrl-C.
+    std::thread::sleep(Duration::from_millis(200));
+    signal(&run, Signal::INT);
+    stage.held_and_sound(&finish(run));
+}
+
+#[test]
+fn signals_of_other_programs_do_nothing() {
+    let stage = Stage::new();
+    let run = start(&mut stage.run_with(&["--yes"]));
+    for (moves, sent) in [(1, Signal::USR1), (5, Signal::USR2), (20, Signal::ALARM)] {
+        stage.after_moves(moves);
+        signal(&run, sent);
+    }
+    let ended = finish(run);
+    assert_eq!(ended.code, Some(0), "{}", ended.told);
+    stage.proven();
 }
 
 #[test]
@@ -152,6 +196,16 @@ fn while_it_is_paused_by_a_key() {
     });
 }
 
+/// The screen sees by itself that its terminal is gone: no signal tells a program that is not the terminal's own.
+fn in_the_middle_of_a_move() {
+    let stage = Stage::of(endless, "");
+    let terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
+    stage.after_moves(3);
+    let (mut child, shown) = terminal.dies();
+    let code = code(&mut child);
+    stage.held_and_sound(&Ended { code, told: shown });
+}
+
 /// A window that is closed: its programs get HUP, and neither read nor write anything any more.
 #[test]
 fn of_a_terminal_that_dies() {
@@ -178,6 +232,7 @@ fn of_a_terminal_that_dies() {
     };
     let at_the_release = |_: &Stage, terminal: &mut Terminal| terminal.answer("RELEASE:", "");
     std::thread::scope(|scope| {
+        scope.spawn(in_the_middle_of_a_move);
         scope.spawn(|| one(false, &["--yes"], &in_the_ramp));
         scope.spawn(|| one(true, &["--yes"], &in_the_ramp));
         scope.spawn(|| one(false, &[], &at_a_question));

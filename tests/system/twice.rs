@@ -52,7 +52,7 @@ fn on_one_record() {
 }
 
 #[test]
-fn a_report_of_a_run_that_is_going_on_is_refused_and_spoils_nothing() {
+fn a_report_and_a_proof_of_a_run_that_is_going_on_are_refused_and_spoil_nothing() {
     let stage = Stage::new();
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(8);
@@ -61,6 +61,8 @@ fn a_report_of_a_run_that_is_going_on_is_refused_and_spoils_nothing() {
         let report = wait(Command::new(PSD).arg("report").arg(stage.path("run")).args(more).current_dir(stage.path("")));
         assert!(report.code == Some(3) && report.told.contains("in use by another psd"), "{}", report.told);
     }
+    let verified = stage.verify();
+    assert!(verified.code == Some(3) && verified.told.contains("in use by another psd"), "{}", verified.told);
     signal(&run, Signal::CONT);
     let ran = finish(run);
     assert_eq!(ran.code, Some(0), "{}", ran.told);

@@ -3,7 +3,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read as _, Write as _};
-use std::os::unix::fs::OpenOptionsExt as _;
+use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
@@ -71,6 +71,11 @@ pub enum Protection {
     None,
 }
 
+/// Whether others than its owner may read a key's file.
+pub fn is_readable_by_others(path: &Path) -> bool {
+    path.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.permissions().mode() & 0o077 != 0)
+}
+
 /// Makes a pair of keys: the secret one in a new file that only its owner reads, the public one beside it with `.pub`.
 pub fn make(path: &Path, password: Option<String>) -> Result<(PathBuf, PublicKey), Failure> {
     let failed = |error: minisign::PError| Failure::file(path, error.to_string());
@@ -85,9 +90,9 @@ pub fn make(path: &Path, password: Option<String>) -> Result<(PathBuf, PublicKey
     let public = pk.to_box().map_err(failed)?.into_string();
     let comment = format!("psd {protection} secret key {}", number(pk.keynum()));
     let secret = sk.to_box(Some(&comment)).map_err(failed)?.into_string();
-    // The public one first: a secret key without it is of no use.
+    // The public one first: a secret key without it is of no use. Nor is it without the secret one.
     new_file(&public_path, public.as_bytes(), 0o644)?;
-    new_file(path, secret.as_bytes(), 0o600)?;
+    new_file(path, secret.as_bytes(), 0o600).inspect_err(|_| drop(std::fs::remove_file(&public_path)))?;
     Ok((public_path, pk))
 }
 

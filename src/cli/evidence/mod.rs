@@ -2,6 +2,8 @@
 //! against each other and against the manifest, and who has signed it. In: a folder. Out: findings. Nothing here writes.
 
 mod check;
+#[cfg(test)]
+mod damaged_tests;
 mod folder;
 #[cfg(test)]
 mod header_tests;
@@ -18,6 +20,7 @@ mod tests;
 
 pub use check::{Finding, examine};
 pub use folder::{Folder, MANIFEST};
-pub use issues::{ISSUE, IssueFile, OLDER_ISSUE, One, OneKind, held as held_issue, may_be_stated};
+pub use issues::{ISSUE, IssueFile, One, OneKind, held as held_issue, may_be_stated};
 pub use rebuilt::{PlayedBack, Rebuilt};
 pub use signature::{Statement, file_name, sign as sign_manifest};
+pub use standing::stands;

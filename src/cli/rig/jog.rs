@@ -11,7 +11,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
 use crate::cli::question::{Kind, Question};
 use crate::cli::record_file::{self, Circumstances};
-use crate::cli::run_folder::RunFolder;
+use crate::cli::run_folder::{FolderShelf, RunFolder};
 use crate::cli::settings::Settings;
 use crate::cli::watch::{Attendance, Signals, Typed, agrees, next_line};
 use crate::cli::{plan_file, provenance, real_rig};
@@ -20,7 +20,7 @@ use crate::plan::{Datum, Interval, Link, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::{plain, readable};
 use crate::record::Outcome;
-use crate::rig::{Identity, LimitedQuantity, OWN_SPEED, Rig, RigFault, Wish, connect, virtual_rig};
+use crate::rig::{Connected, Identity, LimitedQuantity, OWN_SPEED, Rig, RigFault, Wish, connect, virtual_rig};
 use crate::run::driven::{Driver, Specimen};
 use crate::run::tape::{self, BY_HAND};
 use crate::run::{Extent, Motion, Parting, Unwatched};
@@ -60,7 +60,7 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
             if recorded.is_none() {
                 without_load(plan, &mut connected.rig)?;
             }
-            on_a_real_rig(arguments, plan, &attendance, &mut connected.rig, &wanted, person, settings)
+            on_a_real_rig(arguments, plan, &attendance, connected, &wanted, person, settings)
         }
     }
 }
@@ -126,11 +126,12 @@ fn on_a_real_rig(
     arguments: &JogArguments,
     plan: &Plan,
     attendance: &Attendance,
-    rig: &mut dyn Rig,
+    mut connected: Connected,
     wanted: &Wanted,
     person: Person<'_>,
     settings: Settings,
 ) -> Result<Exit, Failure> {
+    let rig = &mut connected.rig;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = Circumstances { served: Some(BY_HAND.to_owned()), ..real_rig::circumstances(plan, attendance) };
     let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
@@ -140,7 +141,9 @@ fn on_a_real_rig(
     let mut drive = |specimen: &mut Specimen<'_, '_>| hand.drive(specimen);
     let wall = real_rig::wall_clock();
     let (recorded, steps) = tape::record_driven(plan, rig, &mut Unwatched, journal, wall, Driver::ByHand, &mut drive);
-    write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, None, shelf))?;
+    drop(connected);
+    let kept = Folder::digests(folder.path())?.kept();
+    write_made(FolderShelf::new(folder.path()), &kept, |shelf| output::put_driven(&steps, None, shelf))?;
     tell(&format!("  on record: {}\n", folder.path().display()));
     if let Some(fault) = &recorded.fault {
         tell(&format!("  the record could not be kept to its end: {fault}\n"));

@@ -22,7 +22,7 @@ pub struct Asked {
 /// Reads until Ctrl-C, `q`, `count` readings, or until nobody reads the lines any more.
 pub fn monitor(rig: &mut dyn Rig, plan: &Plan, asked: &Asked, wish: &Wish, settings: Settings) -> Result<Exit, Failure> {
     let Asked { every, count } = *asked;
-    let _signals = Signals::caught(wish).map_err(Failure::Signals)?;
+    let _signals = Signals::ending(wish).map_err(Failure::Signals)?;
     let simulated = rig.identity().simulated;
     let on_screen = settings.can_ask && settings.stdout_terminal && settings.unicode && is_large_enough();
     let mut screen = on_screen.then(|| Screen::monitor(plan, simulated, "MONITOR", wish.clone(), settings.color));

@@ -10,7 +10,7 @@ use crate::cli::evidence::Folder;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{give, tell};
 use crate::cli::record_file::{self, Circumstances};
-use crate::cli::run_folder::RunFolder;
+use crate::cli::run_folder::{FolderShelf, RunFolder};
 use crate::cli::settings::Settings;
 use crate::cli::watch::{Attendance, Signals, Watcher};
 use crate::cli::{plan_file, provenance, real_rig};
@@ -22,8 +22,8 @@ use crate::quantity::display::readable;
 use crate::quantity::unit;
 use crate::record::Outcome;
 use crate::rig::{Rig, VirtualRig, Wish, virtual_rig};
-use crate::run::driven::Driver;
-use crate::run::tape::{self, Wall};
+use crate::run::driven::{DrivenStep, Driver};
+use crate::run::tape::{self, Recorded, Wall};
 use crate::serve::{self, Ended, Event, Protocol, Session};
 
 /// Serves until a client or a person ends it.
@@ -38,7 +38,8 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let attendance = real_rig::named(attendance, plan)?;
     let door = Door::open(arguments)?;
     let wish = Wish::default();
-    match plan.rig.link {
+    // The connection to the rig ends with the arm: nobody speaks with it while the results are written.
+    let served = match plan.rig.link {
         Link::Virtual(_) => {
             let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
             let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, signals);
@@ -46,7 +47,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
             let mut rig = virtual_rig(plan);
             let stage = Stage { plan, provenance, circumstances, wall: Box::new(|| None) };
-            on_record(arguments, stage, rig.as_mut(), &mut watcher, &door, &protocol, &wish, settings)
+            on_record(arguments, stage, rig.as_mut(), &mut watcher, &door, &protocol, &wish, settings)?
         }
         Link::Real(_) => {
             let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)
@@ -55,9 +56,10 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let circumstances = Circumstances { served: Some(arguments.protocol.name().to_owned()), ..circumstances };
             let provenance = provenance::of_real_run(plan, arguments.plan_settings.date.as_deref(), &circumstances);
             let stage = Stage { plan, provenance, circumstances, wall: real_rig::wall_clock() };
-            on_record(arguments, stage, &mut opened.connected.rig, &mut opened.watcher, &door, &protocol, &wish, settings)
+            on_record(arguments, stage, &mut opened.connected.rig, &mut opened.watcher, &door, &protocol, &wish, settings)?
         }
-    }
+    };
+    served.conclude(arguments, settings)
 }
 
 /// A real rig moves for strangers only where the command line names it.
@@ -96,6 +98,51 @@ struct Stage<'a> {
     wall: Wall,
 }
 
+/// What serving came to, and what is on record of it.
+struct Served {
+    folder: RunFolder,
+    recorded: Recorded,
+    steps: Vec<DrivenStep>,
+    /// That of the worst session.
+    exit: Exit,
+    /// Whether the listener and standard output held out.
+    door: std::io::Result<()>,
+    told: Result<(), Failure>,
+}
+
+impl Served {
+    /// Writes the results.
+    fn conclude(self, arguments: &ServeArguments, settings: Settings) -> Result<Exit, Failure> {
+        let Self { folder, recorded, steps, mut exit, door, told } = self;
+        let drift = recorded.record.drift.as_ref();
+        let kept = Folder::digests(folder.path())?.kept();
+        let shelf = FolderShelf::new(folder.path());
+        if let Outcome::NotReleased { reason } = &recorded.record.outcome {
+            tell(&format!("  NOT RELEASED: {}\n", escape(reason)));
+            write_made(shelf, &kept, |_| Ok(Vec::new()))?;
+        } else {
+            write_made(shelf, &kept, |shelf| output::put_driven(&steps, drift, shelf))?;
+        }
+        for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
+            let note = settings.paint_note("  note:");
+            tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));
+        }
+        tell(&format!("  {}\n", folder.path().display()));
+        door.map_err(|error| listening(arguments, &error))?;
+        told?;
+        if let Some(fault) = &recorded.fault {
+            tell(&format!("  the record could not be kept to its end: {fault}\n"));
+            exit = exit.max(Exit::Fault);
+        }
+        Ok(exit.max(match recorded.record.outcome {
+            Outcome::Completed => Exit::Met,
+            Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
+            Outcome::Blocked { .. } => Exit::Missed,
+            Outcome::Faulted { .. } => Exit::Fault,
+        }))
+    }
+}
+
 /// Serves, with every request and every answer of the rig in a run folder.
 #[expect(clippy::too_many_arguments, reason = "what is served, where, to whom, and who watches")]
 fn on_record(
@@ -107,7 +154,7 @@ fn on_record(
     protocol: &Protocol,
     wish: &Wish,
     settings: Settings,
-) -> Result<Exit, Failure> {
+) -> Result<Served, Failure> {
     let Stage { plan, provenance, circumstances, wall } = stage;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let header = record_file::header(plan, record_file::device(rig), &arguments.plan_settings, &provenance, circumstances);
@@ -129,34 +176,10 @@ fn on_record(
                 told = std::mem::replace(&mut told, Ok(())).and(given);
             }
         };
-        let wanted = || wish.wants_end();
-        served = serve::serve(&door.listener, protocol, specimen, arguments.once, &wanted, &mut tell_event);
+        served = serve::serve(&door.listener, protocol, specimen, arguments.once, wish, &mut tell_event);
     });
     watcher.finish();
-    let drift = recorded.record.drift.as_ref();
-    if let Outcome::NotReleased { reason } = &recorded.record.outcome {
-        tell(&format!("  NOT RELEASED: {}\n", escape(reason)));
-        write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |_| Ok(Vec::new()))?;
-    } else {
-        write_made(folder.path(), &Folder::digests(folder.path())?.kept(), |shelf| output::put_driven(&steps, drift, shelf))?;
-    }
-    for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
-        let note = settings.paint_note("  note:");
-        tell(&format!("{note} {}: what was read decides nothing\n", escape(&beyond.reason)));
-    }
-    tell(&format!("  {}\n", folder.path().display()));
-    served.map_err(|error| listening(arguments, &error))?;
-    told?;
-    if let Some(fault) = &recorded.fault {
-        tell(&format!("  the record could not be kept to its end: {fault}\n"));
-        exit = exit.max(Exit::Fault);
-    }
-    Ok(exit.max(match recorded.record.outcome {
-        Outcome::Completed => Exit::Met,
-        Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
-        Outcome::Blocked { .. } => Exit::Missed,
-        Outcome::Faulted { .. } => Exit::Fault,
-    }))
+    Ok(Served { folder, recorded, steps, exit, door: served, told })
 }
 
 /// What the client speaks, with the stiffness that it may ask for.

@@ -106,6 +106,10 @@ impl Dialogue {
     }
 
     fn pressed(&mut self, key: Key, now: Duration, wish: &Wish) {
+        if key == Key::Quit && self.after.is_none() {
+            self.attended = true;
+            return wish.hold_now();
+        }
         let interrupts = key == Key::Interrupt;
         if self.is_asking() && !self.hears(now) {
             // What stands there has not been read: only a Ctrl-C that stops a run counts.
@@ -211,7 +215,7 @@ impl Dialogue {
             Key::Escape if typing.what == What::Reason => self.back_to_the_choice(),
             Key::Escape => self.typing = None,
             Key::End if self.question.is_some() && !typing.what.is_note() => self.no_answer(),
-            Key::End | Key::Interrupt => {}
+            Key::End | Key::Interrupt | Key::Quit => {}
         }
     }
 
@@ -392,10 +396,10 @@ impl Dialogue {
         Next::GoOn
     }
 
-    /// The terminal is gone: the run stops, and nothing is answered.
+    /// The terminal is gone: the rig holds, and nothing is answered.
     pub fn lose(&mut self, wish: &Wish) {
         self.lost = true;
-        wish.stop_after_step();
+        wish.hold_now();
     }
 }
 

@@ -1,5 +1,5 @@
-//! Bytes as a terminal sends them → keys that mean something to the dialogue. Ctrl-C comes as a byte here, since the
-//! terminal is in raw mode, and means what the signal means; no sequence that was begun and not ended swallows it. It reads
+//! Bytes as a terminal sends them → keys that mean something to the dialogue. Ctrl-C and Ctrl-\ come as bytes here, since the
+//! terminal is in raw mode, and mean what their signals mean; no sequence that was begun and not ended swallows them. It reads
 //! nothing and waits for nothing.
 
 /// A key that means something.
@@ -14,6 +14,8 @@ pub enum Key {
     EraseLine,
     /// Ctrl-C
     Interrupt,
+    /// Ctrl-\
+    Quit,
     /// The end of what is typed: Ctrl-D.
     End,
 }
@@ -76,6 +78,7 @@ const fn control(byte: u8) -> Option<Key> {
         0x08 | 0x7f => Some(Key::Erase),
         b'\r' | b'\n' => Some(Key::Enter),
         0x15 => Some(Key::EraseLine),
+        0x1c => Some(Key::Quit),
         _ => None,
     }
 }
@@ -164,6 +167,7 @@ mod tests {
             keyboard.typed(before);
             assert_eq!(keyboard.typed(b"\x03"), [Key::Interrupt], "after {before:?}, in pieces");
             assert_eq!(typed(&[before, b"\x03"].concat()).last(), Some(&Key::Interrupt), "after {before:?}");
+            assert_eq!(typed(&[before, b"\x1c"].concat()).last(), Some(&Key::Quit), "after {before:?}");
         }
     }
 

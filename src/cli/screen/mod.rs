@@ -230,7 +230,7 @@ fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(),
         };
         page.draw(&View { model: &model, dialogue: &dialogue, wish, now: began.elapsed(), color })?;
         if model.ended == Some(Ended::NotHeld) && !std::mem::replace(&mut alarmed, true) {
-            page.ring();
+            Page::ring();
         }
         if dialogue.is_new() {
             // What was typed before it could be seen is none of its answers.

@@ -61,7 +61,7 @@ impl Page {
     }
 
     /// Makes itself heard by who does not look.
-    pub fn ring(&mut self) {
+    pub fn ring() {
         let _ = stderr().write_all(b"\x07").and_then(|()| stderr().flush());
     }
 

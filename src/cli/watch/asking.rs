@@ -129,8 +129,7 @@ impl Person {
 
 /// A question as it is told in lines.
 fn shown(question: &Question) -> String {
-    let lines: String = question.lines.iter().map(|line| format!("  {line}\n")).collect();
-    format!("\n  {}\n{lines}", question.kind.title())
+    format!("\n  {}\n  {}\n", question.kind.title(), question.lines.join("\n  "))
 }
 
 /// What may be typed.
@@ -224,7 +223,9 @@ mod tests {
         assert_eq!(bench.person.ask(&question(kind), &mut operator), Inspection::Wait);
         bench.now.set(Duration::from_secs(1));
         assert_eq!(bench.person.ask(&question(kind), &mut operator), Inspection::Wait);
-        lines.iter().for_each(|line| bench.types(line));
+        for line in lines {
+            bench.types(line);
+        }
         bench.send = None;
         loop {
             match bench.person.ask(&question(kind), &mut operator) {
@@ -343,7 +344,9 @@ mod tests {
                     now.set(Duration::from_secs(1));
                 } else if looks == 2 {
                     let send = send.take().unwrap();
-                    typed.iter().for_each(|line| send.send((*line).to_owned()).unwrap());
+                    for line in typed {
+                        send.send((*line).to_owned()).unwrap();
+                    }
                 }
                 Ok::<_, ()>(())
             });

@@ -6,6 +6,8 @@ mod plain;
 mod signals;
 mod typed;
 
+use std::cell::RefCell;
+
 use super::question::{Kind, Question};
 use super::screen::{self, Screen};
 use super::settings::Settings;
@@ -266,6 +268,51 @@ impl Watcher {
                 person.ask(question, &mut self.operator)
             }
         }
+    }
+}
+
+/// A watcher that is also asked while nothing runs: before a record that was played is gone on with.
+pub struct Shared<'a>(pub &'a RefCell<Watcher>);
+
+impl Observer for Shared<'_> {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.0.borrow_mut().procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.0.borrow_mut().step_done(report);
+    }
+
+    fn studying(&mut self, done: usize, of: usize) {
+        self.0.borrow_mut().studying(done, of);
+    }
+
+    fn procedure_finished(&mut self, name: &str) {
+        self.0.borrow_mut().procedure_finished(name);
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.0.borrow().stop_requested()
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        self.0.borrow_mut().inspect(note)
+    }
+
+    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
+        self.0.borrow_mut().release(note, motion)
+    }
+
+    fn may_unload(&mut self, question: &str, motion: &Motion, declared: bool) -> Option<Inspection> {
+        self.0.borrow_mut().may_unload(question, motion, declared)
+    }
+
+    fn next(&mut self) -> Next {
+        self.0.borrow_mut().next()
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.0.borrow_mut().event(event);
     }
 }
 

@@ -1,10 +1,12 @@
-//! Ctrl-C and its like → the wish. In: SIGINT, SIGTERM, SIGHUP. Out: the first stops the run at the end of its step, the second holds the
-//! rig now; by hand, where there are no steps, the first holds it. Where there is no screen that shows it, a line says so at once. The signal of a file that is too large is caught too, and does nothing.
+//! Signals → the wish. In: SIGINT, SIGQUIT, SIGTERM, SIGHUP. Out: one Ctrl-C stops the run at the end of its step, a second one holds the
+//! rig now; each of the others holds it now, and so does Ctrl-C by hand, where there are no steps. Where there is no screen that shows it,
+//! a line says so at once. Signals that other programs use to count or to wake, and that of a file that is too large, are caught and do
+//! nothing: nobody sends them to have a rig left alone.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXFSZ};
 use signal_hook::iterator;
 
 use crate::cli::output::tell;
@@ -19,27 +21,36 @@ pub struct Signals {
 }
 
 impl Signals {
+    /// Ctrl-C is a person's who waits for the end of the step; whoever sends another signal waits for nothing.
     pub fn caught(wish: &Wish) -> std::io::Result<Self> {
-        Self::become_wishes(wish, interrupt)
+        Self::become_wishes(wish, |wish, signal| if signal == SIGINT { interrupt(wish) } else { wish.hold_now() })
     }
 
     /// The first signal holds the rig already.
     pub fn holding(wish: &Wish) -> std::io::Result<Self> {
-        Self::become_wishes(wish, Wish::hold_now)
+        Self::become_wishes(wish, |wish, _| wish.hold_now())
     }
 
-    fn become_wishes(wish: &Wish, become_wish: fn(&Wish)) -> std::io::Result<Self> {
-        let mut signals = iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
+    /// Nothing moves, and a rig that is only looked at is told nothing: the first signal ends the looking.
+    pub fn ending(wish: &Wish) -> std::io::Result<Self> {
+        Self::become_wishes(wish, |wish, _| interrupt(wish))
+    }
+
+    fn become_wishes(wish: &Wish, become_wish: fn(&Wish, i32)) -> std::io::Result<Self> {
+        let mut signals = iterator::Signals::new([SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM])?;
         let handle = signals.handle();
         let (wish, theirs) = (wish.clone(), wish.clone());
         let told = Arc::new(AtomicU8::new(SILENT));
         let tells = Arc::clone(&told);
         std::thread::spawn(move || {
             for signal in signals.forever() {
-                if signal != SIGINT {
-                    theirs.ask_nobody();
+                match signal {
+                    SIGUSR1 | SIGUSR2 | SIGALRM => continue,
+                    // These two come from the keys.
+                    SIGINT | SIGQUIT => {}
+                    _ => theirs.ask_nobody(),
                 }
-                become_wish(&theirs);
+                become_wish(&theirs, signal);
                 match tells.load(Ordering::SeqCst) {
                     SILENT => {}
                     ON_A_TERMINAL => tell(&format!("{CLEARED}  {}\n", said(&theirs))),

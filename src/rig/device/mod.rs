@@ -145,6 +145,9 @@ pub struct Flags {
     pub watchdog_tripped: bool,
 }
 
+/// What the record of a run says where a device has lost its position.
+pub const NOT_TRUSTED: &str = "its position is not to be trusted";
+
 /// Why a device did not do what it was asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DeviceFault {
@@ -157,7 +160,7 @@ pub enum DeviceFault {
     #[error("refused: {reason}")]
     Refused { reason: String },
     /// It started anew, so that its position is not to be trusted.
-    #[error("the device started anew ({was} became {is}): its position is not to be trusted")]
+    #[error("the device started anew ({was} became {is}): {NOT_TRUSTED}")]
     Rebooted { was: String, is: String },
     /// An answer came that is no reading: not to be used, may be asked again.
     #[error("`{}` is no reading: {reason}", raw.escape_ascii())]

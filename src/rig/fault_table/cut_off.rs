@@ -53,7 +53,8 @@ pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
     let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
     journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
     journal.append(EntryKind::Resume, &resumption).unwrap();
-    let resumed = tape::resume(plan, played(disk).1, &mut rig, &mut Unwatched, journal, Box::new(|| None));
+    let goes_on = || Ok::<_, tape::Refusal>(tape::GoesOn { rig: &mut rig, journal, played: played(disk).1 });
+    let resumed = tape::resume(plan, &before, &mut Unwatched, Box::new(|| None), goes_on).unwrap();
     assert_eq!((resumed.mismatch, resumed.record.outcome.clone()), (None, Outcome::Completed), "call {call}");
     GoneOn::ToItsEnd(Box::new(resumed.record))
 }

@@ -25,7 +25,10 @@ pub(super) fn take(place: SocketAddr) -> io::Result<Option<Taken>> {
     if !on(Guarding::Lock) {
         return Ok(None);
     }
-    let name = format!("psd rig at {}:{}", place.ip().to_canonical(), place.port());
+    let ip = place.ip().to_canonical();
+    // Linux takes `0.0.0.0` for this machine; which of its own addresses a listener has cannot be told from outside.
+    let host = if ip.is_loopback() || ip.is_unspecified() { "this machine".to_owned() } else { ip.to_string() };
+    let name = format!("psd rig at {host}:{}", place.port());
     let taken = net::SocketAddr::from_abstract_name(name).and_then(|name| net::UnixListener::bind_addr(&name));
     taken.map(|name| Some(Taken { _name: name })).map_err(|error| match error.kind() {
         io::ErrorKind::AddrInUse => io::Error::new(

@@ -128,9 +128,9 @@ mod tests {
         let address = listener.local_addr().unwrap();
         let port = TcpPort::connect(&address.to_string(), LONG).unwrap();
         let first = listener.accept().unwrap();
-        for same in
-            [address.to_string(), format!("localhost:{}", address.port()), format!("[::ffff:127.0.0.1]:{}", address.port())]
-        {
+        let others = ["localhost", "[::ffff:127.0.0.1]", "0.0.0.0", "127.0.0.2", "[::1]"];
+        let others = others.map(|host| format!("{host}:{}", address.port()));
+        for same in std::iter::once(address.to_string()).chain(others) {
             let second = TcpPort::connect(&same, LONG).err().unwrap();
             assert!(second.to_string().starts_with("another program on this machine speaks with it"), "{same}: {second}");
         }

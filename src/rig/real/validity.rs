@@ -2,7 +2,7 @@
 //! hold. It moves nothing and keeps only what shows a sensor that no longer follows.
 
 use crate::plan::ReadingRules;
-use crate::rig::device::{Flags, Force};
+use crate::rig::device::{Flags, Force, NOT_TRUSTED};
 use crate::rig::failpoint::{Guarding, on};
 
 /// Nearness to an end of the range at which a reading is saturated, as a fraction of that end.
@@ -96,7 +96,7 @@ impl Judge {
         self.device_time = said.device_time.or(before);
         match (before, said.device_time) {
             (Some(before), Some(now)) if on(Guarding::Reboot) && now < before => Err(Invalid::Untrusted(format!(
-                "its clock went back from {before} s to {now} s: it started anew, and its position is not to be trusted"
+                "its clock went back from {before} s to {now} s: it started anew, and {NOT_TRUSTED}"
             ))),
             _ => Ok(()),
         }

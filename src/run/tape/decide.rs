@@ -1,12 +1,13 @@
 //! Where a cut-off run stands, before it may go on. In: its record, and what the rig says now without having moved. Out:
 //! from which record on it is done again, or why it must not be. A target is sent again only if it never arrived.
 
-use super::entry::{Assurance, Doubt, HeldBody, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
+use super::entry::{Assurance, Doubt, FaultBody, HeldBody, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody};
 use super::played::{Mismatch, Played, Unplayable, body};
 use crate::mechanics::path::Path;
 use crate::plan::{RealLink, RigPlan};
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
+use crate::rig::device::NOT_TRUSTED;
 use crate::rig::failpoint::{Guarding, on};
 use crate::rig::{DeclaredNoise, Identity, JUST_STARTED, NO_POWER_UP, Reading, named_axis, of_axis, who};
 use crate::run::{Inspection, UNLOADING};
@@ -93,6 +94,8 @@ pub enum Refusal {
          reference it, then say so with --re-referenced"
     )]
     PowerUpUnknown,
+    #[error("the record says that it started anew in the run ({told}): reference it, then say so with --re-referenced")]
+    Restarted { told: String },
     #[error(
         "the rig's firmware is no longer the one of the record ({recorded} became {found}): see that it means the same, reference \
          the rig, then say so with --re-referenced"
@@ -149,6 +152,22 @@ pub fn same_rig(recorded: &Identity, found: &Identity, assured: &[Assurance]) ->
         return Err(Refusal::PowerUpUnknown);
     }
     Ok(())
+}
+
+/// Whether no device lost its position after the rig was opened last: nobody's word that it was not switched off outweighs the record.
+///
+/// # Errors
+/// One did, and nobody has referenced it since.
+pub fn not_restarted(played: &Played, assured: &[Assurance]) -> Result<(), Refusal> {
+    if assured.contains(&Assurance::ReReferenced) {
+        return Ok(());
+    }
+    let faults = played.lines.iter().filter(|line| line.kind == EntryKind::Fault);
+    let told = faults.filter_map(|line| body::<FaultBody>(line).ok()).map(|fault| fault.fault.to_string());
+    match { told }.find(|told| told.contains(NOT_TRUSTED)) {
+        Some(told) => Err(Refusal::Restarted { told }),
+        None => Ok(()),
+    }
 }
 
 /// Whether a place is read as finely as before: the stiffness of the next step hangs on it.
@@ -310,6 +329,22 @@ pub(super) fn without_the_end(played: &Played) -> Result<Vec<Line>, Refusal> {
     if lines.iter().any(unloading) { Err(Refusal::Unloaded) } else { Ok(lines) }
 }
 
+/// The record from which on a cut-off run may be done again: the stroke that it ends in, where most of it was not read. What the rig did
+/// then decides.
+pub(super) fn undecided(lines: &[Line]) -> Result<Option<u64>, Unplayable> {
+    let Some(at) = lines.iter().rposition(|line| line.kind == EntryKind::Intent) else { return Ok(None) };
+    let intent: IntentBody = body(&lines[at])?;
+    let is_cut = intent.path.is_none() && lines[at..].iter().all(|line| line.kind != EntryKind::Stroke);
+    let taken = lines[at..].iter().filter(|line| line.kind == EntryKind::Sample).count();
+    let lost = intent.samples.is_some_and(|samples| mostly_lost(samples, taken));
+    Ok((is_cut && lost).then_some(lines[at].seq))
+}
+
+/// One reading that is lost is made at the end of the way, late.
+const fn mostly_lost(samples: usize, taken: usize) -> bool {
+    taken + 1 < samples && 2 * taken < samples
+}
+
 /// m and N, one entry a degree of freedom.
 type Measured = (Vec<f64>, Vec<f64>);
 
@@ -357,7 +392,7 @@ impl Cut<'_> {
                 let (low, high): (Vec<f64>, Vec<f64>) = paths.iter().map(may_be_held).unzip();
                 place.on_the_way(&low, &high)?;
             }
-            None if self.mostly_lost() && place.is(self.target) && !place.is(self.reached) => {
+            None if mostly_lost(self.samples, self.taken) && place.is(self.target) && !place.is(self.reached) => {
                 return Ok(Doubt::Stroke { back_to: before[0], others: before[1..].to_vec() });
             }
             None => {
@@ -365,11 +400,6 @@ impl Cut<'_> {
             }
         }
         Ok(Doubt::RestOfTheWay { from: before.to_vec() })
-    }
-
-    /// One reading that is lost is made at the end of the way, late.
-    const fn mostly_lost(&self) -> bool {
-        self.taken + 1 < self.samples && 2 * self.taken < self.samples
     }
 }
 

@@ -22,13 +22,14 @@ mod played;
 #[cfg(test)]
 mod resume_tests;
 mod rig;
+mod shape;
 mod state;
 #[cfg(test)]
 pub(crate) mod tests;
 mod way;
 
 pub use agreement::{Contradiction, agrees};
-pub use decide::{Bands, Decision, Refusal, decide, same_measure, same_resolution, same_rig};
+pub use decide::{Bands, Decision, Refusal, decide, not_restarted, same_measure, same_resolution, same_rig};
 pub use entry::{
     AmendBody, Assurance, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody, RigBody, SampleBody,
     StrokeBody,
@@ -37,7 +38,8 @@ pub use observer::TapedObserver;
 pub use older::RULES;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;
-pub use state::CUT_OFF;
+pub use shape::{Malformed, well_formed};
+pub use state::{CUT_OFF, GoesOn};
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -47,7 +49,7 @@ use crate::record::journal::{EntryKind, Journal, JournalFault};
 use crate::record::{Event, Outcome, Record};
 use crate::rig::Rig;
 use entry::PlanBody;
-use state::State;
+use state::{Begin, State};
 
 use super::driven::{self, DrivenRecord, DrivenStep, Driver, Specimen};
 use super::{Observer, Unwatched, run};
@@ -103,42 +105,45 @@ pub fn replay(plan: &Plan, played: Played) -> Replayed {
     Replayed { record, mismatch, steps }
 }
 
-/// Plays a record that is to be gone on with, without a rig: before anything is opened it is known that the plan asks for
-/// the very targets on record, and does not end again where the record ends.
+/// Plays a record back without a rig, and goes on with it on the one that `begin` opens at its end. A rig is not opened for what can be
+/// known without it, and never waits for a record: `begin` is not called where plan and record part ways, or where the run would only end
+/// again, and behind it nothing is played any more but the readings of a stroke.
 ///
 /// # Errors
-/// The plan and the record part ways, or the run would only end again.
-pub fn rehearse(plan: &Plan, played: &Played) -> Result<(), Refusal> {
-    let lines = decide::without_the_end(played)?.into();
-    let Replayed { record, mismatch, .. } = replay(plan, Played { lines, ..played.clone() });
-    if let Some(mismatch) = mismatch {
-        return Err(mismatch.into());
-    }
-    match record.outcome {
-        Outcome::Aborted { reason }
-        | Outcome::NotReleased { reason }
-        | Outcome::Blocked { reason }
-        | Outcome::Faulted { reason }
-            if !reason.contains(state::CUT_OFF) =>
-        {
-            Err(Refusal::EndsAgain { reason })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Plays a record back and goes on with it on the rig. RESUME stands in the journal already and is the last of `played`.
-pub fn resume(
+/// The run cannot be gone on with, or `begin` refuses.
+pub fn resume<'rig, E: From<Refusal> + 'rig>(
     plan: &Plan,
-    played: Played,
-    rig: &mut dyn Rig,
+    played: &Played,
     observer: &mut dyn Observer,
-    journal: Journal,
     wall: Wall,
-) -> Recorded {
-    let as_run = older::as_it_was_run(plan, &played);
-    let state = State::resuming(played, journal, wall);
-    perform(Some(rig), observer, state, |rig, observer, _| run(as_run.as_ref(), rig, observer))
+    begin: impl FnOnce() -> Result<GoesOn<'rig>, E> + 'rig,
+) -> Result<Recorded, E> {
+    let lines = decide::without_the_end(played)?;
+    let undecided = decide::undecided(&lines).map_err(Refusal::from)?;
+    let refused = Rc::new(RefCell::new(None));
+    let refusal = Rc::clone(&refused);
+    let begin: Begin<'rig> = Box::new(move || begin().map_err(|error| refusal.replace(Some(error))).ok());
+    let as_run = older::as_it_was_run(plan, played);
+    let state = State::resuming(Played { lines: lines.into(), ..played.clone() }, begin, undecided, wall);
+    let recorded = perform(None, observer, state, |rig, observer, _| run(as_run.as_ref(), rig, observer));
+    if let Some(error) = refused.take() {
+        return Err(error);
+    }
+    if recorded.sealed.is_some() {
+        return Ok(recorded);
+    }
+    Err(match (recorded.mismatch, recorded.record.outcome) {
+        (Some(mismatch), _) => mismatch.into(),
+        (
+            None,
+            Outcome::Aborted { reason }
+            | Outcome::NotReleased { reason }
+            | Outcome::Blocked { reason }
+            | Outcome::Faulted { reason },
+        ) => Refusal::EndsAgain { reason },
+        (None, Outcome::Completed) => Refusal::Ended,
+    }
+    .into())
 }
 
 /// A run, and what became of its journal.
@@ -160,11 +165,11 @@ pub struct Replayed {
     pub steps: Option<Vec<DrivenStep>>,
 }
 
-fn perform(
-    rig: Option<&mut dyn Rig>,
+fn perform<'rig>(
+    rig: Option<&'rig mut dyn Rig>,
     observer: &mut dyn Observer,
-    state: State,
-    runs: impl FnOnce(&mut dyn Rig, &mut dyn Observer, &RefCell<State>) -> Record,
+    state: State<'rig>,
+    runs: impl FnOnce(&mut dyn Rig, &mut dyn Observer, &RefCell<State<'rig>>) -> Record,
 ) -> Recorded {
     let state = Rc::new(RefCell::new(state));
     let mut rig = TapedRig::new(rig, Rc::clone(&state));

@@ -12,18 +12,23 @@ use crate::record::journal::EntryKind;
 use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepReport, UNLOADING};
 
 /// Who watches a run, with every word on record.
-pub struct TapedObserver<'run> {
+pub struct TapedObserver<'run, 'rig> {
     inner: &'run mut dyn Observer,
-    state: Rc<RefCell<State>>,
+    state: Rc<RefCell<State<'rig>>>,
     /// Whether a person was asked last, and has not answered.
     inspecting: bool,
     /// The procedure that runs.
     procedure: Option<String>,
 }
 
-impl<'run> TapedObserver<'run> {
-    pub(super) fn new(inner: &'run mut dyn Observer, state: Rc<RefCell<State>>) -> Self {
+impl<'run, 'rig> TapedObserver<'run, 'rig> {
+    pub(super) fn new(inner: &'run mut dyn Observer, state: Rc<RefCell<State<'rig>>>) -> Self {
         Self { inner, state, inspecting: false, procedure: None }
+    }
+
+    /// Whether answers still come from the record.
+    fn playing(&self) -> bool {
+        self.state.borrow_mut().playing()
     }
 
     /// Appends, where the run is alive. A record that fails stops the run at the next call on the rig.
@@ -51,7 +56,7 @@ impl<'run> TapedObserver<'run> {
     }
 }
 
-impl Observer for TapedObserver<'_> {
+impl Observer for TapedObserver<'_, '_> {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
         self.procedure = Some(name.to_owned());
         self.inner.procedure_started(name, keyword, steps);
@@ -60,8 +65,7 @@ impl Observer for TapedObserver<'_> {
     fn step_done(&mut self, report: &StepReport) {
         self.inspecting = false;
         let step = StepBody::of(report);
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             let mut state = self.state.borrow_mut();
             if let Ok(recorded) = state.peek::<StepBody>(EntryKind::Step, "the end of a step") {
                 if recorded.same(&step) {
@@ -86,8 +90,7 @@ impl Observer for TapedObserver<'_> {
     }
 
     fn event(&mut self, event: &Event) {
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             let mut state = self.state.borrow_mut();
             if let Ok(recorded) = state.peek::<Event>(EntryKind::Event, &event.text) {
                 if is_recorded(event, &recorded) {
@@ -103,8 +106,7 @@ impl Observer for TapedObserver<'_> {
     }
 
     fn asked(&mut self, request: &Request) {
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             let mut state = self.state.borrow_mut();
             match state.peek(EntryKind::Operator, "a request of the client") {
                 Ok(OperatorBody::Asked { request: recorded }) if recorded == *request => state.consume(),
@@ -120,8 +122,7 @@ impl Observer for TapedObserver<'_> {
     }
 
     fn stop_requested(&self) -> bool {
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             let mut state = self.state.borrow_mut();
             let asked = state.next_kind() == Some(EntryKind::Operator)
                 && match state.peek(EntryKind::Operator, "a request to stop") {
@@ -143,10 +144,10 @@ impl Observer for TapedObserver<'_> {
     }
 
     fn next(&mut self) -> Next {
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             let mut state = self.state.borrow_mut();
             return match state.next_kind() {
+                _ if state.mismatch().is_some() => Next::GoOn,
                 Some(EntryKind::Operator) => match state.peek(EntryKind::Operator, "a note") {
                     Ok(OperatorBody::Noted { text }) => {
                         state.consume();
@@ -171,8 +172,7 @@ impl Observer for TapedObserver<'_> {
     }
 
     fn may_unload(&mut self, question: &str, motion: &Motion, declared: bool) -> Option<Inspection> {
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             let mut state = self.state.borrow_mut();
             return match state.next_kind() {
                 Some(EntryKind::Fault) if state.front_is_pause_fault() => Some(Inspection::Wait),
@@ -207,11 +207,10 @@ impl Observer for TapedObserver<'_> {
     }
 }
 
-impl TapedObserver<'_> {
+impl TapedObserver<'_, '_> {
     /// What a person answers to `note`: as the record has it, else as `ask` finds out.
     fn answer(&mut self, note: &str, ask: impl FnOnce(&mut dyn Observer) -> Inspection) -> Inspection {
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             let mut state = self.state.borrow_mut();
             if state.front_is_pause_fault() {
                 return Inspection::Wait;

@@ -100,22 +100,9 @@ impl Played {
                 self.texts.resize(self.header.files.len(), String::new());
                 self.texts[part.file].push_str(&part.text);
             }
-            EntryKind::Amend => {
-                let amend: AmendBody = body(line)?;
-                let text = format!("{} ({}): {}", amend.differences.join("; "), amend.by, amend.reason);
-                self.interrupted(EventKind::Amendment, text);
-                self.header = amend.header;
-                self.texts.clear();
-            }
-            EntryKind::Resume => {
-                let resume: ResumeBody = body(line)?;
-                while self.lines.back().is_some_and(|last| last.seq >= resume.from) {
-                    self.lines.pop_back();
-                }
-                self.interrupted(EventKind::Resume, told(&resume));
-                self.doubt = Some(resume.doubt);
-            }
-            EntryKind::Recover => self.interrupted(EventKind::Resume, "a torn end of the record was put aside".to_owned()),
+            EntryKind::Amend => self.amended(body(line)?),
+            EntryKind::Resume => self.resumed(body(line)?),
+            EntryKind::Recover => self.recovered(),
             EntryKind::Tally => self.tally = body(line)?,
             EntryKind::Header | EntryKind::End => {}
             EntryKind::Intent
@@ -131,6 +118,28 @@ impl Played {
             }
         }
         Ok(())
+    }
+
+    /// Something else holds from here on; its texts follow.
+    pub fn amended(&mut self, amend: AmendBody) {
+        let text = format!("{} ({}): {}", amend.differences.join("; "), amend.by, amend.reason);
+        self.interrupted(EventKind::Amendment, text);
+        self.header = amend.header;
+        self.texts.clear();
+    }
+
+    /// The run goes on from here.
+    pub fn resumed(&mut self, resume: ResumeBody) {
+        while self.lines.back().is_some_and(|last| last.seq >= resume.from) {
+            self.lines.pop_back();
+        }
+        self.interrupted(EventKind::Resume, told(&resume));
+        self.doubt = Some(resume.doubt);
+    }
+
+    /// Bytes behind the last record were put aside.
+    pub fn recovered(&mut self) {
+        self.interrupted(EventKind::Resume, "a torn end of the record was put aside".to_owned());
     }
 
     fn interrupted(&mut self, kind: EventKind, text: String) {

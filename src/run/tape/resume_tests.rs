@@ -1,6 +1,7 @@
 //! Every procedure that moves the rig, killed at every write and every sync and gone on with: the same end, no target carried
 //! out twice, and what both parts left plays back. And a run that nobody records is told at the times of one on record.
 
+use super::entry::FaultBody;
 use super::tests::{Standing, Witness, killed_everywhere, played, recorded};
 use super::*;
 use crate::formula::Formula::Constant;
@@ -12,9 +13,12 @@ use crate::plan::{
 };
 use crate::quantity::Dimension;
 use crate::record::History;
+use crate::record::journal::Durability;
+use crate::record::journal::testing::PowerLoss;
+use crate::rig::device::DeviceFault;
 use crate::rig::failpoint::{Guarding, without};
-use crate::rig::{Identity, JUST_STARTED};
-use crate::run::testing::{elastic_plan, every, impact, ramp, result_of, struck_frame};
+use crate::rig::{Identity, JUST_STARTED, RigFault};
+use crate::run::testing::{elastic_plan, every, header, impact, ramp, result_of, struck_frame};
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
 
@@ -271,6 +275,27 @@ fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_reco
         // What the rig mended is counted from its first reading on in either.
         assert_eq!(format!("{plain:?}"), format!("{:?}", whole.record), "{name}: not recorded");
     }
+}
+
+#[test]
+fn a_restart_on_record_needs_a_reference_whatever_else_is_said() {
+    let plan = crate::run::testing::empty_plan();
+    let fault = DeviceFault::Rebooted { was: "running".to_owned(), is: "Grbl 1.1h".to_owned() };
+    let of = |fault: &str| {
+        let disk = PowerLoss::new();
+        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+        begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        journal.append(EntryKind::Rig, &RigBody::of(&Standing::new(&plan))).unwrap();
+        let fault = RigFault::Device(format!("actuator on /dev/ttyUSB0: {fault}"));
+        journal.append(EntryKind::Fault, &FaultBody { t: 0.0, call: Call::Execute, fault, wall: None }).unwrap();
+        journal.sync().unwrap();
+        played(&disk.written()).1
+    };
+    let restarted = of(&fault.to_string());
+    let refused = not_restarted(&restarted, &[Assurance::SamePowerUp, Assurance::LetGo]);
+    assert!(matches!(refused, Err(Refusal::Restarted { .. })), "{refused:?}");
+    assert_eq!(not_restarted(&restarted, &[Assurance::ReReferenced]), Ok(()));
+    assert_eq!(not_restarted(&of("the line is gone: unplugged"), &[]), Ok(()));
 }
 
 #[test]

@@ -15,8 +15,8 @@ use crate::rig::{DeclaredNoise, EachReading, Halted, Identity, LastMove, Offer, 
 /// A rig whose every answer is on record.
 pub struct TapedRig<'rig> {
     /// None while a record is only played back.
-    pub(super) live: Option<&'rig mut dyn Rig>,
-    pub(super) state: Rc<RefCell<State>>,
+    live: Option<&'rig mut dyn Rig>,
+    pub(super) state: Rc<RefCell<State<'rig>>>,
     about: RigBody,
     /// Proposed, and not carried out: targets as asked, speed as asked, and what the rig made of them.
     pending: Option<(Vec<f64>, Option<f64>, Offer)>,
@@ -25,7 +25,7 @@ pub struct TapedRig<'rig> {
 }
 
 impl<'rig> TapedRig<'rig> {
-    pub(super) fn new(live: Option<&'rig mut dyn Rig>, state: Rc<RefCell<State>>) -> Self {
+    pub(super) fn new(live: Option<&'rig mut dyn Rig>, state: Rc<RefCell<State<'rig>>>) -> Self {
         let known = state.borrow().rig.clone();
         let about = known.unwrap_or_else(|| {
             let about = live.as_deref().map_or_else(nobody, RigBody::of);
@@ -39,9 +39,23 @@ impl<'rig> TapedRig<'rig> {
         Self { live, state, about, pending: None, offset: None }
     }
 
+    /// Whether answers still come from the record.
+    pub(super) fn playing(&self) -> bool {
+        self.state.borrow_mut().playing()
+    }
+
+    /// The rig itself, where there is one.
+    pub(super) fn live(&mut self) -> Option<&mut (dyn Rig + 'rig)> {
+        if self.live.is_none() {
+            self.live = self.state.borrow_mut().take_opened();
+        }
+        self.live.as_deref_mut()
+    }
+
     /// The rig itself, once the record is played.
     pub(super) fn rig(&mut self) -> Result<&mut (dyn Rig + 'rig), RigFault> {
         self.state.borrow().healthy()?;
+        self.live().ok_or_else(ended)?;
         let rig = self.live.as_deref_mut().ok_or_else(ended)?;
         if self.offset.is_none() {
             self.offset = Some(self.state.borrow().time - rig.time());
@@ -119,7 +133,7 @@ impl<'rig> TapedRig<'rig> {
         &mut self,
         read: impl FnOnce(&mut dyn Rig) -> Result<(Reading, Option<[f64; 2]>), RigFault>,
     ) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
-        if self.state.borrow().playing() {
+        if self.playing() {
             return self.played_reading();
         }
         let read = read(self.rig()?);
@@ -140,8 +154,7 @@ impl<'rig> TapedRig<'rig> {
     /// What the guard would not have is on record too, so that the run can be played back to here.
     fn forget_proposal(&mut self) {
         let Some((targets, speed, offer)) = self.pending.take() else { return };
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             if self.played_intent(&targets, speed, None).is_ok() {
                 self.state.borrow_mut().consume();
             }
@@ -157,7 +170,7 @@ impl<'rig> TapedRig<'rig> {
             if let Some(fault) = self.state.borrow_mut().played_fault(Call::Traverse) {
                 return Err(fault);
             }
-            if !self.state.borrow().playing() {
+            if !self.playing() {
                 return Ok(Some(taken));
             }
             let mut state = self.state.borrow_mut();
@@ -193,7 +206,7 @@ impl Rig for TapedRig<'_> {
     }
 
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
-        if self.state.borrow().playing() {
+        if self.playing() {
             if let Some(fault) = self.state.borrow_mut().played_fault(Call::Propose) {
                 return Err(fault);
             }
@@ -232,8 +245,7 @@ impl Rig for TapedRig<'_> {
     fn execute(&mut self) -> Result<(), RigFault> {
         let (targets, speed, offer) =
             self.pending.take().ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
-        let playing = self.state.borrow().playing();
-        if playing {
+        if self.playing() {
             // What is sent is held against the record here, where a client's requests came first.
             self.played_intent(&targets, speed, None)?;
             let mut state = self.state.borrow_mut();
@@ -263,8 +275,11 @@ impl Rig for TapedRig<'_> {
     }
 
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        if self.state.borrow().playing() {
-            return self.state.borrow_mut().played_fault(Call::Pause).map_or(Ok(()), Err);
+        if self.playing() {
+            let mut state = self.state.borrow_mut();
+            // Whoever waits for what the record says next would wait for ever.
+            let fault = state.parted().or_else(|| state.played_fault(Call::Pause));
+            return fault.map_or(Ok(()), Err);
         }
         if self.state.borrow().played_out() {
             return Ok(());
@@ -290,23 +305,25 @@ impl Rig for TapedRig<'_> {
     }
 
     fn hold(&mut self) {
+        self.state.borrow_mut().holds();
         self.forget_proposal();
-        if let Some(rig) = self.live.as_deref_mut() {
+        if let Some(rig) = self.live() {
             rig.hold();
         }
     }
 
     fn halt(&mut self) -> Option<Halted> {
+        self.state.borrow_mut().holds();
         self.forget_proposal();
-        if self.state.borrow().playing() {
+        if self.playing() {
             let played = self.state.borrow_mut().played_hold();
-            if let (None, Some(rig)) = (&played, self.live.as_deref_mut()) {
+            if let (None, Some(rig)) = (&played, self.live()) {
                 rig.hold();
             }
             return played.map(|HeldBody { t, doubt, found, .. }| Halted { time: t, doubt, found, raw: Vec::new() });
         }
         // Also where the record cannot be kept: the rig comes first. What is not on record is no part of the run.
-        let rig = self.live.as_deref_mut()?;
+        let rig = self.live()?;
         let before = rig.time();
         let halted = rig.halt()?;
         let time = self.state.borrow().time;
@@ -343,7 +360,7 @@ impl Rig for TapedRig<'_> {
     }
 
     fn tally(&self) -> Tally {
-        if !self.state.borrow().playing() {
+        if !self.playing() {
             // Of a record that cannot be kept the run knows already.
             let _ = self.count();
         }

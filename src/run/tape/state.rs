@@ -12,12 +12,30 @@ use super::entry::{Call, Doubt, EndBody, EndOutcome, FaultBody, HeldBody, Intent
 use super::played::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
-use crate::rig::{RigFault, Tally};
+use crate::rig::{Rig, RigFault, Tally};
 use crate::run::Request;
 use crate::run::driven::Specimen;
 
-pub(super) struct State {
+/// What a run goes on with where its record ends.
+pub struct GoesOn<'rig> {
+    pub rig: &'rig mut dyn Rig,
+    /// With RESUME as its last record.
+    pub journal: Journal,
+    /// The record with this resumption.
+    pub played: Played,
+}
+
+/// Opens it; None: it cannot be gone on with.
+pub(super) type Begin<'rig> = Box<dyn FnOnce() -> Option<GoesOn<'rig>> + 'rig>;
+
+pub(super) struct State<'rig> {
     lines: VecDeque<Line>,
+    /// What the run goes on with, until that is opened.
+    begin: Option<Begin<'rig>>,
+    /// The record before which it is opened, where the rig decides whether that and what follows it count.
+    undecided: Option<u64>,
+    /// The rig, until somebody takes it.
+    opened: Option<&'rig mut dyn Rig>,
     /// A client drove the rig: between a proposal and its target stand the client's requests.
     pub(super) driven: bool,
     pub(super) rig: Option<RigBody>,
@@ -39,7 +57,7 @@ pub(super) struct State {
     wall: Wall,
 }
 
-impl State {
+impl<'rig> State<'rig> {
     pub(super) fn recording(journal: Journal, wall: Wall) -> Self {
         Self { journal: Some(journal), wall, ..Self::empty() }
     }
@@ -59,13 +77,16 @@ impl State {
         }
     }
 
-    pub(super) fn resuming(played: Played, journal: Journal, wall: Wall) -> Self {
-        Self { journal: Some(journal), wall, doubt: played.doubt.clone(), ..Self::replaying(played) }
+    pub(super) fn resuming(played: Played, begin: Begin<'rig>, undecided: Option<u64>, wall: Wall) -> Self {
+        Self { begin: Some(begin), undecided, wall, ..Self::replaying(played) }
     }
 
     fn empty() -> Self {
         Self {
             lines: VecDeque::new(),
+            begin: None,
+            undecided: None,
+            opened: None,
             driven: false,
             rig: None,
             journal: None,
@@ -82,14 +103,38 @@ impl State {
         }
     }
 
-    /// Whether answers still come from the record.
-    pub(super) fn playing(&self) -> bool {
+    /// Whether answers still come from the record. Where they do no more, what the run goes on with is opened: not before the last of
+    /// them, for a rig is not kept waiting for a record.
+    pub(super) fn playing(&mut self) -> bool {
+        let decides = self.lines.front().is_none_or(|line| Some(line.seq) == self.undecided);
+        if decides
+            && self.mismatch.is_none()
+            && let Some(begin) = self.begin.take()
+            && let Some(GoesOn { rig, journal, played }) = begin()
+        {
+            let last = played.lines.back().map(|line| line.seq);
+            self.lines.retain(|line| Some(line.seq) <= last);
+            (self.doubt, self.interruptions) = (played.doubt, played.interruptions);
+            (self.journal, self.opened) = (Some(journal), Some(rig));
+        }
         !self.lines.is_empty() || self.mismatch.is_some()
+    }
+
+    /// The run holds. Where its record is played and nothing is open to go on with, it ends there by itself, and would again.
+    pub(super) fn holds(&mut self) {
+        if self.lines.is_empty() {
+            self.begin = None;
+        }
+    }
+
+    /// The rig that the run goes on with, once.
+    pub(super) const fn take_opened(&mut self) -> Option<&'rig mut dyn Rig> {
+        self.opened.take()
     }
 
     /// Whether the record is played to the end that the run came to.
     pub(super) fn played_out(&self) -> bool {
-        self.ended && !self.playing()
+        self.ended && self.lines.is_empty() && self.mismatch.is_none()
     }
 
     /// Whether there is a journal to write to, so that a rig may move once the record is played.
@@ -143,6 +188,11 @@ impl State {
                 self.targets += 1;
             }
         }
+    }
+
+    /// Why nothing more of the record is played.
+    pub(super) fn parted(&self) -> Option<RigFault> {
+        self.mismatch.as_ref().map(|mismatch| RigFault::Device(mismatch.to_string()))
     }
 
     /// The next record says that this call failed.
@@ -202,7 +252,7 @@ impl State {
 
     /// Whether the next record says that a pause failed.
     pub(super) fn front_is_pause_fault(&self) -> bool {
-        let front = self.lines.front().filter(|line| line.kind == EntryKind::Fault);
+        let front = self.lines.front().filter(|line| self.mismatch.is_none() && line.kind == EntryKind::Fault);
         front.is_some_and(|line| line.body().get("call").and_then(|call| call.as_str()) == Some("pause"))
     }
 
@@ -322,7 +372,7 @@ impl State {
 pub const CUT_OFF: &str = "the record ends here: the run was cut off";
 
 /// Lets the requests of the record drive the specimen once more.
-pub(super) fn ask_again(state: &RefCell<State>, specimen: &mut Specimen<'_, '_>) {
+pub(super) fn ask_again(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, '_>) {
     loop {
         let (over, stayed) = {
             let state = state.borrow();

@@ -14,8 +14,8 @@ use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness};
 use crate::record::journal::{Durability, Recovered, Storage, recover};
 use crate::rig::failpoint::{Guarding, without};
 use crate::rig::{CutOff, DeclaredNoise, EachReading, Identity, LastMove, Offer, Reading, RigFault, Tally, virtual_rig};
-use crate::run::Inspection;
 use crate::run::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
+use crate::run::{Inspection, StepReport};
 
 /// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
 #[derive(Clone)]
@@ -109,6 +109,32 @@ pub(super) struct Witness;
 impl Observer for Witness {
     fn inspect(&mut self, _: &str) -> Inspection {
         Inspection::GoOn { note: Some("no crack".to_owned()), by: Some("A. Witness".to_owned()) }
+    }
+}
+
+/// A witness who notes the steps that are done, and where among them (None) the rig is opened.
+#[derive(Default)]
+struct Followed {
+    steps: Rc<RefCell<Vec<Option<u64>>>>,
+}
+
+impl Observer for Followed {
+    fn inspect(&mut self, note: &str) -> Inspection {
+        Witness.inspect(note)
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.steps.borrow_mut().push(Some(report.step));
+    }
+}
+
+impl Followed {
+    /// As many steps as the record has up to `from` were done before, and no other.
+    fn opened_where_the_record_ends(&self, record: &Played, from: u64, call: usize) {
+        let on_record = record.lines.iter().filter(|line| line.kind == EntryKind::Step && line.seq < from).count();
+        let before = self.steps.borrow().iter().take_while(|step| step.is_some()).count();
+        let opened = self.steps.borrow().iter().filter(|step| step.is_none()).count();
+        assert_eq!((before, opened), (on_record, 1), "call {call}: the record is played before the rig is opened");
     }
 }
 
@@ -256,7 +282,15 @@ fn go_on_and_compare(plan: &Plan, mut rig: Standing, disk: &PowerLoss, expected:
     journal.append(EntryKind::Rig, &RigBody { t: before.time, ..about }).unwrap();
     journal.append(EntryKind::Resume, &resumption).unwrap();
     let (_, again) = played(&disk.written());
-    let resumed = resume(plan, again, &mut rig, &mut Witness, journal, no_wall());
+    let mut followed = Followed::default();
+    let steps = Rc::clone(&followed.steps);
+    let goes_on = || {
+        steps.borrow_mut().push(None);
+        Ok::<_, Refusal>(GoesOn { rig: &mut rig, journal, played: again })
+    };
+    let resumed =
+        resume(plan, &before, &mut followed, no_wall(), goes_on).unwrap_or_else(|refusal| panic!("call {call}: {refusal}"));
+    followed.opened_where_the_record_ends(&before, resumption.from, call);
     assert_eq!(resumed.mismatch, None, "call {call}");
     assert_eq!(resumed.record.outcome, Outcome::Completed, "call {call}: {:?}", resumed.record.events);
     assert_eq!(measured(&resumed.record), expected, "call {call}");
@@ -414,19 +448,31 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
     let steps = recovered.lines.iter().rposition(|line| line.kind == EntryKind::Intent).unwrap();
     recovered.lines.truncate(steps);
     let cut_off = Played::of(&recovered).unwrap();
-    rehearse(&plan, &cut_off).unwrap();
+    let rehearse = |plan: &Plan| {
+        let mut opened = false;
+        let open = || {
+            opened = true;
+            Err(Refusal::NothingRecorded)
+        };
+        let refused = resume(plan, &cut_off, &mut Unwatched, no_wall(), open).err();
+        (refused.unwrap(), opened)
+    };
+    assert_eq!(rehearse(&plan), (Refusal::NothingRecorded, true), "what the rig's opening says");
 
     let mut other = plan.clone();
     if let ProcedureKind::StiffnessRamp(ramp) = &mut other.procedures[0].kind {
         ramp.displacements[0] = crate::formula::Formula::Constant(5e-5);
     }
-    assert!(matches!(rehearse(&other, &cut_off), Err(Refusal::Otherwise(_))), "another target than the recorded one");
+    assert!(matches!(rehearse(&other), (Refusal::Otherwise(_), false)), "another target than the recorded one");
     let mut shorter = plan.clone();
     shorter.procedures.truncate(1);
-    assert!(matches!(rehearse(&shorter, &cut_off), Err(Refusal::Otherwise(_))), "the record goes on beyond the plan");
+    assert!(matches!(rehearse(&shorter), (Refusal::Otherwise(_), false)), "the record goes on beyond the plan");
     let mut narrow = plan.clone();
     narrow.limits.displacement.high = 1e-6;
-    assert!(rehearse(&narrow, &cut_off).is_err(), "a limit that the record is past already");
+    assert!(
+        matches!(rehearse(&narrow), (Refusal::EndsAgain { .. } | Refusal::Otherwise(_), false)),
+        "a limit that it is past already"
+    );
 
     let mut turned = plan.rig.clone();
     same_measure(&plan.rig, &turned).unwrap();

@@ -71,7 +71,7 @@ fn same(one: &IntentBody, other: &IntentBody) -> bool {
 impl TapedRig<'_> {
     pub(super) fn take_way(&mut self, way: &Way<'_>, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
         let mut intent = way.intent(samples);
-        if self.state.borrow().playing() {
+        if self.playing() {
             let recorded: IntentBody = self.state.borrow_mut().peek(EntryKind::Intent, "a target")?;
             if !same(&recorded, &intent) {
                 return Err(self.state.borrow_mut().disagrees(format!("a way to {:?} m at {:?} m/s", intent.to, intent.speed)));
@@ -96,7 +96,7 @@ impl TapedRig<'_> {
     fn go_way(&mut self, done: usize, each: EachReading<'_>, goes: Goes<'_>) -> Result<(), RigFault> {
         self.rig()?;
         let (offset, state) = (self.offset.unwrap_or(0.0), Rc::clone(&self.state));
-        let Some(rig) = self.live.as_deref_mut() else { return Err(ended()) };
+        let Some(rig) = self.live() else { return Err(ended()) };
         // A refusal of the guard, or of the record, is not the rig's fault, and comes out again when the record is played.
         let (mut refused, mut taken) = (false, done);
         let followed = goes(rig, &mut |reading| {

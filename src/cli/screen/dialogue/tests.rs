@@ -223,7 +223,7 @@ fn nobody_leaves_a_rig_that_may_still_move_unseen() {
 }
 
 #[test]
-fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_stop() {
+fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_hold() {
     let wish = Wish::default();
     let mut dialogue = Dialogue::default();
     dialogue.press(Key::Character('q'), LATER, &wish);
@@ -231,9 +231,12 @@ fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_stop() {
     dialogue.press(Key::Interrupt, LATER, &wish);
     assert!(wish.wants_hold());
     let wish = Wish::default();
+    dialogue.press(Key::Quit, LATER, &wish);
+    assert!(wish.wants_hold());
+    let wish = Wish::default();
     dialogue.paused = true;
     dialogue.lose(&wish);
-    assert!(wish.wants_end());
+    assert!(wish.wants_hold());
     assert_eq!(dialogue.next(), Next::GoOn, "a pause does not outlast its terminal");
     assert!(matches!(dialogue.ask(&look()), Inspection::Stop { .. }));
 }
