@@ -6,6 +6,7 @@ mod partial;
 
 use crate::formula::{Formula, FormulaError, Operator, Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::mechanics::energy::WORTHLESS;
+use crate::mechanics::student;
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
 use crate::quantity::display::stated;
@@ -82,6 +83,10 @@ pub struct ConditionOutcome {
     pub guard_band: Option<f64>,
     /// Effective degrees of freedom of the uncertainty of the margin, under the guarded rule.
     pub margin_degrees: f64,
+    /// Probability that what was measured conforms, by the uncertainty of the margin (JCGM 106:2012, 7.1); None where none is known.
+    pub conforms: Option<f64>,
+    /// Whether the tolerance is narrower than U of the margin.
+    pub wider_than_tolerance: bool,
     /// Why it is inconclusive.
     pub reason: Option<String>,
 }
@@ -259,14 +264,18 @@ pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record
         (Ok(value), Ok(bound)) => Some((value.value, *bound)),
         _ => None,
     };
-    let margin_known = match rule {
-        DecisionRule::Simple => None,
-        DecisionRule::Guarded => known.and_then(|(value, bound)| margin_known(condition, value, bound, record)),
+    let lacking = no_uncertainty(condition, record);
+    let distance_known = known.and_then(|(value, bound)| margin_known(condition, value, bound, record));
+    let (margin_known, unguarded) = match rule {
+        DecisionRule::Simple => (None, None),
+        DecisionRule::Guarded => (distance_known, lacking.clone()),
     };
-    let unguarded = match rule {
-        DecisionRule::Simple => None,
-        DecisionRule::Guarded => no_uncertainty(condition, record),
-    };
+    let told = distance_known.filter(|_| lacking.is_none());
+    let conforms = known.zip(told).map(|((value, bound), told)| bound.conforms(value, told));
+    let wider_than_tolerance = known.zip(told).is_some_and(|((_, bound), told)| match bound {
+        Bound::Within { tolerance, .. } => told.expanded() > tolerance,
+        Bound::Compare { .. } => false,
+    });
     let guard_band = margin_known.filter(|_| unguarded.is_none()).map(Known::expanded);
     let verdict = match (known, &unguarded) {
         (Some((value, bound)), None) => bound.verdict(value, guard_band),
@@ -285,6 +294,8 @@ pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record
         margin: known.map(|(value, bound)| bound.margin(value)),
         guard_band,
         margin_degrees: margin_known.map_or(f64::INFINITY, |known| known.degrees),
+        conforms,
+        wider_than_tolerance,
         reason: missing.or_else(too_near),
     }
 }
@@ -383,6 +394,22 @@ impl Bound {
                 Comparison::NotEqual => !equal(value, limit),
             },
             Self::Within { .. } => self.margin(value) >= 0.0,
+        }
+    }
+
+    /// Probability that what was measured as `value` (SI) meets it, `known` how well the distance between them is.
+    #[must_use]
+    pub fn conforms(self, value: f64, known: Known) -> f64 {
+        let Known { standard, degrees } = known;
+        let below = |limit: f64| student::below((limit - value) / standard, degrees);
+        match self {
+            Self::Compare { comparison, limit } => match comparison {
+                Comparison::Less | Comparison::LessEqual => below(limit),
+                Comparison::Greater | Comparison::GreaterEqual => student::below((value - limit) / standard, degrees),
+                Comparison::Equal => 0.0,
+                Comparison::NotEqual => 1.0,
+            },
+            Self::Within { target, tolerance } => below(target + tolerance) - below(target - tolerance),
         }
     }
 

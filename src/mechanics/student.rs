@@ -2,6 +2,7 @@
 //! readings. In: degrees of freedom. Out: the factor. It knows no result and no plan.
 
 use statrs::function::beta::beta_reg;
+use statrs::function::erf::erfc;
 
 /// The share of the cases that is held: what ±2u hold of a normal distribution, erf √2.
 pub const LEVEL: f64 = 0.954_499_736_103_641_6;
@@ -18,6 +19,24 @@ pub fn coverage(degrees: f64) -> f64 {
     }
     let degrees = degrees.max(1.0);
     if degrees >= MANY { expanded_about_normal(degrees) } else { solved(degrees) }
+}
+
+/// Share of the cases in which Student's t of these degrees of freedom is at most `t`; of very many, the normal distribution.
+#[must_use]
+pub fn below(t: f64, degrees: f64) -> f64 {
+    if t.is_nan() {
+        return f64::NAN;
+    }
+    if t.is_infinite() {
+        return if t > 0.0 { 1.0 } else { 0.0 };
+    }
+    let both_tails = if degrees.is_finite() {
+        let degrees = degrees.max(1.0);
+        beta_reg(0.5 * degrees, 0.5, degrees / (degrees + t * t))
+    } else {
+        erfc(t.abs() / std::f64::consts::SQRT_2)
+    };
+    if t > 0.0 { 1.0 - 0.5 * both_tails } else { 0.5 * both_tails }
 }
 
 /// Fisher's series in 1/ν about the normal quantile z = 2 (Abramowitz and Stegun 1964, 26.7.5): of its four terms
@@ -45,6 +64,21 @@ fn solved(degrees: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Normal: Φ(1) = 0.841345, Φ(−2) = 0.022750. Of one degree of freedom ½ + atan(t)/π; k leaves half of what the level leaves on
+    /// either side.
+    #[test]
+    fn shares_below_are_those_of_closed_forms() {
+        assert!((below(1.0, f64::INFINITY) - 0.841_344_746).abs() < 1e-8);
+        assert!((below(-2.0, f64::INFINITY) - 0.022_750_132).abs() < 1e-8);
+        for t in [-3.0, -0.5, 0.0, 0.7, 12.0] {
+            assert!((below(t, 1.0) - (0.5 + f64::atan(t) / std::f64::consts::PI)).abs() < 1e-10, "{t}");
+        }
+        for degrees in [1.0, 4.0, 30.0] {
+            assert!((below(coverage(degrees), degrees) - (0.5 + 0.5 * LEVEL)).abs() < 1e-9, "{degrees}");
+        }
+        assert_eq!([below(f64::INFINITY, 3.0), below(f64::NEG_INFINITY, 3.0)], [1.0, 0.0]);
+    }
 
     /// NIST Technical Note 1297 (1994), table B.1, the column of 95.45 %: the same as JCGM 100:2008, table G.2.
     #[test]

@@ -55,7 +55,7 @@ pub(super) enum From {
     Plan,
     /// The plan states it of the rig.
     Rig,
-    /// The program: times to a whole step.
+    /// The program: its time step.
     Program,
 }
 
@@ -74,7 +74,8 @@ pub(super) fn budgets<'a>(run: &Run<'a>, index: usize, procedure: &'a ProcedureR
         ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) } => {
             let lines = lines(run, result.contributions.iter());
             let known = how_well(run, &result.contributions, *uncertainty);
-            vec![Budget { result, entry: None, value: *value, uncertainty: *uncertainty, known, lines }]
+            let budget = Budget { result, entry: None, value: *value, uncertainty: *uncertainty, known, lines };
+            if *uncertainty > 0.0 { vec![budget] } else { Vec::new() }
         }
         ResultValue::Number { .. } => Vec::new(),
         ResultValue::List(values) => of_entries(run, result, values),
@@ -88,7 +89,7 @@ fn of_entries<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> Vec
     let budget = |(entry, (value, uncertainty)): (usize, (&f64, Option<f64>))| {
         let mine: Vec<Contribution> = result.contributions.iter().filter(|part| part.entry == entry).copied().collect();
         let lines = lines(run, mine.iter());
-        let uncertainty = uncertainty?;
+        let uncertainty = uncertainty.filter(|uncertainty| *uncertainty > 0.0)?;
         Some(Budget { result, entry: Some(entry), value: *value, uncertainty, known: how_well(run, &mine, uncertainty), lines })
     };
     known.filter_map(budget).collect()
@@ -202,7 +203,9 @@ fn line(run: &Run<'_>, part: &Contribution) -> Line {
             (format!("stiffness along the strokes of {name}"), From::Result, value, u, Dimension::STIFFNESS)
         }
         Source::LoopSampling { .. } => ("points of the loops".to_owned(), From::Program, None, None, Dimension::ENERGY),
-        Source::TimeStep { .. } => ("times to a whole step".to_owned(), From::Program, None, None, Dimension::TIME),
+        Source::TimeStep { .. } => {
+            ("time step: integrated again in its half and quarter".to_owned(), From::Program, None, None, Dimension::TIME)
+        }
     };
     let sensitivity = uncertainty.filter(|u| *u > 0.0).map(|u| part.amount / u);
     let degrees = run.record.degrees(part.source);

@@ -66,16 +66,19 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
 /// What must be left between value and limit, where the rule wants that.
 fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
     match (rule, number::guard_band(condition)) {
-        (DecisionRule::Simple, _) => String::new(),
+        (DecisionRule::Simple, _) => match condition.conforms.filter(|_| condition.wider_than_tolerance) {
+            Some(share) => format!(", U exceeds the tolerance: probability of conformity {}", number::probability(share)),
+            None => String::new(),
+        },
         (DecisionRule::Guarded, Some(band)) => format!(", guard band {band}"),
-        (DecisionRule::Guarded, None) => ", no uncertainty known".to_owned(),
+        (DecisionRule::Guarded, None) => condition.reason.as_ref().map_or_else(String::new, |reason| format!(", {reason}")),
     }
 }
 
 /// The rule of decision, where an uncertainty is printed that it regards or not.
 fn rule(run: &Run<'_>) -> String {
     let told = match expansion::largest(run.assessment) {
-        Some(factor) => format!("± is U = k·u (95 %; k up to {factor}, of few degrees of freedom)"),
+        Some(factor) => format!("± is U = k·u (about 95 %; k up to {factor}, of few degrees of freedom)"),
         None => "± is U = 2u".to_owned(),
     };
     let uncertain = run.assessment.requirements.iter().flat_map(|requirement| &requirement.conditions);

@@ -57,7 +57,7 @@ fn joined(number: &str, unit: &str) -> String {
     if unit.is_empty() { number.to_owned() } else { format!("{number}\u{a0}{unit}") }
 }
 
-/// A number and its uncertainties in one unit, all to the standard uncertainty's second digit.
+/// A number and its uncertainties in one unit: value and U to the second digit of U, u to its own (JCGM 100:2008, 7.2.6).
 pub(super) struct Parts {
     pub value: String,
     /// Standard, u.
@@ -83,10 +83,11 @@ pub(super) fn parts(value: f64, known: Option<Known>, dimension: Dimension) -> P
     let scaled = value / factor;
     let power = power_of(scaled.abs().max(uncertainty));
     let by = 10.0_f64.powi(power);
-    let (value, [standard, expanded]) = match decimals_of(scaled / by, uncertainty / by) {
+    let (value, [standard, expanded]) = match decimals_of(scaled / by, expanded / by) {
         Some(decimals) => {
-            let text = |number: f64| raised(&minus(&format!("{:.decimals$}", number / by)), power);
-            (text(scaled), [uncertainty, expanded].map(text))
+            let text = |number: f64, decimals: usize| raised(&minus(&format!("{:.decimals$}", number / by)), power);
+            let own = decimals_of(scaled / by, uncertainty / by).unwrap_or(decimals);
+            (text(scaled, decimals), [text(uncertainty, own), text(expanded, decimals)])
         }
         None => {
             (digits(value, factor, dimension), [uncertainty, expanded].map(|uncertainty| minus(&significant(uncertainty, 2))))
@@ -118,13 +119,32 @@ pub(super) fn plus_minus(value: &str, uncertainty: &str) -> String {
     }
 }
 
-/// A value and its standard uncertainty in one unit, both to the uncertainty's second digit: `300.02 ± 0.15 kN/m`.
+/// A value and its standard uncertainty in one unit, both to the uncertainty's second digit, in brackets (JCGM 100:2008, 7.2.2, form 3):
+/// `300.02(0.15) kN/m`.
 pub(super) fn with_uncertainty(value: f64, uncertainty: Option<f64>, dimension: Dimension) -> String {
-    let parts = parts(value, uncertainty.map(Known::surely), dimension);
-    match parts.standard {
-        Some(standard) => joined(&plus_minus(&parts.value, &standard), &parts.unit),
-        None => text(value, dimension),
-    }
+    let Some(uncertainty) = uncertainty.filter(|uncertainty| uncertainty.is_finite()) else { return text(value, dimension) };
+    let (unit, factor) = unit(value, dimension);
+    let (scaled, uncertainty) = (value / factor, uncertainty / factor);
+    let power = power_of(scaled.abs().max(uncertainty));
+    let by = 10.0_f64.powi(power);
+    let told = match decimals_of(scaled / by, uncertainty / by) {
+        Some(decimals) => {
+            let text = |number: f64| minus(&format!("{:.decimals$}", number / by));
+            raised_bracket(&text(scaled), &text(uncertainty), power)
+        }
+        None => format!("{}({})", digits(value, factor, dimension), minus(&significant(uncertainty, 2))),
+    };
+    joined(&told, &display::typeset(&unit))
+}
+
+/// `1.70(0.23) × 10⁻⁷`
+fn raised_bracket(value: &str, uncertainty: &str, power: i32) -> String {
+    format!("{value}({uncertainty}){}", tens(power))
+}
+
+/// ` × 10⁻⁷`; nothing of no power.
+fn tens(power: i32) -> String {
+    if power == 0 { String::new() } else { minus(&format!("e{power}")) }
 }
 
 /// Decimals that show two digits of the uncertainty; None where plain decimals would not be readable.
@@ -132,16 +152,23 @@ fn decimals_of(value: f64, uncertainty: f64) -> Option<usize> {
     if uncertainty <= 0.0 || value.abs() >= 1e7 {
         return None;
     }
-    let decimals = 1.0 - uncertainty.log10().floor();
+    // Rounded first: 0.0996 is 0.10, and not 0.100.
+    let rounded: f64 = format!("{uncertainty:.1e}").parse().unwrap_or(uncertainty);
+    let decimals = 1.0 - rounded.log10().floor();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 9")]
     (decimals <= 9.0).then(|| decimals.max(0.0) as usize)
 }
 
-/// The value of a condition with its expanded uncertainty U, in percent where the plan wrote percent.
+/// The value of a condition with its expanded uncertainty U, in percent where the plan wrote percent. Where its budget gives no U, with
+/// u in brackets.
 pub(super) fn value(condition: &ConditionOutcome) -> Option<String> {
     let value = condition.value?;
     let (scale, percent) = if in_percent(condition) { (100.0, "\u{a0}%") } else { (1.0, "") };
-    let known = condition.known().map(|known| Known { standard: scale * known.standard, ..known });
+    let known = condition.known().filter(|known| known.standard > 0.0);
+    let known = known.map(|known| Known { standard: scale * known.standard, ..known });
+    if let (Some(known), None) = (known, condition.conforms) {
+        return Some(with_uncertainty(scale * value, Some(known.standard), condition.dimension) + percent);
+    }
     let parts = parts(scale * value, known, condition.dimension);
     Some(
         match parts.expanded {
@@ -151,7 +178,7 @@ pub(super) fn value(condition: &ConditionOutcome) -> Option<String> {
     )
 }
 
-/// The bound of a condition as mathematics: `≤ 8.5 mm`, `10 ± 1.5 J`, `< 1 %`.
+/// The bound of a condition as mathematics: `≤ 8.5 mm`, `8.5 … 11.5 J`, `< 1 %`.
 pub(super) fn bound(condition: &ConditionOutcome) -> String {
     /// A bound that was computed has more digits than a reader needs.
     const DIGITS: usize = 5;
@@ -169,33 +196,39 @@ pub(super) fn bound(condition: &ConditionOutcome) -> String {
             let (unit, factor) = unit(target, condition.dimension);
             // Nearer than a thousandth, the tolerance is readable only in a unit of its own.
             if unit.is_empty() || (tolerance >= 1e-3 * target.abs() && target != 0.0) {
-                join(&around(scale * target / factor, scale * tolerance / factor), &unit) + percent
+                join(&between(scale * target / factor, scale * tolerance / factor), &unit) + percent
             } else {
-                format!("{} ± {}", number(target), number(tolerance))
+                format!("{} within {}", number(target), number(tolerance))
             }
         }
     }
 }
 
-/// A target and its tolerance, to the digit that tells the tolerance: the third where that is all of it, else the second.
-fn around(target: f64, tolerance: f64) -> String {
+/// The ends of a tolerance, to the digit that tells it: the third where that is all of it, else the second.
+fn between(target: f64, tolerance: f64) -> String {
     let power = power_of(target.abs().max(tolerance));
     let by = 10.0_f64.powi(power);
     let (target, tolerance) = (target / by, tolerance / by);
     let third: f64 = format!("{tolerance:.2e}").parse().unwrap_or(tolerance);
     let whole = (third - tolerance).abs() <= 1e-9 * tolerance;
-    let Some(second) = decimals_of(target, tolerance) else {
-        return plus_minus(&minus(&trimmed(&significant(target * by, 6))), &minus(&trimmed(&significant(tolerance * by, 3))));
+    let ends = [target - tolerance, target + tolerance];
+    let ends = match decimals_of(target, tolerance) {
+        Some(second) => {
+            let decimals = second + usize::from(whole);
+            let mut ends = ends.map(|number| format!("{number:.decimals$}"));
+            // Zeros that neither of them needs.
+            while ends[0].contains('.') && ends.iter().all(|text| text.ends_with('0') || text.ends_with('.')) {
+                ends = ends.map(|mut text| {
+                    text.pop();
+                    text
+                });
+            }
+            ends.map(|text| minus(&text))
+        }
+        None => ends.map(|number| minus(&trimmed(&significant(number, 6)))),
     };
-    let decimals = second + usize::from(whole);
-    let ends = |number: f64| format!("{number:.decimals$}");
-    let (mut target, mut tolerance) = (ends(target), ends(tolerance));
-    // Zeros that neither of them needs.
-    while target.contains('.') && [&target, &tolerance].iter().all(|text| text.ends_with('0') || text.ends_with('.')) {
-        target.pop();
-        tolerance.pop();
-    }
-    plus_minus(&raised(&minus(&target), power), &raised(&minus(&tolerance), power))
+    let [low, high] = ends;
+    if power == 0 { format!("{low} … {high}") } else { format!("({low} … {high}){}", tens(power)) }
 }
 
 /// The margin of a condition in the unit of its value; None where there is no margin.
@@ -237,6 +270,16 @@ fn in_percent(condition: &ConditionOutcome) -> bool {
     condition.dimension == Dimension::NUMBER && condition.text.contains('%') && !tolerance_only
 }
 
+/// The probability that a measured value conforms, as print sets it: `39 %`, `> 99.9 %`.
+pub(super) fn probability(share: f64) -> String {
+    match 100.0 * share {
+        percent if percent > 99.9 => ">\u{a0}99.9\u{a0}%".to_owned(),
+        percent if percent < 0.1 => "<\u{a0}0.1\u{a0}%".to_owned(),
+        percent if (10.0..90.0).contains(&percent) => format!("{percent:.0}\u{a0}%"),
+        percent => format!("{percent:.1}\u{a0}%"),
+    }
+}
+
 /// The comparison as print sets it.
 pub(super) const fn comparison_sign(comparison: Comparison) -> &'static str {
     match comparison {
@@ -266,6 +309,8 @@ mod tests {
             margin: Some(bound.margin(value)),
             guard_band: None,
             margin_degrees: f64::INFINITY,
+            conforms: None,
+            wider_than_tolerance: false,
             reason: None,
         };
         let below = |limit| Bound::Compare { comparison: Comparison::Less, limit };
@@ -277,21 +322,21 @@ mod tests {
         assert_eq!((bound(&percent), value(&percent).unwrap()), ("< 1\u{a0}%".to_owned(), "0.1710\u{a0}%".to_owned()));
         assert_eq!(margin(&percent).unwrap(), "0.829\u{a0}%");
         let energy = Bound::Within { target: 9.48, tolerance: 0.948 };
-        assert_eq!(bound(&condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.0)), "9.480 ± 0.948\u{a0}J");
+        assert_eq!(bound(&condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.0)), "8.532 … 10.428\u{a0}J");
         let reached = condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.316);
         assert_eq!(margin(&reached).unwrap(), "0.784\u{a0}J");
         let stiff = Bound::Within { target: 3e5, tolerance: 1.5e3 };
-        assert_eq!(bound(&condition("k within 0.5 % of 300 kN/m", Dimension::STIFFNESS, stiff, 3e5)), "300.0 ± 1.5\u{a0}kN/m");
+        assert_eq!(bound(&condition("k within 0.5 % of 300 kN/m", Dimension::STIFFNESS, stiff, 3e5)), "298.5 … 301.5\u{a0}kN/m");
         let told = |target: f64, tolerance: f64, dimension| {
             bound(&condition("x within y of z", dimension, Bound::Within { target, tolerance }, target))
         };
-        assert_eq!(told(0.156_19, 0.002 * 0.156_19, Dimension::LENGTH), "0.15619 ± 0.00031\u{a0}m");
-        assert_eq!(told(0.833_333_3, 0.000_833_333, Dimension::NUMBER), "0.83333 ± 0.00083");
-        assert_eq!(told(1.7e-7, 2e-8, Dimension::NUMBER), "(1.7 ± 0.2) × 10⁻⁷");
-        assert_eq!(told(20.0, 1.0, Dimension::NUMBER), "20 ± 1");
-        assert_eq!(told(100.0, 10.0, Dimension::FORCE), "100 ± 10\u{a0}N");
-        assert_eq!(told(1.0, 1e-6, Dimension::NUMBER), "1.000000 ± 0.000001");
-        assert_eq!(told(0.0, 1e-6, Dimension::LENGTH), "0\u{a0}mm ± 1\u{a0}µm");
+        assert_eq!(told(0.156_19, 0.002 * 0.156_19, Dimension::LENGTH), "0.15588 … 0.15650\u{a0}m");
+        assert_eq!(told(0.833_333_3, 0.000_833_333, Dimension::NUMBER), "0.83250 … 0.83417");
+        assert_eq!(told(1.7e-7, 2e-8, Dimension::NUMBER), "(1.5 … 1.9) × 10⁻⁷");
+        assert_eq!(told(20.0, 1.0, Dimension::NUMBER), "19 … 21");
+        assert_eq!(told(100.0, 10.0, Dimension::FORCE), "90 … 110\u{a0}N");
+        assert_eq!(told(1.0, 1e-6, Dimension::NUMBER), "0.999999 … 1.000001");
+        assert_eq!(told(0.0, 1e-6, Dimension::LENGTH), "0\u{a0}mm within 1\u{a0}µm");
     }
 
     #[test]
@@ -308,12 +353,12 @@ mod tests {
 
     #[test]
     fn value_and_uncertainty_end_at_the_same_decimal() {
-        assert_eq!(with_uncertainty(20.0, Some(0.123), Dimension::FORCE), "20.00 ± 0.12\u{a0}N");
-        assert_eq!(with_uncertainty(-0.002_5, Some(0.000_01), Dimension::LENGTH), "−2.500 ± 0.010\u{a0}mm");
+        assert_eq!(with_uncertainty(20.0, Some(0.123), Dimension::FORCE), "20.00(0.12)\u{a0}N");
+        assert_eq!(with_uncertainty(-0.002_5, Some(0.000_01), Dimension::LENGTH), "−2.500(0.010)\u{a0}mm");
         assert_eq!(with_uncertainty(5.0, None, Dimension::NUMBER), "5");
-        assert_eq!(with_uncertainty(5.0, Some(0.0), Dimension::FORCE), "5.000 ± 0\u{a0}N");
-        assert_eq!(with_uncertainty(-1.7e-7, Some(2.345e-8), Dimension::NUMBER), "(−1.70 ± 0.23) × 10⁻⁷");
-        assert_eq!(with_uncertainty(2.5e8, Some(1.25e6), Dimension::NUMBER), "(2.500 ± 0.013) × 10⁸");
+        assert_eq!(with_uncertainty(5.0, Some(0.0), Dimension::FORCE), "5.000(0)\u{a0}N");
+        assert_eq!(with_uncertainty(-1.7e-7, Some(2.345e-8), Dimension::NUMBER), "−1.70(0.23) × 10⁻⁷");
+        assert_eq!(with_uncertainty(2.5e8, Some(1.25e6), Dimension::NUMBER), "2.500(0.013) × 10⁸");
         let column = parts(1.7e-7, Some(Known::surely(2.3e-8)), Dimension::NUMBER);
         assert_eq!((column.value.as_str(), column.standard.as_deref()), ("1.70 × 10⁻⁷", Some("0.23 × 10⁻⁷")));
     }

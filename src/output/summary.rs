@@ -196,7 +196,7 @@ pub struct Quantity {
     /// Effective degrees of freedom of u, of a list entry by entry; absent where they are more than 10,000.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub degrees_of_freedom: Option<Uncertainty>,
-    /// The factor of the expanded uncertainty U = k·u, which holds 95.45 %; 2 where it is absent.
+    /// The factor of the expanded uncertainty U = k·u, which holds about 95 %; 2 where it is absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<Uncertainty>,
 }
@@ -253,11 +253,13 @@ pub struct ConditionSummary {
     pub margin: Option<f64>,
     pub unit: String,
     pub u: Option<f64>,
-    /// The factor of the expanded uncertainty U = k·u of the value, which holds 95.45 %; 2 where it is absent.
+    /// The factor of the expanded uncertainty U = k·u of the value, which holds about 95 %; 2 where it is absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<f64>,
     /// w = U = k·u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
     pub guard_band: Option<f64>,
+    /// Probability that what was measured conforms; null where its uncertainty is not known.
+    pub conforms: Option<f64>,
     /// Why it is inconclusive.
     pub reason: Option<String>,
 }

@@ -1,7 +1,42 @@
-//! What a plan does not say of its rig, and no uncertainty knows therefore. In: the rig of a plan. Out: words. It judges nothing: a
+//! What a plan does not say of striker, specimen and rig, and no uncertainty knows therefore. In: a plan. Out: words. It judges nothing: a
 //! plan may well leave out what is small.
 
-use super::{Calibration, RigPlan};
+use super::{BlowOn, Calibration, Plan, ProcedureKind, RigPlan};
+
+impl Plan {
+    /// Uncertainties of the striker, the specimen and the rig that the plan does not declare and the procedure at this place depends on.
+    #[must_use]
+    pub fn undeclared(&self, procedure: usize) -> Vec<&'static str> {
+        let kind = self.procedures.get(procedure).map(|planned| &planned.kind);
+        let blow = match kind {
+            Some(ProcedureKind::Impact(impact)) => Some((impact.striker, Some(impact.mass_uncertainty), None)),
+            Some(ProcedureKind::StoreyImpact(impact)) => Some((impact.striker, None, Some(impact.specimen))),
+            Some(ProcedureKind::Escalate(row)) => Some(match &row.blow {
+                BlowOn::Specimen(impact) => (impact.striker, Some(impact.mass_uncertainty), None),
+                BlowOn::Storey(impact) => (impact.striker, None, Some(impact.specimen)),
+            }),
+            _ => None,
+        };
+        let striker = blow.and_then(|(striker, ..)| self.strikers.get(striker));
+        let frame = match kind {
+            Some(ProcedureKind::Shake(shake)) => Some(shake.specimen),
+            _ => blow.and_then(|(.., frame)| frame),
+        };
+        let frame = frame.and_then(|specimen| self.specimens.get(specimen)).and_then(|specimen| specimen.frame.as_ref());
+        let mass_of_frame = frame.is_some_and(|frame| {
+            let storeys = frame.storeys.iter().any(|storey| storey.mass_uncertainty == 0.0);
+            if frame.storeys.is_empty() { frame.matrix_uncertainty[0] == 0.0 } else { storeys }
+        });
+        let mass_of_one = matches!(blow, Some((_, Some(0.0), _)));
+        let own = [
+            ("the mass of the striker", striker.is_some_and(|striker| striker.mass_uncertainty == 0.0)),
+            ("the velocity of the striker", striker.is_some_and(|striker| striker.velocity_uncertainty == 0.0)),
+            ("the mass of the specimen", mass_of_one || mass_of_frame),
+        ];
+        let own = own.into_iter().filter(|(_, lacking)| *lacking).map(|(name, _)| name);
+        own.chain(self.rig.undeclared(self.degrees_of_freedom())).collect()
+    }
+}
 
 impl RigPlan {
     /// Uncertainties of the rig that the plan does not declare of one of so many axes at least.
@@ -35,6 +70,32 @@ const DISPLACEMENT: &str = "the calibration of the displacement";
 mod tests {
     use crate::plan::{Calibration, DriftCheck, ZeroAfter};
     use crate::run::testing::empty_plan;
+
+    /// Of a blow striker and specimen too, and of nothing that was declared.
+    #[test]
+    fn what_is_not_declared_of_striker_and_specimen_is_named() {
+        use crate::formula::Formula;
+        use crate::plan::ProcedureKind;
+        use crate::run::testing::{elastic_plan, impact, ramp, struck_frame};
+        let blow = ProcedureKind::Impact(impact(Formula::Constant(300.0)));
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-3)), blow]);
+        assert_eq!(plan.undeclared(0).len(), 4);
+        assert_eq!(
+            plan.undeclared(1)[..3],
+            ["the mass of the striker", "the velocity of the striker", "the mass of the specimen"]
+        );
+        plan.strikers[0].velocity_uncertainty = 0.01;
+        if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
+            blow.mass_uncertainty = 0.01;
+        }
+        assert_eq!(plan.undeclared(1)[..2], ["the mass of the striker", "the calibration of the force"]);
+        let mut frame = struck_frame();
+        assert!(frame.undeclared(0).contains(&"the mass of the specimen"));
+        if let Some(frame) = &mut frame.specimens[0].frame {
+            *frame = frame.with(|storeys| storeys.iter_mut().for_each(|storey| storey.mass_uncertainty = 0.01));
+        }
+        assert!(!frame.undeclared(0).contains(&"the mass of the specimen"));
+    }
 
     #[test]
     fn what_is_not_declared_is_named() {

@@ -311,9 +311,13 @@ pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
     })
 }
 
-/// The numbers that a run told, in the order of a layout; NaN where one does not exist.
-pub(super) fn numbers_told(layout: &[(&'static str, usize)], results: &[NamedResult]) -> Vec<f64> {
+/// The numbers that a run told, in the order of a layout; NaN where one does not exist. The largest base shear is that of the recorded
+/// way, in which noise is as it is in the same way in finer steps.
+pub(super) fn numbers_told(layout: &[(&'static str, usize)], results: &[NamedResult], max_base_shear: f64) -> Vec<f64> {
     let of = |(name, count): &(&'static str, usize)| {
+        if *name == "max_base_shear" {
+            return vec![max_base_shear];
+        }
         let values = match results.iter().find(|result| result.name == *name).map(|result| &result.value) {
             Some(ResultValue::List(values)) => values.clone(),
             Some(ResultValue::Number { value, .. }) => value.iter().copied().collect(),

@@ -79,8 +79,12 @@ pub(super) fn propagate(
         Ok(Job { run, scale, distortion, periods })
     };
     let rules = path.rules();
-    let study =
-        doubts.study(&sources, doubts.effort(history.steps.len(), rules.len(), &sources), numbers_told(&layout, results), job)?;
+    let study = doubts.study(
+        &sources,
+        doubts.effort(history.steps.len(), rules.len(), &sources),
+        numbers_told(&layout, results, found.between.max_base_shear),
+        job,
+    )?;
     let far = |floors: &Floors| farthest(floors.max_displacement.iter().copied());
     let runs = Bounded::new(far(&found.between), numbers(&as_it_was, &found.between).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {

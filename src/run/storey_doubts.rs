@@ -73,7 +73,7 @@ pub(super) fn propagate(
     let study = doubts.study(
         &sources,
         doubts.effort(history.floors.len(), rules.len(), &sources),
-        numbers_told(&layout, results),
+        numbers_told(&layout, results, found.floors.between.max_base_shear),
         job,
     )?;
     let far = |found: &BlowOutcome| farthest(found.floors.between.max_displacement.iter().copied());

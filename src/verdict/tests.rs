@@ -218,6 +218,32 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
     assert_eq!(assess_condition(&simple, DecisionRule::Simple, &record).verdict, Verdict::Pass);
 }
 
+/// 8 with u = 0.125 (normal): at its limit one half, at one u inside 84.1 %; between limits ±0.125 either side 68.3 %, which U exceeds.
+#[test]
+fn a_probability_of_conformity_is_told_under_either_rule() {
+    let mut record = record(Outcome::Completed);
+    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: Some(0.125) };
+    for rule in [DecisionRule::Simple, DecisionRule::Guarded] {
+        let of = |test| {
+            let found = assess_condition(&condition(result("max_displacement"), test), rule, &record);
+            (found.conforms.unwrap(), found.wider_than_tolerance)
+        };
+        let near =
+            |found: (f64, bool), p: f64, wider| assert!((found.0 - p).abs() < 1e-6 && found.1 == wider, "{found:?}, not {p}");
+        near(of(compare(Comparison::LessEqual, 8.0)), 0.5, false);
+        near(of(compare(Comparison::LessEqual, 8.125)), 0.841_344_7, false);
+        near(of(compare(Comparison::Greater, 8.125)), 0.158_655_3, false);
+        let within =
+            |tolerance| Test::Within { target: Formula::Constant(8.0), tolerance: Formula::Constant(tolerance), relative: false };
+        near(of(within(0.125)), 0.682_689_5, true);
+        near(of(within(0.25)), 0.954_499_7, false);
+        near(of(within(0.5)), 0.999_936_7, false);
+    }
+    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: None };
+    let unknown = condition(result("max_displacement"), compare(Comparison::LessEqual, 8.5));
+    assert_eq!(assess_condition(&unknown, DecisionRule::Simple, &record).conforms, None);
+}
+
 /// On a real rig no guard band follows from a budget without both calibrations; on a simulated one it does.
 #[test]
 fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {

@@ -27,8 +27,29 @@ pub(super) fn table(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, bo
     let asked = asked(run, index, &procedure.history);
     budgets.retain(|budget| is_told(budget, &asked));
     if !budgets.is_empty() {
-        body.extend(budgets.iter().map(|budget| one(budget, procedure)));
-        body.push(Block::note(note(run, &procedure.history, &budgets)));
+        let partial = Partial::of(run);
+        body.extend(budgets.iter().map(|budget| one(budget, procedure, partial)));
+        body.push(Block::note(note(run, (index, &procedure.history), &budgets)));
+    }
+}
+
+/// Whether the plan declares the calibrations that every reading enters by.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Partial {
+    Whole,
+    /// It does not, and the rig is simulated.
+    Simulated,
+    /// It does not, and no expanded uncertainty follows.
+    Real,
+}
+
+impl Partial {
+    pub fn of(run: &Run<'_>) -> Self {
+        match (run.plan.rig.undeclared_calibrations(run.plan.degrees_of_freedom()).is_empty(), run.plan.rig.link.as_real()) {
+            (true, _) => Self::Whole,
+            (false, None) => Self::Simulated,
+            (false, Some(_)) => Self::Real,
+        }
     }
 }
 
@@ -90,16 +111,17 @@ fn is_told(budget: &Budget<'_>, asked: &[(&'static str, Option<usize>)]) -> bool
     asked.any(|named| named.or(largest) == Some(entry))
 }
 
-fn one(budget: &Budget<'_>, procedure: &ProcedureRecord) -> Block {
+fn one(budget: &Budget<'_>, procedure: &ProcedureRecord, partial: Partial) -> Block {
+    let kind = if partial == Partial::Whole { "Uncertainty budget" } else { "Partial uncertainty budget" };
     let which = budget.entry.map_or_else(String::new, |entry| format!(", {} {}", entries_of(budget, procedure), entry + 1));
     let columns = vec![
-        Column::words(format!("Uncertainty budget of {}{which}", words(budget.result.name)), 3),
-        Column::words("Input ± u", 2),
+        Column::words(format!("{kind} of {}{which}", words(budget.result.name)), 3),
+        Column::words("Input (u)", 2),
         Column::numbers("Sensitivity"),
         Column::numbers("Contribution"),
         Column::numbers("Of u²"),
     ];
-    Block::Table(Table { columns, rows: rows(budget, procedure) })
+    Block::Table(Table { columns, rows: rows(budget, procedure, partial) })
 }
 
 /// What the entries of a list are.
@@ -115,7 +137,7 @@ fn entries_of(budget: &Budget<'_>, procedure: &ProcedureRecord) -> &'static str 
     }
 }
 
-fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord) -> Vec<Vec<Text>> {
+fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, partial: Partial) -> Vec<Vec<Text>> {
     let Budget { result, value, uncertainty, known, lines, .. } = budget;
     let amount = |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
     let (told, small): (Vec<&Line>, Vec<&Line>) = lines.iter().partition(|line| budget.share(line) >= SMALL);
@@ -143,6 +165,14 @@ fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord) -> Vec<Vec<Text>> {
         if expansion::is_more(*known) { format!(", ν = {}", expansion::degrees_text(*known)) } else { String::new() };
     let whole =
         format!("combined: {}\u{a0}{}, U = {factor}\u{a0}u{of_degrees}", number::plus_minus(&parts.value, &expanded), parts.unit);
+    let whole = if partial == Partial::Real {
+        format!(
+            "combined, without the calibrations: {}, u in brackets",
+            number::with_uncertainty(*value, Some(*uncertainty), result.dimension)
+        )
+    } else {
+        whole
+    };
     rows.push(vec![whole.into(), "".into(), "".into(), amount(*uncertainty), "100\u{a0}%".into()]);
     rows
 }
@@ -169,9 +199,9 @@ fn named(line: &Line) -> Text {
 fn input(line: &Line) -> String {
     match (line.value, line.uncertainty, line.dimension) {
         (Some(value), Some(u), Dimension::NUMBER) if line.from == From::Rig => {
-            format!("{value} ± {}\u{a0}%", minus(&significant(100.0 * u, 2)))
+            format!("{value} ({}\u{a0}%)", minus(&significant(100.0 * u, 2)))
         }
-        (Some(0.0), Some(u), dimension) => format!("0 ± {}", number::stated(u, dimension)),
+        (Some(0.0), Some(u), dimension) => format!("0 ({})", number::part_of(u, u, 2, dimension)),
         (Some(value), Some(u), dimension) => number::with_uncertainty(value, Some(u.abs()), dimension),
         _ => "—".to_owned(),
     }
@@ -201,25 +231,29 @@ fn how(history: &History) -> &'static str {
         History::Impact(_) | History::StoreyImpact(_) | History::Shake(_) | History::Escalate(_) => {
             "each input in turn was moved by ± its standard uncertainty and the run integrated again along its own recorded \
              force–displacement path; half the difference of the results is the contribution, the root sum of squares is u (JCGM 100:2008). \
-             The scheme of integration, the contact law and the slowness of the test are not among the inputs"
+             An input at its bound was moved to the other side alone. The time step contributes the most that the same path, integrated \
+             again in half and a quarter of it, differs by. The contact law and the slowness of the test are not among the inputs"
         }
     }
 }
 
-fn note(run: &Run<'_>, history: &History, budgets: &[Budget<'_>]) -> String {
+fn note(run: &Run<'_>, (index, history): (usize, &History), budgets: &[Budget<'_>]) -> String {
     let told: Vec<&Line> =
         budgets.iter().flat_map(|budget| budget.lines.iter().filter(|line| budget.share(line) >= SMALL)).collect();
     let more = budgets.iter().any(|budget| expansion::is_more(budget.known));
     let factor = if more { "k by Student's t" } else { "k = 2" };
     let mut text = format!("Linearised, {factor}: {}.", how(history));
-    let undeclared = run.plan.rig.undeclared(run.plan.degrees_of_freedom());
+    let undeclared = run.plan.undeclared(index);
     if !undeclared.is_empty() {
-        text += " Not counted, for the plan does not declare it: ";
+        text += " Not included in the budget (not declared in the plan): ";
         text += &undeclared.join(", ");
         text += ".";
     }
+    if Partial::of(run) != Partial::Whole {
+        text += " A budget without the calibrations of force and displacement is partial: it tells noise, resolution and what else is declared.";
+    }
     if more {
-        text += " U = k·u holds 95.45\u{a0}% of the cases: k is Student's t of ν effective degrees of freedom, ν = u⁴/Σ uᵢ⁴/νᵢ (Welch and \
+        text += " U = k·u holds about 95\u{a0}% of the cases: k is Student's t of ν effective degrees of freedom, ν = u⁴/Σ uᵢ⁴/νᵢ (Welch and \
                  Satterthwaite; JCGM 100:2008, G.4), of a fit its readings less its numbers, of draws their number, of all else infinite.";
     }
     if budgets.iter().any(|budget| budget.lines.iter().any(|line| line.draws.is_some())) {

@@ -117,7 +117,7 @@ fn doubtful(value: f64, uncertainty: f64, dimension: Dimension) -> String {
     if uncertainty == 0.0 {
         return number::stated(value, dimension);
     }
-    format!("{} (± u)", number::with_uncertainty(value, Some(uncertainty), dimension))
+    format!("{}, u in brackets", number::with_uncertainty(value, Some(uncertainty), dimension))
 }
 
 pub(super) fn settling(settle: Settle) -> String {

@@ -22,13 +22,13 @@ pub(super) fn table(fit: &MultilinearFit, reach: f64, body: &mut Vec<Block>) {
     };
     let columns = vec![
         Column::words("Stretch", 1),
-        Column::numbers("Stiffness (± u)"),
-        Column::numbers("Ends at (± u)"),
-        Column::numbers("With the force (± u)"),
+        Column::numbers("Stiffness (u)"),
+        Column::numbers("Ends at (u)"),
+        Column::numbers("With the force (u)"),
     ];
     body.push(Block::Table(Table { columns, rows: fit.stiffnesses.iter().enumerate().map(row).collect() }));
     body.push(Block::note(format!(
-        "Straight stretches that meet at breaks, by least squares over the stretches and the breaks together; ± standard error of \
+        "Straight stretches that meet at breaks, by least squares over the stretches and the breaks together; in brackets the standard error of \
          the linearised model; R² = {:.6}.{}",
         fit.r_squared,
         criterion(fit)

@@ -188,7 +188,7 @@ pub(super) fn storey_table<S: Floors>(
     let cell = |name: &str, storey: usize| procedure.result(name).map_or_else(|| "—".into(), |result| entry(result, storey));
     let with_u = |title: &str, name: &str| {
         let known = procedure.result(name).is_some_and(|result| !result.contributions.is_empty());
-        Column::numbers(if known { format!("{title} (± u)") } else { title.to_owned() })
+        Column::numbers(if known { format!("{title} (u)") } else { title.to_owned() })
     };
     let columns = vec![
         Column::words("Storey", 1),

@@ -3,7 +3,9 @@
 
 use super::super::document::{Block, Column, Style, Table, Text, Verdict as Stated};
 use super::super::{IssueKind, Run, deviations, expansion, issue, number};
-use crate::plan::DecisionRule;
+use super::budget;
+use crate::formula::{Part, ResultValue};
+use crate::plan::{Condition, DecisionRule, Requirement};
 use crate::record::{EventKind, Outcome};
 use crate::run::rehearsal;
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
@@ -85,16 +87,37 @@ pub(super) fn requirements(run: &Run<'_>, body: &mut Vec<Block>) {
     let columns = vec![
         Column::words("Requirement", 1),
         Column::numbers("Value ± U"),
-        Column::numbers("Limit"),
+        Column::numbers("Accepted"),
         Column::numbers("Margin"),
+        Column::numbers("Conforms"),
         Column::short("Verdict"),
     ];
-    let requirements = run.assessment.requirements.iter();
+    let requirements = run.assessment.requirements.iter().zip(&run.plan.requirements);
+    let marked = run.plan.requirements.iter().flat_map(|requirement| &requirement.conditions).any(|it| !is_sure(run, it));
     body.push(Block::Table(Table {
         columns,
-        rows: requirements.flat_map(|requirement| rows(requirement, run.assessment.rule)).collect(),
+        rows: requirements.flat_map(|(requirement, planned)| rows(run, requirement, planned)).collect(),
     }));
     body.push(Block::note(rule(run)));
+    if marked {
+        body.push(Block::note(
+            "† U of this value is an estimate: it reads a result that does not follow an input smoothly, or of which the record leaves \
+             something open. It need not hold about 95\u{a0}% of the cases.",
+        ));
+    }
+}
+
+/// Whether no result that a condition reads is marked as an estimate.
+fn is_sure(run: &Run<'_>, condition: &Condition) -> bool {
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    references.into_iter().filter(|reference| reference.part == Part::Value).all(|reference| {
+        let result = run.record.procedures.get(reference.procedure.0).and_then(|procedure| procedure.result(reference.name));
+        result.is_none_or(|result| match &result.value {
+            ResultValue::Number { .. } => budget::is_sure(result, 0),
+            ResultValue::List(values) => (0..values.len()).all(|entry| budget::is_sure(result, entry)),
+        })
+    })
 }
 
 /// The decision rule in words with the risk it takes, and what the columns are.
@@ -102,53 +125,64 @@ fn rule(run: &Run<'_>) -> String {
     let rule = match run.assessment.rule {
         DecisionRule::Simple => {
             "Decision rule: simple acceptance (ILAC-G8:09/2019). The value alone is held against the limit, whatever its \
-             uncertainty: for a value at its limit a wrong decision is as likely as a right one."
+             uncertainty: for a value at its limit a wrong decision is as likely as a right one, and where U exceeds the tolerance a value \
+             may be accepted that probably does not conform."
                 .to_owned()
         }
         DecisionRule::Guarded => format!(
             "Decision rule: guarded (after ILAC-G8:09/2019), guard band w = {} of the distance between value and limit. A value \
-             passes if it keeps the limit by at least w, fails if it misses it by more than w, and is inconclusive between: a wrong \
-             pass or fail has a probability below 2.5\u{a0}%. A value of which no uncertainty is known is held against the limit as \
-             it is.",
+             passes if it keeps the limit by at least w, fails if it misses it by more than w, and is inconclusive between. As far as \
+             the budgets go, a wrong pass or fail has a probability below 2.5\u{a0}% at a limit on one side, and below 5\u{a0}% at limits on \
+             both. A measured value of which no uncertainty is known is inconclusive; what is exact (counts, the energy balance) is held \
+             against the limit as it is.",
             expansion::equation(run.assessment)
         ),
     };
     let expanded = match expansion::largest(run.assessment) {
         Some(factor) => format!(
-            "U = k·u is the expanded uncertainty where a measured result carries one: it holds 95.45\u{a0}% of the cases, with k from \
+            "U = k·u is the expanded uncertainty where a measured result carries one: it holds about 95\u{a0}% of the cases, with k from \
              Student's t of the effective degrees of freedom (JCGM 100:2008, G.4), here up to {factor}."
         ),
-        None => "U = 2u is the expanded uncertainty (k = 2) where a measured result carries one.".to_owned(),
+        None => "U = 2u is the expanded uncertainty (k = 2, about 95\u{a0}%) where a measured result carries one.".to_owned(),
     };
-    format!("{rule} {expanded} Margin is the distance inside the limit; a negative margin is the distance by which it is missed.")
+    format!(
+        "{rule} {expanded} Conforms is the probability that what was measured lies inside the limit, by that uncertainty (JCGM 106). Margin is the distance inside the limit; a negative margin is the distance by which it is missed."
+    )
 }
 
-fn rows(requirement: &RequirementOutcome, rule: DecisionRule) -> Vec<Vec<Text>> {
+fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) -> Vec<Vec<Text>> {
+    let rule = run.assessment.rule;
     if requirement.conditions.is_empty() {
         let none = || Text::from("—");
-        return vec![vec![requirement.label.as_str().into(), none(), none(), none(), word(requirement.verdict)]];
+        return vec![vec![requirement.label.as_str().into(), none(), none(), none(), none(), word(requirement.verdict)]];
     }
-    let of = |(index, condition): (usize, &ConditionOutcome)| {
+    let of = |(index, (condition, planned)): (usize, (&ConditionOutcome, &Condition))| {
         let label = if index == 0 { Text::from(requirement.label.as_str()).line() } else { Text::new() };
         let mut name = label.code(&condition.text);
         if let Some(reason) = &condition.reason {
             name = name.line().soft(reason);
         }
+        let conforms = condition.conforms.map_or_else(|| "—".to_owned(), number::probability);
+        if condition.wider_than_tolerance && rule == DecisionRule::Simple {
+            name = name.line().soft(format!("U exceeds the tolerance: the probability of conformity is {conforms}"));
+        }
+        let mark = if condition.uncertainty.is_some() && !is_sure(run, planned) { budget::MARK } else { "" };
         let margin = number::margin(condition).map_or_else(|| "—".into(), Text::from);
         let margin = match (rule, number::guard_band(condition)) {
             (DecisionRule::Simple, _) => margin,
             (DecisionRule::Guarded, Some(band)) => margin.line().soft(format!("w = {band}")),
-            (DecisionRule::Guarded, None) => margin.line().soft("u unknown"),
+            (DecisionRule::Guarded, None) => margin,
         };
         vec![
             name,
-            number::value(condition).map_or_else(|| Text::missing("no value"), Text::from),
+            number::value(condition).map_or_else(|| Text::missing("no value"), |value| Text::from(value + mark)),
             number::bound(condition).into(),
             margin,
+            conforms.into(),
             word(condition.verdict),
         ]
     };
-    requirement.conditions.iter().enumerate().map(of).collect()
+    requirement.conditions.iter().zip(&planned.conditions).enumerate().map(of).collect()
 }
 
 fn word(verdict: Verdict) -> Text {

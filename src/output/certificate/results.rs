@@ -69,7 +69,8 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     };
     let texts: Vec<String> = procedure.inputs.iter().map(text).collect();
     if !texts.is_empty() {
-        let kind = if procedure.inputs.iter().any(|(_, estimate, _)| estimate.uncertainty.is_some()) { " (± u)" } else { "" };
+        let kind =
+            if procedure.inputs.iter().any(|(_, estimate, _)| estimate.uncertainty.is_some()) { " (u in brackets)" } else { "" };
         body.push(Block::note(format!("Run with{kind}: {}.", texts.join("; "))));
     }
 }
@@ -105,7 +106,8 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
     };
     let all: Vec<Option<Known>> = results.iter().map(|result| known(result)).collect();
     // A column of twos says nothing.
-    let factors = all.iter().flatten().any(|known| expansion::is_more(*known));
+    let partial = budget::Partial::of(run) == budget::Partial::Real;
+    let factors = !partial && all.iter().flatten().any(|known| expansion::is_more(*known));
     let mut columns = vec![
         Column::words("Result", 1),
         Column::numbers("Value"),
@@ -114,11 +116,18 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
         Column::short("Unit"),
         Column::short("In the plan"),
     ];
+    // A partial budget of a real rig gives no U.
+    if partial {
+        columns[3] = Column::numbers("U: none, partial");
+    }
     if factors {
         columns.insert(3, Column::numbers("k (ν)"));
     }
     let rows = results.iter().zip(&all).map(|(result, known)| {
         let mut row = row(result, *known);
+        if partial {
+            row[3] = "—".into();
+        }
         if factors {
             let text = known.filter(|known| known.standard > 0.0 && matches!(result.value, ResultValue::Number { .. }));
             let text = text.map(|known| format!("{} ({})", expansion::factor(known), expansion::degrees_text(known)));
@@ -137,6 +146,7 @@ fn row(result: &NamedResult, known: Option<Known>) -> Vec<Text> {
             [format!("{value:.6}").into(), dash(), dash(), dash()]
         }
         ResultValue::Number { value: Some(value), uncertainty } => {
+            let uncertainty = uncertainty.filter(|standard| *standard > 0.0);
             let known = uncertainty.map(|standard| Known { standard, ..known.unwrap_or(Known::surely(standard)) });
             let parts = number::parts(*value, known, result.dimension);
             let unit = if parts.unit.is_empty() { dash() } else { parts.unit.into() };
@@ -161,7 +171,7 @@ fn fitted(line: &str, slope: (&str, Dimension), intercept: (&str, Dimension), fi
         format!("{name} = {}", number::with_uncertainty(value, Some(error), dimension))
     };
     Block::note(format!(
-        "Least-squares line {line}: {}, {} (± standard error), R² = {:.6}.",
+        "Least-squares line {line}: {}, {} (in brackets the standard error), R² = {:.6}.",
         number(slope, fit.slope, fit.slope_error),
         number(intercept, fit.intercept, fit.intercept_error),
         fit.r_squared
@@ -180,7 +190,7 @@ fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
     };
     let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
     Block::note(format!(
-        "Relaxation by least squares over {readings} readings in {} pauses: {model}, τ = {} (± standard error); the readings scatter \
+        "Relaxation by least squares over {readings} readings in {} pauses: {model}, τ = {} (in brackets the standard error); the readings scatter \
          by {} about it. The pauses left {} to relax, at most.",
         holds.len(),
         with(fit.time_constant, Dimension::TIME),
@@ -204,7 +214,7 @@ fn relaxed_by_a_law(fit: &ReachedFit, holds: &[Hold]) -> Block {
     let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
     Block::note(format!(
         "Relaxation by least squares over {readings} readings in {} pauses, each step by its own time: {law} of each increment of the \
-         reached force R̂, {share} = {}, {} = {} (± standard error); the readings scatter by {} about it.{chosen} The worst pause ended \
+         reached force R̂, {share} = {}, {} = {} (in brackets the standard error); the readings scatter by {} about it.{chosen} The worst pause ended \
          while the force fell by {}.",
         holds.len(),
         with(best.share, Dimension::NUMBER),

@@ -234,6 +234,7 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
         u: outcome.uncertainty.and_then(finite),
         k: outcome.known().filter(|known| expansion::degrees(*known).is_some()).map(Known::coverage),
         guard_band: outcome.guard_band.and_then(finite),
+        conforms: outcome.conforms.and_then(finite),
         reason: outcome.reason.clone(),
     }
 }

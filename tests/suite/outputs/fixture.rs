@@ -416,6 +416,8 @@ fn assessment(largest: f64, error: f64) -> Assessment {
             margin: Some(limit - value),
             guard_band: None,
             margin_degrees: f64::INFINITY,
+            conforms: None,
+            wider_than_tolerance: false,
             reason: None,
         }],
     };
