@@ -123,6 +123,11 @@ pub trait Results {
     fn moved(&self, _: Source) -> f64 {
         0.0
     }
+
+    /// Why a measured result that exists has no expanded uncertainty; None where it has one, or is exact.
+    fn no_uncertainty(&self, _: ResultReference) -> Option<String> {
+        None
+    }
 }
 
 /// No procedure has run: constants only.

@@ -97,7 +97,7 @@ pub enum Source {
     LoopSampling {
         procedure: ProcedureId,
     },
-    /// Times are told to a whole step.
+    /// The time step of an integration, and that times are told to a whole one: the run is integrated again in finer steps.
     TimeStep {
         procedure: ProcedureId,
     },
@@ -196,6 +196,10 @@ impl Results for Moved<'_> {
 
     fn degrees(&self, source: Source) -> f64 {
         self.results.degrees(source)
+    }
+
+    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+        self.results.no_uncertainty(reference)
     }
 }
 

@@ -2,14 +2,17 @@
 //! value, limit, margin and, under the guarded rule, guard band. A missed requirement is a verdict, never an error.
 
 mod growing;
+mod partial;
 
-use crate::formula::{Formula, FormulaError, Operator, ProcedureId, ResultReference, ResultValue, Results};
+use crate::formula::{Formula, FormulaError, Operator, Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::mechanics::energy::WORTHLESS;
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement, Test};
 use crate::quantity::Dimension;
+use crate::quantity::display::stated;
 use crate::record::{Beyond, BlowHistory, Outcome, ProcedureRecord, Record};
 use crate::rig::failpoint::{self, Guarding};
 use crate::uncertainty::{FEW, Known, known};
+pub(crate) use partial::Declared;
 
 /// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,7 +77,8 @@ pub struct ConditionOutcome {
     pub bound: Option<Bound>,
     /// Distance inside the bound, SI; negative: missed by so much.
     pub margin: Option<f64>,
-    /// w = U = k·u of the margin under the guarded rule, SI; None under the simple one, and where no uncertainty is known.
+    /// w = U = k·u of the margin under the guarded rule, SI; None under the simple one, of what is exact, and where no
+    /// uncertainty is known.
     pub guard_band: Option<f64>,
     /// Effective degrees of freedom of the uncertainty of the margin, under the guarded rule.
     pub margin_degrees: f64,
@@ -101,8 +105,11 @@ pub enum Bound {
 #[must_use]
 pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     let rule = plan.decision_rule;
-    let requirements: Vec<_> =
-        plan.requirements.iter().map(|requirement| assess_requirement(requirement, rule, record)).collect();
+    let requirements: Vec<_> = plan
+        .requirements
+        .iter()
+        .map(|requirement| assess_requirement(requirement, rule, record, &Declared::of(plan, record)))
+        .collect();
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
         Outcome::Blocked { .. } => Verdict::Inconclusive,
@@ -114,10 +121,16 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     Assessment { verdict, rule, requirements }
 }
 
-fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Record) -> RequirementOutcome {
+/// `results` are those of the record, as far as their uncertainties are declared.
+fn assess_requirement(
+    requirement: &Requirement,
+    rule: DecisionRule,
+    record: &Record,
+    results: &dyn Results,
+) -> RequirementOutcome {
     let assess = |condition: &Condition| {
-        let outcome = assess_condition(condition, rule, record);
-        unless_doubtful(condition, rule, outcome, record)
+        let outcome = assess_condition(condition, rule, results);
+        unless_doubtful(condition, rule, outcome, (record, results))
     };
     let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions.iter().map(|condition| condition.verdict).fold(Verdict::Pass, Verdict::max);
@@ -128,18 +141,23 @@ fn assess_requirement(requirement: &Requirement, rule: DecisionRule, record: &Re
 type Read<'a> = (&'a ProcedureRecord, &'static str);
 
 /// What was reckoned and yet decides nothing is inconclusive, and says why.
-fn unless_doubtful(condition: &Condition, rule: DecisionRule, outcome: ConditionOutcome, record: &Record) -> ConditionOutcome {
+fn unless_doubtful(
+    condition: &Condition,
+    rule: DecisionRule,
+    outcome: ConditionOutcome,
+    (record, results): (&Record, &dyn Results),
+) -> ConditionOutcome {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
     let procedure = |reference: &ResultReference| Some((record.procedures.get(reference.procedure.0)?, reference.name));
     let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
     let unfinished = || {
         let no_peak = || {
-            growing::undecided(condition, rule, record, |procedure| {
+            growing::undecided(condition, rule, results, |procedure| {
                 record.procedures.get(procedure.0).map(|procedure| (&procedure.history, procedure.name.as_str()))
             })
         };
-        match cut_short(&read).or_else(|| unbalanced(&read)) {
+        match cut_short(&read).or_else(|| unbalanced(&read)).or_else(|| above_critical(&read)) {
             Some(why) => Some(outcome.reason.clone().unwrap_or(why)),
             None => no_peak(),
         }
@@ -156,7 +174,7 @@ fn cut_short(read: &[Read<'_>]) -> Option<String> {
     Some(format!("{} did not run to its end", procedure.name))
 }
 
-/// Results that a balance of energy says nothing of: what is given, and the balance itself.
+/// Results that neither a balance of energy nor the length of the steps says anything of: what is given, and the balance itself.
 const BESIDE_THE_BALANCE: [&str; 7] =
     ["energy_error", "energy_errors", "time_step", "critical_time_step", "steps", "periods", "levels"];
 
@@ -165,6 +183,21 @@ fn unbalanced(read: &[Read<'_>]) -> Option<String> {
     let told = |(procedure, result): &&Read<'_>| !BESIDE_THE_BALANCE.contains(result) && off(procedure);
     let (procedure, _) = read.iter().find(told)?;
     Some(format!("the energy balance of {} is off by more than half of what was put in", procedure.name))
+}
+
+/// Steps longer than the critical one do not follow the motion: what they come to is none of the specimen's.
+fn above_critical(read: &[Read<'_>]) -> Option<String> {
+    let of = |(procedure, result): &Read<'_>| {
+        let (step, critical) = procedure.history.above_critical().filter(|_| !BESIDE_THE_BALANCE.contains(result))?;
+        Some(longer_than_critical(&procedure.name, step, critical))
+    };
+    read.iter().find_map(of)
+}
+
+/// That steps (s) are longer than the critical one (s).
+fn longer_than_critical(name: &str, step: f64, critical: f64) -> String {
+    let (step, critical) = (stated(step, Dimension::TIME), stated(critical, Dimension::TIME));
+    format!("the time step of {name}, {step}, is above the critical one, {critical} (W701)")
 }
 
 /// Whether the balance of a procedure, or of one of its blows, is off by more than it may be.
@@ -187,7 +220,10 @@ pub(crate) fn assess_on_blow(
     (own, blow): (ProcedureId, &BlowHistory),
 ) -> ConditionOutcome {
     let outcome = assess_condition(condition, rule, results);
-    match growing::undecided_by(condition, rule, results, (own, blow)) {
+    let impact = blow.impact();
+    let steps = (impact.time_step, impact.critical_time_step);
+    let longer = (steps.0 > steps.1).then(|| longer_than_critical("the blow", steps.0, steps.1));
+    match longer.or_else(|| growing::undecided_by(condition, rule, results, (own, blow))) {
         Some(why) => ConditionOutcome { verdict: Verdict::Inconclusive, reason: Some(why), ..outcome },
         None => outcome,
     }
@@ -227,12 +263,16 @@ pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record
         DecisionRule::Simple => None,
         DecisionRule::Guarded => known.and_then(|(value, bound)| margin_known(condition, value, bound, record)),
     };
-    let guard_band = margin_known.map(Known::expanded);
-    let verdict = match known {
-        Some((value, bound)) => bound.verdict(value, guard_band),
-        None => Verdict::Inconclusive,
+    let unguarded = match rule {
+        DecisionRule::Simple => None,
+        DecisionRule::Guarded => no_uncertainty(condition, record),
     };
-    let missing = value.as_ref().err().or(bound.as_ref().err()).map(ToString::to_string);
+    let guard_band = margin_known.filter(|_| unguarded.is_none()).map(Known::expanded);
+    let verdict = match (known, &unguarded) {
+        (Some((value, bound)), None) => bound.verdict(value, guard_band),
+        _ => Verdict::Inconclusive,
+    };
+    let missing = value.as_ref().err().or(bound.as_ref().err()).map(ToString::to_string).or(unguarded);
     let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_known));
     ConditionOutcome {
         text: condition.text.clone(),
@@ -247,6 +287,13 @@ pub(crate) fn assess_condition(condition: &Condition, rule: DecisionRule, record
         margin_degrees: margin_known.map_or(f64::INFINITY, |known| known.degrees),
         reason: missing.or_else(too_near),
     }
+}
+
+/// Why a guard band cannot be kept: a measured result that the condition reads has no expanded uncertainty.
+fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String> {
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    references.into_iter().filter(|reference| reference.part == Part::Value).find_map(|read| record.no_uncertainty(read))
 }
 
 /// Why a limit within the guard band decides nothing, and why the band is wide where few readings made it so.

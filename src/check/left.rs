@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::checker::Checker;
 use super::faults::values;
 use crate::formula::{Formula, Part, ResultReference};
-use crate::plan::{Procedure, ProcedureKind, Requirement};
+use crate::plan::{Condition, Procedure, ProcedureKind, Requirement};
 use crate::schema::{self, Kind, ResultKind};
 use crate::syntax::ast::ExprKind;
 
@@ -51,7 +51,7 @@ impl Checker<'_> {
 pub fn warn(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)], requirements: &[Requirement]) {
     let mut told = BTreeSet::new();
     for (index, requirement) in requirements.iter().enumerate() {
-        let formulas = requirement.conditions.iter().flat_map(|condition| condition.formulas());
+        let formulas = requirement.conditions.iter().flat_map(Condition::formulas);
         for reference in formulas.filter_map(compared) {
             let Some((block, Some(procedure))) = procedures.get(reference.procedure.0) else { continue };
             let final_value = LEFT.iter().any(|(_, last)| reference.name == *last);

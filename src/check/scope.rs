@@ -220,15 +220,12 @@ impl<'a> Scope<'a> {
     /// Counts the block that comes next among those of its kind.
     fn place(&mut self, kind: Kind) {
         let block = self.blocks.len();
-        match self.kinds.iter_mut().find(|(of, _)| *of == kind) {
-            Some((_, blocks)) => {
-                self.places.push(blocks.len());
-                blocks.push(block);
-            }
-            None => {
-                self.places.push(0);
-                self.kinds.push((kind, vec![block]));
-            }
+        if let Some((_, blocks)) = self.kinds.iter_mut().find(|(of, _)| *of == kind) {
+            self.places.push(blocks.len());
+            blocks.push(block);
+        } else {
+            self.places.push(0);
+            self.kinds.push((kind, vec![block]));
         }
     }
 

@@ -11,6 +11,7 @@ use super::output::{tell, tell_words};
 use super::record_file::{self, journal_of};
 use super::run_folder::{FolderShelf, write_new};
 use super::settings::Settings;
+use super::writing::Telling;
 use super::{held, provenance, rehearse};
 use crate::diagnostic::excerpt::escape;
 use crate::output::{self, Listed, OutputError, Provenance, Run, Shelf};
@@ -42,9 +43,12 @@ pub fn conclude(
     if held::is_held(&recorded.record) {
         tell(&how_it_stands(folder, plan, &recorded.record, settings));
     }
+    tell(&into(folder));
     let kept = Folder::digests(folder)?.kept();
-    let shelf = FolderShelf::new(folder);
-    write_made(shelf, &kept, |shelf| made_of(plan, &recorded.record, &assessment, provenance, None, shelf))?;
+    write_made(FolderShelf::new(folder), &kept, |shelf| {
+        let shelf = &mut Telling::over(shelf, settings);
+        made_of(plan, &recorded.record, &assessment, provenance, None, shelf)
+    })?;
     let exit = Exit::from(assessment.verdict);
     match (&recorded.fault, &recorded.mismatch) {
         (None, None) => Ok(exit),
@@ -57,6 +61,11 @@ pub fn conclude(
             Ok(exit.max(Exit::Fault))
         }
     }
+}
+
+/// Said with the verdict: where the record lies, and the results will.
+pub fn into(folder: &Path) -> String {
+    format!("  run folder {}\n", escape(&folder.display().to_string()))
 }
 
 /// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.

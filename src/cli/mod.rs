@@ -44,6 +44,7 @@ mod trial;
 mod verify;
 mod wall_clock;
 mod watch;
+mod writing;
 
 use std::ffi::OsString;
 

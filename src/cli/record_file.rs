@@ -148,6 +148,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
         }
     }
     let plan = plan_of(&played).map_err(damaged)?;
+    tape::well_formed(&recovered, &plan).map_err(|fault| damaged(fault.to_string()))?;
     if played.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
         return Err(damaged("its header does not say what was measured with".to_owned()));
     }

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::ReportArguments;
-use super::conclude::write_made;
+use super::conclude::{into, write_made};
 use super::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stands};
 use super::exit::{Exit, Failure};
 use super::issue::amend;
@@ -15,6 +15,7 @@ use super::output::{give, tell, tell_words};
 use super::record_file::{self, journal_of};
 use super::run_folder::{FolderShelf, RunFolder};
 use super::settings::Settings;
+use super::writing::Telling;
 use crate::output::{self, Run};
 use crate::record::journal::FileStorage;
 
@@ -67,7 +68,8 @@ pub fn conclude_played(
     if steps.is_none() {
         tell_words(&output::console::verdict_text(&Run { plan, record, assessment, provenance }, settings.color), settings);
     }
-    write_made(FolderShelf::replacing(folder), beside, |shelf| played.results(shelf))?;
+    tell(&into(folder));
+    write_made(FolderShelf::replacing(folder), beside, |shelf| played.results(&mut Telling::over(shelf, settings)))?;
     let exit = Exit::from(assessment.verdict);
     let Some(mismatch) = mismatch else { return Ok(exit) };
     tell(&format!("  the record does not fit the plan: {mismatch}\n"));

@@ -8,7 +8,7 @@
 //! the recorded readings come back as they were, to the bit.
 
 use super::frame::{SymmetricBand, drifts, shears, storeys_of};
-use super::recorded_path::{Again, Distortion, Noise, Reading, RecordedPath, Rule, UNSEEN, lag};
+use super::recorded_path::{Again, Distortion, Noise, Reading, RecordedPath, Rule, UNSEEN, lag, nearest};
 
 /// One step of the record, an entry a floor.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,13 +32,21 @@ pub struct FrameDistortion {
     pub zero: Vec<f64>,
     /// Added to every reading, with signs drawn for each axis by itself; of no axis, none.
     pub noise: Vec<Noise>,
+    /// Steps for each of the record, 1 or more.
+    pub finer: u8,
 }
 
 impl FrameDistortion {
     /// None, of so many axes.
     #[must_use]
     pub fn none(axes: usize) -> Self {
-        Self { force_scale: vec![1.0; axes], displacement_scale: vec![1.0; axes], zero: vec![0.0; axes], noise: Vec::new() }
+        Self {
+            force_scale: vec![1.0; axes],
+            displacement_scale: vec![1.0; axes],
+            zero: vec![0.0; axes],
+            noise: Vec::new(),
+            finer: 1,
+        }
     }
 }
 
@@ -160,7 +168,10 @@ impl FramePath {
     #[must_use]
     pub fn again<'a>(&'a self, distortion: &'a FrameDistortion) -> FrameAgain<'a> {
         let walks = match &self.bends {
-            Bends::Storeys(paths) => paths.iter().map(|path| (path, path.again(Distortion::NONE))).collect(),
+            Bends::Storeys(paths) => {
+                let finer = Distortion { finer: distortion.finer, ..Distortion::NONE };
+                paths.iter().map(|path| (path, path.again(finer))).collect()
+            }
             Bends::Together(..) => Vec::new(),
         };
         let first = &self.readings[0];
@@ -169,6 +180,7 @@ impl FramePath {
             path: self,
             distortion,
             storeys: walks,
+            own_step: 0,
             step: 0,
             target: target.collect(),
             place: first.target.clone(),
@@ -194,6 +206,9 @@ pub struct FrameAgain<'a> {
     path: &'a FramePath,
     distortion: &'a FrameDistortion,
     storeys: Vec<(&'a RecordedPath, Again<'a>)>,
+    /// Of its own steps.
+    own_step: usize,
+    /// The step of the record that is nearest.
     step: usize,
     /// Where it begins, m.
     target: Vec<f64>,
@@ -232,7 +247,8 @@ impl FrameAgain<'_> {
 
     /// Goes to the targets of the next step, m, passing them with these velocities (m/s) if it does not stop there, and reads.
     pub fn move_to(&mut self, targets: &[f64], velocities: &[f64]) {
-        self.step += 1;
+        self.own_step += 1;
+        self.step = nearest(self.own_step, self.distortion.finer);
         let scales = &self.distortion.displacement_scale;
         let of_record = |to: &mut [f64], from: &[f64]| {
             for (to, (from, scale)) in to.iter_mut().zip(from.iter().zip(scales)) {
@@ -284,13 +300,13 @@ impl FrameAgain<'_> {
     }
 
     fn distort(&mut self) {
-        let FrameDistortion { force_scale, displacement_scale, zero, noise } = self.distortion;
+        let FrameDistortion { force_scale, displacement_scale, zero, noise, .. } = self.distortion;
         for axis in 0..self.force.len() {
             self.force[axis] = force_scale[axis] * self.force[axis] + zero[axis];
             self.displacement[axis] *= displacement_scale[axis];
             if let Some(noise) = noise.get(axis) {
                 #[expect(clippy::cast_possible_truncation, reason = "at most MOST_STOREYS")]
-                let [of_force, of_displacement] = noise.errors(self.step as u64, axis as u32);
+                let [of_force, of_displacement] = noise.errors(self.own_step as u64, axis as u32);
                 self.force[axis] += of_force;
                 self.displacement[axis] += of_displacement;
             }
@@ -354,6 +370,7 @@ mod tests {
                 displacement_scale: vec![1.05, 0.95, 1.0],
                 zero: vec![1.0, 2.0, -3.0],
                 noise: Vec::new(),
+                finer: 1,
             };
             let mut again = path.again(&distortion);
             for (step, target) in targets().iter().chain(&[[0.03, 0.01, -0.04]; 3]).enumerate().skip(1) {

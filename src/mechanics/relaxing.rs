@@ -172,7 +172,9 @@ mod tests {
         assert!((sum - travel.way(0.5)).abs() < 1e-15);
         let (mut whole, mut by_parts) = (MaxwellBranch::new(1e3, 0.2), MaxwellBranch::new(1e3, 0.2));
         whole.follow(&travel);
-        parts.iter().for_each(|part| by_parts.follow(part));
+        for part in &parts {
+            by_parts.follow(part);
+        }
         assert!((whole.force() - by_parts.force()).abs() < 1e-12);
     }
 }

@@ -133,6 +133,8 @@ fn number(value: Option<f64>) -> f64 {
 
 /// Melo et al. 2006.
 fn papers() -> Vec<SelfTest> {
+    const RIGID: &[Part] = &[Part::Tangent, Part::Rigid];
+    const LIMIT: &[Part] = &[Part::Tangent, Part::Limit];
     let case = |case, result, dimension, computed, expected, tolerance, parts| SelfTest {
         case,
         result,
@@ -142,8 +144,6 @@ fn papers() -> Vec<SelfTest> {
         tolerance,
         parts,
     };
-    const RIGID: &[Part] = &[Part::Tangent, Part::Rigid];
-    const LIMIT: &[Part] = &[Part::Tangent, Part::Limit];
     let (one, two) = (impact(1.0, 327.65, ContactLaw::Rigid, 0.01), impact(0.25, 327.65, ContactLaw::Rigid, 0.01));
     let limited = impact(1.0, 300.0, ContactLaw::Limit { force: 1500.0 }, 0.001);
     vec![

@@ -33,12 +33,13 @@ use crate::record::{Drift, Record};
 use crate::rig::DeclaredNoise;
 use crate::run::driven::DrivenStep;
 use crate::verdict::Assessment;
+use figures::{Drawn, Undrawn};
 
 pub use prediction::{PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros, Prediction, REHEARSAL_FILE};
 
 pub use issue::{Change, Issue, IssueKind, Issues};
 
-pub use shelf::{Listed, Nowhere, Shelf};
+pub use shelf::{Listed, Nowhere, Part, Piece, Shelf};
 
 /// Name of the summary.
 pub const SUMMARY: &str = "summary.json";
@@ -100,8 +101,8 @@ impl Provenance {
 
     /// What an issue of the report states of a particular; the last one counts.
     fn restated(&self, field: &str) -> Option<&str> {
-        let changes = self.issues.iter().flat_map(|issues| &issues.all).flat_map(|issue| &issue.changes);
-        changes.filter(|change| change.field == field).last().map(|change| change.is.as_str())
+        let mut changes = self.issues.iter().flat_map(|issues| &issues.all).flat_map(|issue| &issue.changes);
+        changes.rfind(|change| change.field == field).map(|change| change.is.as_str())
     }
 
     /// Who stood by, as the record says.
@@ -177,42 +178,82 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     Ok(files)
 }
 
-/// Puts every file a run leaves but the manifest, each as soon as it is made; the report comes last, for it tells the digests
-/// of the tables.
+/// Puts every file a run leaves but the manifest, each as soon as it is made: the numbers first, then the figures one by one, and
+/// the report last, for it tells the digests of the tables.
 ///
 /// # Errors
 /// A table, figure or summary that cannot be encoded or kept.
 pub fn put_everything(run: &Run<'_>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+    let tables = tables::of(run);
+    let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
+    let mut work = Work { done: 0, of: 1 + tables.len() + run.plan.report.figures.len() + usize::from(html) + usize::from(pdf) };
+    work.begin(Part::Tables, shelf);
     let summary = summary_file(run)?;
     let foretold = run.provenance.prediction.as_ref().map(prediction::file).transpose()?;
-    let figures = figures::all(run)?;
     let first = std::iter::once(summary).chain(foretold);
     let mut listed = first.map(|file| put_whole(shelf, &file)).collect::<Result<Vec<_>, _>>()?;
-    let tables = tables::put(run, shelf)?;
-    let mut files = Vec::new();
-    let (html, pdf) = (wants(run.plan, Format::Html), wants(run.plan, Format::Pdf));
+    let mut of_tables = Vec::with_capacity(tables.len());
+    for table in tables {
+        work.begin(Part::Tables, shelf);
+        of_tables.push(table.put(shelf)?);
+    }
+    let figures = put_figures(run, &mut work, &mut listed, shelf)?;
     if html || pdf {
-        let report = certificate::document(run, &figures, &tables);
+        let report = certificate::document(run, &figures, &of_tables);
         if html {
+            work.begin(Part::Report, shelf);
             let page = inert::page(&document::html::html(&report));
-            files.push(OutputFile { path: "certificate.html".to_owned(), bytes: page.into_bytes() });
+            let page = OutputFile { path: "certificate.html".to_owned(), bytes: page.into_bytes() };
+            listed.push(put_whole(shelf, &page)?);
         }
         if pdf {
+            work.begin(Part::Report, shelf);
             let bytes = document::pdf::pdf(&report).map_err(OutputError::Pdf)?;
-            files.push(OutputFile { path: "certificate.pdf".to_owned(), bytes });
+            listed.push(put_whole(shelf, &OutputFile { path: "certificate.pdf".to_owned(), bytes })?);
         }
     }
-    for figure in figures {
-        files.push(OutputFile { path: format!("{}.png", figure.path), bytes: figure.png });
-        files.push(OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() });
-    }
-    files.extend(plan_files(run.plan));
-    tell_apart(files.iter_mut().map(|file| &mut file.path));
-    listed.extend(tables);
-    for file in &files {
-        listed.push(put_whole(shelf, file)?);
+    listed.extend(of_tables);
+    for file in plan_files(run.plan) {
+        listed.push(put_whole(shelf, &file)?);
     }
     Ok(listed)
+}
+
+/// Draws each figure and puts it before the next is drawn; what the report shows of them stays.
+fn put_figures(
+    run: &Run<'_>,
+    work: &mut Work,
+    listed: &mut Vec<Listed>,
+    shelf: &mut dyn Shelf,
+) -> Result<Vec<Drawn>, OutputError> {
+    let mut taken = Taken::default();
+    let mut drawn = Vec::new();
+    for figure in &run.plan.report.figures {
+        work.begin(Part::Figures, shelf);
+        let Some(mut figure) = Undrawn::of(run, figure) else { continue };
+        taken.tell_apart(&mut figure.path);
+        let path = figure.path.clone();
+        listed.push(put_whole(shelf, &OutputFile { path: format!("{path}.png"), bytes: figure.png()? })?);
+        let figure = figure.in_vectors()?;
+        let svg = OutputFile { path: format!("{path}.svg"), bytes: figure.svg.clone().into_bytes() };
+        listed.push(put_whole(shelf, &svg)?);
+        drawn.push(figure);
+    }
+    Ok(drawn)
+}
+
+/// How much of what a run leaves is made.
+struct Work {
+    done: usize,
+    of: usize,
+}
+
+impl Work {
+    /// The next piece is begun.
+    fn begin(&mut self, part: Part, shelf: &mut dyn Shelf) {
+        self.done += 1;
+        shelf.begin(&Piece { part, number: self.done, of: self.of });
+    }
 }
 
 fn put_whole(shelf: &mut dyn Shelf, file: &OutputFile) -> Result<Listed, OutputError> {
@@ -225,7 +266,9 @@ fn put_whole(shelf: &mut dyn Shelf, file: &OutputFile) -> Result<Listed, OutputE
 /// A table or a summary that cannot be encoded.
 pub fn numbers(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     let mut files = vec![summary_file(run)?];
-    tables::put(run, &mut files)?;
+    for table in tables::of(run) {
+        table.put(&mut files)?;
+    }
     Ok(files)
 }
 
@@ -252,8 +295,13 @@ fn plan_files(plan: &Plan) -> Vec<OutputFile> {
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
-    let drawn = figures::all(run)?.into_iter();
-    Ok(drawn.map(|figure| OutputFile { path: format!("{}.svg", figure.path), bytes: figure.svg.into_bytes() }).collect())
+    let undrawn = run.plan.report.figures.iter().filter_map(|figure| Undrawn::of(run, figure));
+    undrawn
+        .map(|figure| {
+            let path = format!("{}.svg", figure.path);
+            Ok(OutputFile { path, bytes: figure.in_vectors()?.svg.into_bytes() })
+        })
+        .collect()
 }
 
 /// Puts the table of a client that drove the rig: all that is made of it.
@@ -284,15 +332,23 @@ fn safe_path(name: &str) -> String {
 
 /// Paths that differ only in the size of their letters are one file on many systems: the later one gets a number.
 fn tell_apart<'a>(paths: impl Iterator<Item = &'a mut String>) {
-    let mut seen = BTreeSet::new();
-    for path in paths {
+    let mut taken = Taken::default();
+    paths.for_each(|path| taken.tell_apart(path));
+}
+
+/// Paths so far, in small letters.
+#[derive(Default)]
+struct Taken(BTreeSet<String>);
+
+impl Taken {
+    fn tell_apart(&mut self, path: &mut String) {
         let own = path.clone();
         let (stem, ending) = match own.rsplit_once('.') {
             Some((stem, ending)) if !ending.contains('/') => (stem, format!(".{ending}")),
             _ => (own.as_str(), String::new()),
         };
         let mut number = 1;
-        while !seen.insert(path.to_lowercase()) {
+        while !self.0.insert(path.to_lowercase()) {
             number += 1;
             *path = format!("{stem}-{number}{ending}");
         }

@@ -18,6 +18,38 @@ pub trait Shelf {
     /// # Errors
     /// It cannot be kept, or `write` failed.
     fn put(&mut self, path: &str, write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> io::Result<()>;
+
+    /// Hears what is made next: that may take a while.
+    fn begin(&mut self, _: &Piece) {}
+}
+
+/// A piece of what a run leaves: a table, a figure, a form of the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    pub part: Part,
+    /// From 1.
+    pub number: usize,
+    pub of: usize,
+}
+
+/// What a piece is a part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The summary too.
+    Tables,
+    Figures,
+    Report,
+}
+
+impl Part {
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tables => "tables",
+            Self::Figures => "figures",
+            Self::Report => "report",
+        }
+    }
 }
 
 /// Keeps them in memory.

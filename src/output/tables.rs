@@ -8,6 +8,7 @@ mod floors;
 mod table;
 
 use std::iter::once;
+use std::rc::Rc;
 
 use polars::prelude::Column;
 
@@ -22,18 +23,31 @@ use crate::record::{
 use crate::run::driven::DrivenStep;
 use table::{Form, Table};
 
-/// Puts the tables of every procedure that recorded steps, in the formats the plan asks for.
-pub(super) fn put(run: &Run<'_>, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+/// A table in one of its forms, and where it is put.
+pub(super) struct Unwritten<'a> {
+    table: Rc<Table<'a>>,
+    form: Form,
+    path: String,
+}
+
+impl Unwritten<'_> {
+    pub fn put(&self, shelf: &mut dyn Shelf) -> Result<Listed, OutputError> {
+        put_one(&self.table, self.form, &self.path, shelf)
+    }
+}
+
+/// The tables of every procedure that recorded steps, in the formats the plan asks for.
+pub(super) fn of<'a>(run: &Run<'a>) -> Vec<Unwritten<'a>> {
     let forms = [(Format::Csv, Form::Csv), (Format::Parquet, Form::Parquet)];
     let forms: Vec<Form> = forms.into_iter().filter(|(format, _)| wants(run.plan, *format)).map(|(_, form)| form).collect();
-    let tables = all(run);
     let mut files = Vec::new();
-    for table in &tables {
+    for table in all(run).into_iter().map(Rc::new) {
         let stem = inert::file_part(&table.name);
-        files.extend(forms.iter().map(|form| (format!("tables/{stem}.{}", form.ending()), table, *form)));
+        let path = |form: &Form| format!("tables/{stem}.{}", form.ending());
+        files.extend(forms.iter().map(|form| Unwritten { table: Rc::clone(&table), form: *form, path: path(form) }));
     }
-    tell_apart(files.iter_mut().map(|(path, ..)| path));
-    files.iter().map(|(path, table, form)| put_one(table, *form, path, shelf)).collect()
+    tell_apart(files.iter_mut().map(|file| &mut file.path));
+    files
 }
 
 fn all<'a>(run: &Run<'a>) -> Vec<Table<'a>> {
@@ -85,7 +99,9 @@ fn of_procedure(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     match &procedure.history {
         History::Ramp(history) => {
             let holds = (!history.holds.is_empty()).then(|| Table::of(beside("holds"), &history.holds, holds));
-            once(Table::of(name, &history.steps, ramp)).chain(holds).collect()
+            let mut rows: Vec<RampStep> = history.steps.iter().chain(&history.before).cloned().collect();
+            rows.sort_by_key(|row| row.step);
+            once(Table::of_steps(name, rows.len(), 1, move |range| ramp(&rows[range]))).chain(holds).collect()
         }
         History::Move(steps) => vec![Table::of(name, steps, ramp)],
         History::FrameUnload(steps) => vec![Table::of(name, steps, floors::unloading)],

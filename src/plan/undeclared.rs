@@ -4,19 +4,32 @@
 use super::{Calibration, RigPlan};
 
 impl RigPlan {
-    /// Uncertainties that the plan does not declare of one of so many axes at least.
+    /// Uncertainties of the rig that the plan does not declare of one of so many axes at least.
     #[must_use]
     pub fn undeclared(&self, axes: usize) -> Vec<&'static str> {
-        let lacks = |read: fn(&Calibration) -> f64| (0..axes.max(1)).any(|axis| read(&self.calibration_of(axis)) == 0.0);
+        let lacks = |read| self.lacks(axes, read);
         let all = [
-            ("the calibration of the force", lacks(|calibration| calibration.force_uncertainty)),
-            ("the calibration of the displacement", lacks(|calibration| calibration.displacement_uncertainty)),
+            (FORCE, lacks(|calibration| calibration.force_uncertainty)),
+            (DISPLACEMENT, lacks(|calibration| calibration.displacement_uncertainty)),
             ("the zero of the load cell", lacks(|calibration| calibration.zero_uncertainty)),
             ("the drift of that zero in the run", self.drift.is_none()),
         ];
         all.into_iter().filter(|(_, lacking)| *lacking).map(|(name, _)| name).collect()
     }
+
+    /// The calibrations without which a budget of so many axes is partial, and no expanded uncertainty follows from it.
+    #[must_use]
+    pub fn undeclared_calibrations(&self, axes: usize) -> Vec<&'static str> {
+        self.undeclared(axes).into_iter().filter(|name| [FORCE, DISPLACEMENT].contains(name)).collect()
+    }
+
+    fn lacks(&self, axes: usize, read: fn(&Calibration) -> f64) -> bool {
+        (0..axes.max(1)).any(|axis| read(&self.calibration_of(axis)) == 0.0)
+    }
 }
+
+const FORCE: &str = "the calibration of the force";
+const DISPLACEMENT: &str = "the calibration of the displacement";
 
 #[cfg(test)]
 mod tests {

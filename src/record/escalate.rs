@@ -27,14 +27,22 @@ pub enum BlowHistory {
     Storey(StoreyImpactHistory),
 }
 
+impl BlowHistory {
+    /// The striker and what it strikes, step by step; of a frame, the struck floor.
+    #[must_use]
+    pub const fn impact(&self) -> &ImpactHistory {
+        match self {
+            Self::Impact(history) => history,
+            Self::Storey(history) => &history.blow,
+        }
+    }
+}
+
 impl Blow {
     /// The striker and what it strikes, step by step; of a frame, the struck floor.
     #[must_use]
     pub const fn impact(&self) -> &ImpactHistory {
-        match &self.history {
-            BlowHistory::Impact(history) => history,
-            BlowHistory::Storey(history) => &history.blow,
-        }
+        self.history.impact()
     }
 
     /// All floors, where a frame was struck.

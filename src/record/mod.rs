@@ -25,6 +25,7 @@ pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
 use crate::mechanics::summary::still_rising;
 use crate::quantity::Dimension;
 use crate::rig::Identity;
+use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use drift::{AxisDrift, Beyond, Drift, Zero};
@@ -188,6 +189,8 @@ pub struct RampStep {
 pub struct RampHistory {
     /// The reading before the first increment, m and N.
     pub start: Option<(f64, f64)>,
+    /// The reading before the first increment of each repeat, numbered by the steps before it.
+    pub before: Vec<RampStep>,
     pub steps: Vec<RampStep>,
     /// None if too few steps were recorded, or the fit is of two lines.
     pub fit: Option<LineFit>,
@@ -354,6 +357,21 @@ pub struct ShakeHistory {
 }
 
 impl History {
+    /// The time step and the critical one, s, of what was integrated in longer steps than that; of several blows, of the first.
+    #[must_use]
+    pub fn above_critical(&self) -> Option<(f64, f64)> {
+        let of_blow = |blow: &ImpactHistory| (blow.time_step, blow.critical_time_step);
+        let mut steps = match self {
+            Self::Impact(blow) => vec![of_blow(blow)],
+            Self::StoreyImpact(history) => vec![of_blow(&history.blow)],
+            Self::Shake(history) => vec![(history.time_step, history.critical_time_step)],
+            Self::Escalate(history) => history.blows.iter().map(|blow| of_blow(blow.impact())).collect(),
+            Self::Ramp(_) | Self::Sweep(_) | Self::Cycle(_) | Self::Move(_) | Self::FrameUnload(_) | Self::Inspect => Vec::new(),
+        };
+        steps.retain(|(step, critical)| step > critical);
+        steps.first().copied()
+    }
+
     /// Degrees of freedom of the scatter that a result fitted here is known by; None of what is no fit.
     #[must_use]
     pub fn degrees(&self, result: &str) -> Option<f64> {
@@ -415,6 +433,24 @@ impl NamedResult {
     }
 }
 
+impl NamedResult {
+    /// Why it has no expanded uncertainty, of a procedure of this kind; None where it has one, is exact or does not exist.
+    #[must_use]
+    pub fn no_uncertainty(&self, kind: &str) -> Option<String> {
+        let words: Vec<&str> = kind.split(' ').collect();
+        block_of_words(&words)?.result(self.name).filter(|result| result.measured)?;
+        let lacks = match &self.value {
+            ResultValue::Number { value, uncertainty } => value.is_some() && uncertainty.is_none(),
+            ResultValue::List(values) => {
+                let known = self.entry_uncertainties();
+                let lacks = |(entry, value): (usize, &f64)| value.is_finite() && known.get(entry).is_none_or(Option::is_none);
+                values.iter().enumerate().any(lacks)
+            }
+        };
+        lacks.then(|| format!("no uncertainty of `{}` is known, and a guard band needs one", self.name))
+    }
+}
+
 impl Results for Record {
     /// Procedures are recorded in the plan's order, so that their place there is their place here.
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
@@ -433,5 +469,10 @@ impl Results for Record {
         };
         let history = self.procedures.get(procedure.0).map(|procedure| &procedure.history);
         history.and_then(|history| history.degrees(result)).unwrap_or(f64::INFINITY)
+    }
+
+    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+        let procedure = self.procedures.get(reference.procedure.0)?;
+        procedure.result(reference.name)?.no_uncertainty(procedure.kind)
     }
 }

@@ -29,6 +29,8 @@ pub struct Guard<'rig> {
     pub(super) holds: Option<Holds>,
     /// The first reading: displacements, m, and forces, N.
     pub(super) found: (Vec<f64>, Vec<f64>),
+    /// The reading that broke a limit last, if it is one.
+    pub(super) broken: Option<Reading>,
 }
 
 /// Readings of a traverse, all inside the limits, and what ended it early.
@@ -54,8 +56,20 @@ impl<'rig> Guard<'rig> {
     pub fn of_axes(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
         let heard = rig.time();
         let (commanded, going, found) = (Vec::new(), Vec::new(), (Vec::new(), Vec::new()));
-        let mut guard =
-            Self { rig, limits, own, commanded, going, settled: false, proposed: None, speed: None, heard, holds: None, found };
+        let mut guard = Self {
+            rig,
+            limits,
+            own,
+            commanded,
+            going,
+            settled: false,
+            proposed: None,
+            speed: None,
+            heard,
+            holds: None,
+            found,
+            broken: None,
+        };
         let Reading { displacement, force, .. } = guard.read()?;
         guard.commanded.clone_from(&displacement);
         guard.found = (displacement, force);
@@ -141,8 +155,9 @@ impl<'rig> Guard<'rig> {
         Ok(())
     }
 
-    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way. The limit on the increment is not for
-    /// it, since its target goes along evenly; the one on the tracking error is for settled readings.
+    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way; the last reading is the one that broke a limit, if
+    /// any did. The limit on the increment is not for it, since its target goes along evenly; the one on the tracking error is for
+    /// settled readings.
     pub fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Traversed {
         let refused = |fault| Traversed { readings: Vec::new(), fault: Some(fault) };
         let allowed =
@@ -155,15 +170,24 @@ impl<'rig> Guard<'rig> {
         self.speed = Some(velocity.abs());
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
-        let mut heard = self.heard;
+        let (mut heard, mut broken) = (self.heard, None);
         // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
         let traversed = self.rig.traverse(targets, velocity, samples, &mut |reading| {
             heard = reading.time;
-            outside(&limits, &own, &reading).map_or(Ok(()), Err)?;
-            readings.push(reading);
-            Ok(())
+            match outside(&limits, &own, &reading) {
+                Some(fault) => {
+                    broken = Some(reading).filter(is_finite);
+                    Err(fault)
+                }
+                None => {
+                    readings.push(reading);
+                    Ok(())
+                }
+            }
         });
         self.heard = heard;
+        readings.extend(broken.clone());
+        self.broken = broken;
         let fault = self.or_hold(traversed).err();
         if fault.is_none() {
             self.commanded.copy_from_slice(targets);
@@ -261,6 +285,11 @@ impl<'rig> Guard<'rig> {
 /// Infinity is inside "no limit", but no place for a rig.
 fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
+}
+
+/// Whether a reading is of numbers: what is none is not kept.
+pub(super) fn is_finite(reading: &Reading) -> bool {
+    reading.displacement.iter().chain(&reading.force).all(|value| value.is_finite())
 }
 
 /// The first value of a reading that lies outside its limit: those of its axis, where it has any of its own.
@@ -424,8 +453,20 @@ mod tests {
             rig.force = force;
             let (commanded, own, going, holds, speed) = (vec![0.001], Vec::new(), Vec::new(), None, None);
             let (settled, proposed, heard, found) = (true, None, 0.0, (Vec::new(), Vec::new()));
-            let mut guard =
-                Guard { rig: &mut rig, limits: LIMITS, own, commanded, going, settled, proposed, speed, heard, holds, found };
+            let mut guard = Guard {
+                rig: &mut rig,
+                limits: LIMITS,
+                own,
+                commanded,
+                going,
+                settled,
+                proposed,
+                speed,
+                heard,
+                holds,
+                found,
+                broken: None,
+            };
             assert_eq!(quantity(guard.read().unwrap_err()), expected);
             assert!(rig.held);
         }

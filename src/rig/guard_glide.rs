@@ -3,12 +3,13 @@
 //! as fast as, the last one ended.
 
 use super::failpoint::{Guarding, on};
-use super::guard::outside;
+use super::guard::{is_finite, outside};
 use super::{Guard, LimitedQuantity, RigFault, Traversed};
 use crate::mechanics::path::Path;
 
 impl Guard<'_> {
-    /// Follows `paths`, one a degree of freedom, reading at up to `samples` times on the way, the last at the end.
+    /// Follows `paths`, one a degree of freedom, reading at up to `samples` times on the way, the last at the end, or
+    /// where it broke a limit.
     pub fn glide(&mut self, paths: &[Path], samples: usize) -> Traversed {
         let refused = |fault| Traversed { readings: Vec::new(), fault: Some(fault) };
         if let Err(fault) = self.judge(paths) {
@@ -18,14 +19,23 @@ impl Guard<'_> {
         self.speed = paths.iter().map(Path::fastest).reduce(f64::max);
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
-        let mut heard = self.heard;
+        let (mut heard, mut broken) = (self.heard, None);
         let glided = self.rig.glide(paths, samples, &mut |reading| {
             heard = reading.time;
-            outside(&limits, &own, &reading).map_or(Ok(()), Err)?;
-            readings.push(reading);
-            Ok(())
+            match outside(&limits, &own, &reading) {
+                Some(fault) => {
+                    broken = Some(reading).filter(is_finite);
+                    Err(fault)
+                }
+                None => {
+                    readings.push(reading);
+                    Ok(())
+                }
+            }
         });
         self.heard = heard;
+        readings.extend(broken.clone());
+        self.broken = broken;
         let fault = self.or_hold(glided).err();
         if fault.is_none() {
             self.commanded = paths.iter().map(|path| path.to).collect();

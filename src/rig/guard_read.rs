@@ -2,7 +2,7 @@
 //! or the rig held.
 
 use super::failpoint::{Guarding, on};
-use super::guard::outside;
+use super::guard::{is_finite, outside};
 use super::{Guard, LimitedQuantity, Reading, RigFault};
 
 impl Guard<'_> {
@@ -28,7 +28,15 @@ impl Guard<'_> {
     fn judged(&mut self, reading: Result<Reading, RigFault>) -> Result<Reading, RigFault> {
         let reading = self.or_hold(reading)?;
         self.heard = reading.time;
-        self.check_reading(&reading)?;
+        if let Err(fault) = self.judge_reading(&reading) {
+            self.broken = Some(reading).filter(is_finite);
+            return Err(fault);
+        }
+        Ok(reading)
+    }
+
+    fn judge_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
+        self.check_reading(reading)?;
         if self.settled {
             let errors: Vec<f64> =
                 reading.displacement.iter().zip(&self.commanded).map(|(measured, target)| (measured - target).abs()).collect();
@@ -37,10 +45,15 @@ impl Guard<'_> {
                 return Err(self.breach(LimitedQuantity::TrackingError, Some(place), limit, errors[place]));
             }
             if let Some(holds) = &mut self.holds {
-                holds.see(&self.commanded, &reading);
+                holds.see(&self.commanded, reading);
             }
         }
-        Ok(reading)
+        Ok(())
+    }
+
+    /// The reading that broke a limit, once: it was made all the same.
+    pub fn take_broken(&mut self) -> Option<Reading> {
+        self.broken.take()
     }
 
     fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {

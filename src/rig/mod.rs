@@ -7,7 +7,7 @@ pub mod device;
 pub mod dialect;
 pub mod failpoint;
 #[cfg(test)]
-mod fault_table;
+pub(crate) mod fault_table;
 mod guard;
 mod guard_about;
 mod guard_glide;
@@ -126,7 +126,11 @@ impl Tally {
     /// Both counts together.
     #[must_use]
     pub const fn plus(self, other: Self) -> Self {
-        Self { resent: self.resent + other.resent, ignored: self.ignored + other.ignored, reread: self.reread + other.reread }
+        Self {
+            resent: self.resent.saturating_add(other.resent),
+            ignored: self.ignored.saturating_add(other.ignored),
+            reread: self.reread.saturating_add(other.reread),
+        }
     }
 }
 

@@ -32,9 +32,14 @@ pub(super) fn run(strike: &mut Strike, plan: &Impact, time_scale: f64, session: 
             let (velocity, struck) = solver.predicted_velocity();
             Passing { place, velocity, struck }
         };
-        let (measured, force) = first(&gliding.step(|| vec![foretell()], session)?);
+        let (reading, broken) = gliding.step(|| vec![foretell()], session)?;
+        let (measured, force) = first(&reading);
         let (target, taken) = (solver.predict(), solver.taken(measured, force));
         let tracking = monitor.take_as(target, measured, force, taken);
+        if let Some(stop) = broken {
+            strike.take(solver.complete(measured, force), tracking, session);
+            return Err(stop);
+        }
         let before = solver.state().contact_force > 0.0;
         let state = *solver.complete(measured, force);
         let struck = before || state.contact_force > 0.0;

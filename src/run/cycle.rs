@@ -159,14 +159,31 @@ impl Cycling {
 
     /// Reads where the piston stands: once for the relaxation, then the samples after the pause.
     fn target(&mut self, command: f64, manner: Manner, session: &mut Session<'_>) -> Result<(), Stop> {
-        let (_, settled_force) = session.read()?;
-        session.guard.pause(manner.pause)?;
-        let readings = (0..manner.samples).map(|_| session.read()).collect::<Result<Vec<_>, _>>()?;
+        let (settled, mut broken) = session.read_kept()?;
+        let (_, settled_force) = first(&settled);
+        let mut readings = Vec::new();
+        if broken.is_some() {
+            readings.push(first(&settled));
+        } else {
+            session.guard.pause(manner.pause)?;
+        }
+        for _ in 0..manner.samples {
+            if broken.is_none() {
+                let (reading, stop) = session.read_kept()?;
+                readings.push(first(&reading));
+                broken = stop;
+            }
+        }
         let displacement = mean(readings.iter().map(|(x, _)| *x));
         let restoring_force = mean(readings.iter().map(|(_, r)| *r));
         let force_scatter = scatter(readings.iter().map(|(_, r)| *r), restoring_force);
         let relaxation = settled_force - restoring_force;
-        self.take(command, (displacement, restoring_force), force_scatter, relaxation, session.guard.time(), session)
+        let (time, point) = (session.guard.time(), (displacement, restoring_force));
+        if let Some(stop) = broken {
+            self.keep(command, point, force_scatter, relaxation, time);
+            return Err(stop);
+        }
+        self.take(command, point, force_scatter, relaxation, time, session)
     }
 
     /// To `to` without a stop, read on the way.
@@ -179,10 +196,16 @@ impl Cycling {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and MOST_TARGETS")]
         let samples = wanted as usize;
         let traversed = session.guard.traverse(&[to], speed.copysign(to - from), samples);
+        let broken = session.guard.take_broken();
+        let whole = traversed.readings.len() - usize::from(broken.is_some());
         for (sample, reading) in (1_u32..).zip(&traversed.readings) {
             #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
-            let share = f64::from(sample) / samples as f64;
-            self.take(from + (to - from) * share, first(reading), 0.0, 0.0, reading.time, session)?;
+            let command = from + (to - from) * (f64::from(sample) / samples as f64);
+            if sample as usize > whole {
+                self.keep(command, first(reading), 0.0, 0.0, reading.time);
+            } else {
+                self.take(command, first(reading), 0.0, 0.0, reading.time, session)?;
+            }
         }
         traversed.fault.map_or(Ok(()), |fault| Err(fault.into()))
     }
@@ -196,6 +219,19 @@ impl Cycling {
         wall_time: f64,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
+        let step = self.keep(command, (displacement, restoring_force), force_scatter, relaxation, wall_time);
+        session.measured(step, wall_time, displacement, restoring_force)
+    }
+
+    /// Keeps a step; its number.
+    fn keep(
+        &mut self,
+        command: f64,
+        (displacement, restoring_force): (f64, f64),
+        force_scatter: f64,
+        relaxation: f64,
+        wall_time: f64,
+    ) -> u64 {
         let steps = &mut self.history.steps;
         let energy = steps.last().map_or(0.0, |before| {
             before.energy + work((before.displacement, before.restoring_force), (displacement, restoring_force))
@@ -213,7 +249,7 @@ impl Cycling {
             relaxation,
             energy,
         });
-        session.measured(step, wall_time, displacement, restoring_force)
+        step
     }
 
     /// The cycle whose first point is step `from`, now that it is whole.

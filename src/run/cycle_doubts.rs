@@ -144,7 +144,7 @@ fn values(history: &CycleHistory, noise: f64) -> Vec<f64> {
 
 /// The record as other readings would have made it.
 fn distorted(history: &CycleHistory, distortion: Distortion) -> CycleHistory {
-    let Distortion { force_scale, displacement_scale, zero, noise } = distortion;
+    let Distortion { force_scale, displacement_scale, zero, noise, .. } = distortion;
     let mut other = CycleHistory { backbone: None, ..history.clone() };
     for step in &mut other.steps {
         let [of_force, of_displacement] = noise.map_or([0.0; 2], |noise| noise.errors(step.step, 0));

@@ -136,4 +136,7 @@ fn a_limit_stops_it_with_what_was_recorded() {
     let record = run_unwatched(&plan);
     assert!(matches!(record.outcome, Outcome::Aborted { .. }));
     assert_eq!((history(&record).cycles.len(), number(&record, 0, "cycles").0), (1, Some(1.0)));
+    let (last, before) = history(&record).steps.split_last().unwrap();
+    assert!(last.restoring_force > 2.0 && before.iter().all(|step| step.restoring_force <= 2.0), "{last:?}");
+    assert_eq!(number(&record, 0, "max_force").0, Some(last.restoring_force));
 }

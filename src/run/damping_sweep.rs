@@ -260,6 +260,8 @@ impl Sweep {
         let stiffness = self.stiffness.map_or(0.0, |estimate| estimate.value);
         let steady_from = self.steady_from(seconds);
         let traversed = session.guard.traverse(&[to], velocity, samples);
+        let broken = session.guard.take_broken();
+        let whole = traversed.readings.len() - usize::from(broken.is_some());
         for (sample, reading) in (1_u32..).zip(&traversed.readings) {
             let (displacement, restoring_force) = first(reading);
             #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
@@ -274,7 +276,9 @@ impl Sweep {
                 damping_force: restoring_force - stiffness * displacement,
                 steady: steady_from <= passed && passed <= 1.0 - END,
             });
-            session.measured(step, reading.time, displacement, restoring_force)?;
+            if sample as usize <= whole {
+                session.measured(step, reading.time, displacement, restoring_force)?;
+            }
         }
         traversed.fault.map_or(Ok(began..self.steps.len()), |fault| Err(fault.into()))
     }

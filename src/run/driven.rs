@@ -269,16 +269,18 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.asked(&Request::Commit);
         self.commits += 1;
         let nothing = None;
+        let felt = self.felt.displacement.iter().zip(&self.felt.force);
         // At rest, as it is whenever a client asks.
-        let axis = |axis: usize| AxisReport {
-            command: self.guard.commanded()[axis],
-            displacement: self.felt.displacement[axis],
-            force: self.felt.force[axis],
+        let mut axes = self.guard.commanded().iter().zip(felt).map(|(command, (displacement, force))| AxisReport {
+            command: *command,
+            displacement: *displacement,
+            force: *force,
             velocity: 0.0,
             acceleration: 0.0,
-        };
-        let AxisReport { command, displacement, force, .. } = axis(0);
-        let others = (1..self.guard.commanded().len()).map(axis).collect();
+        });
+        // A client of which nothing was ever read has done no step.
+        let Some(AxisReport { command, displacement, force, .. }) = axes.next() else { return };
+        let others = axes.collect();
         self.observer.step_done(&StepReport {
             step: self.commits,
             time: self.guard.time(),

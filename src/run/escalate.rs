@@ -11,12 +11,12 @@ use super::stepping::above_critical;
 use super::stop::Stop;
 use super::unload::{MOST_TARGETS, to_rest};
 use crate::formula::{ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::{Between, DecisionRule, Escalate, Plan};
+use crate::plan::{Between, Escalate, Plan};
 use crate::quantity::Dimension;
 use crate::quantity::display::readable;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
 use crate::uncertainty::{Contribution, Source, combined, share};
-use crate::verdict::{Verdict, assess_on_blow};
+use crate::verdict::{Declared, Verdict, assess_on_blow};
 
 pub(super) fn perform(plan: &Escalate, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
     let mut history = EscalateHistory::default();
@@ -56,7 +56,7 @@ fn run(
         let told = readable(energy, Dimension::ENERGY);
         if let Some(blow) = history.blows.last_mut() {
             blow.rest = Some(rest);
-            let (held, reason) = decide(plan, whole.decision_rule, blow, inputs.results());
+            let (held, reason) = decide(plan, whole, blow, inputs.results());
             blow.held = held;
             let ends = match held {
                 Some(true) => None,
@@ -77,8 +77,9 @@ fn run(
 }
 
 /// Whether the condition holds after a blow, decided once the specimen is where the next one begins; else why that is not known.
-fn decide(plan: &Escalate, rule: DecisionRule, blow: &Blow, before: &dyn Results) -> (Option<bool>, String) {
-    let known = OfBlow { own: plan.own, results: as_brought(blow, plan.between), before };
+fn decide(plan: &Escalate, whole: &Plan, blow: &Blow, before: &dyn Results) -> (Option<bool>, String) {
+    let of_blow = OfBlow { own: plan.own, results: as_brought(blow, plan.between), before };
+    let (rule, known) = (whole.decision_rule, Declared::of(whole, &of_blow));
     let parts = plan.condition.iter().map(|part| assess_on_blow(part, rule, &known, (plan.own, &blow.history)));
     let worst = parts.reduce(|worst, next| if next.verdict > worst.verdict { next } else { worst });
     match worst {
@@ -191,7 +192,17 @@ impl Results for OfBlow<'_> {
     fn degrees(&self, source: Source) -> f64 {
         self.before.degrees(source)
     }
+
+    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+        if reference.procedure == self.own {
+            return self.results.iter().find(|result| result.name == reference.name)?.no_uncertainty(IMPACT);
+        }
+        self.before.no_uncertainty(reference)
+    }
 }
+
+/// What a blow is a procedure of.
+const IMPACT: &str = "impact";
 
 /// The largest of a result of length over all blows, as uncertain as that of its blow.
 fn largest(blows: &[Blow], name: &'static str) -> NamedResult {

@@ -1,6 +1,6 @@
 //! Blows of rising energy, as run on a virtual rig.
 
-use super::testing::{elastic_plan, every, impact, list, number, run_unwatched};
+use super::testing::{as_of, elastic_plan, every, impact, list, number, run_unwatched};
 use crate::formula::Formula::{self, Constant};
 use crate::formula::{Part, ProcedureId, ResultReference};
 use crate::plan::{
@@ -87,7 +87,7 @@ fn every_blow_is_an_impact_of_its_own() {
     }
     let apart = run_unwatched(&plan);
     for (index, blow) in history(&record).blows.iter().enumerate() {
-        assert_eq!(blow.results, apart.procedures[2 * index].results, "blow {index}");
+        assert_eq!(blow.results, as_of(0, &apart.procedures[2 * index].results), "blow {index}");
         let rest = number(&apart, 2 * index + 1, "residual_displacement").0;
         assert_eq!(blow.rest_of_struck().map(|rest| rest.0), rest);
     }

@@ -8,7 +8,7 @@ use super::session::Session;
 use super::stepping::FrameSteps;
 use super::stop::Stop;
 use super::storey_impact::no_frame;
-use super::study::{CLOSE, Effort, Study, give, give_entry, is_alike};
+use super::study::{CLOSE, Effort, FINER, Refined, Study, give, give_entry, is_alike};
 use crate::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Floors, FrameRun};
@@ -35,6 +35,8 @@ pub(super) struct FrameDoubts<'run> {
     pub results: &'run dyn Results,
     pub procedure: ProcedureId,
     pub noise: DeclaredNoise,
+    /// By how much its damping ratio was raised to none.
+    pub lift: f64,
     /// Which blow of the procedure it is, from 0: each has errors of its own.
     pub blow: u16,
 }
@@ -66,6 +68,7 @@ impl<'run> FrameDoubts<'run> {
             results: inputs.results(),
             procedure: inputs.procedure(),
             noise: session.guard.declared_noise(),
+            lift: inputs.lift(),
             blow: 0,
         }
     }
@@ -123,11 +126,6 @@ impl<'run> FrameDoubts<'run> {
         }
     }
 
-    /// Whether anything at all is uncertain.
-    pub fn is_exact(&self, sources: &[Source]) -> bool {
-        sources.is_empty() && !self.is_sampled()
-    }
-
     fn is_sampled(&self) -> bool {
         self.errors(0).iter().any(|noise| noise.force > 0.0 || noise.displacement > 0.0)
     }
@@ -148,24 +146,32 @@ impl<'run> FrameDoubts<'run> {
         (0..self.floors()).map(of_axis).collect()
     }
 
-    /// The runs to take: `job` makes one of moved sources and a distorted way.
+    /// The runs to take: `job` makes one of moved sources and a distorted way, in so many steps for each of the run, which `told` these
+    /// numbers.
     pub fn study<J>(
         &self,
         sources: &[Source],
         effort: Effort,
+        told: Vec<f64>,
         job: impl Fn(Shifts<'_>, FrameDistortion) -> Result<J, String>,
     ) -> Result<Study<J>, String> {
         let (drawn, moved): (Vec<Source>, Vec<Source>) = sources.iter().partition(|source| effort.together && is_alike(**source));
-        let mut study = Study { moved: Vec::new(), draws: Vec::new() };
+        let [half, quarter] = FINER.map(|finer| job(&[], FrameDistortion { finer, ..FrameDistortion::none(self.floors()) }));
+        let refined = Refined { source: Source::TimeStep { procedure: self.procedure }, told, jobs: [half?, quarter?] };
+        let mut study = Study { moved: Vec::new(), refined: Some(refined), draws: Vec::new() };
+        let moved_alone = |(source, by): (Source, f64)| job(&[(source, by)], self.distortion(&[(source, by)], Vec::new()));
         for source in moved {
-            let at = |by: &f64| job(&[(source, *by)], self.distortion(&[(source, *by)], Vec::new()));
-            study.moved.push((source, effort.moves().iter().map(at).collect::<Result<_, String>>()?));
+            study.moved.push((source, effort.shifted(|by| moved_alone((source, by)))?));
         }
         for (draw, source) in effort.draws(self.procedure, self.blow) {
             // Inputs are drawn as a reading is that the run never has.
             let sign = |place: u64| Noise { force: 1.0, displacement: 0.0, draw }.errors(u64::MAX >> 16 ^ place, 0)[0];
             let shifts: Vec<(Source, f64)> = drawn.iter().zip(0..).map(|(source, place)| (*source, sign(place))).collect();
-            study.draws.push((source, job(&shifts, self.distortion(&shifts, self.errors(draw)))?));
+            let drawn = |shifts: &[(Source, f64)]| job(shifts, self.distortion(shifts, self.errors(draw)));
+            // What cannot be moved to one side is moved to the other.
+            let within = |(source, by): &(Source, f64)| (*source, if moved_alone((*source, *by)).is_ok() { *by } else { -by });
+            let made = drawn(&shifts).or_else(|_| drawn(&shifts.iter().map(within).collect::<Vec<(Source, f64)>>()));
+            study.draws.push((source, made?));
         }
         Ok(study)
     }
@@ -238,7 +244,7 @@ impl<'run> FrameDoubts<'run> {
         shifts: Shifts<'_>,
         then: &mut dyn FnMut(&mut Inputs<'_>) -> Result<T, Stop>,
     ) -> Result<T, Stop> {
-        with_moved(self.results, shifts, &mut |results| then(&mut Inputs::new(results, self.procedure)))
+        with_moved(self.results, shifts, &mut |results| then(&mut Inputs::moved(results, self.procedure, self.lift)))
     }
 
     /// How the run was integrated.
@@ -254,6 +260,12 @@ impl<'run> FrameDoubts<'run> {
             resolution: self.noise.resolution,
             gliding: matches!(self.stepping.mode, Mode::Continuous { .. }),
         }
+    }
+
+    /// The same in so many steps for each of its own.
+    pub fn finer_run(&self, steps: &FrameSteps, finer: u8) -> FrameRun {
+        let run = self.run(steps);
+        FrameRun { time_step: run.time_step / f64::from(finer), steps: run.steps * u64::from(finer), ..run }
     }
 
     /// The way that was recorded.
@@ -282,12 +294,11 @@ fn with_moved<T>(results: &dyn Results, shifts: Shifts<'_>, then: &mut dyn FnMut
 
 /// Whether the floors came to what is told of them; `displacement` names the result with the floors' largest.
 pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResult]) -> bool {
-    let shear = [floors.max_base_shear];
+    // The largest shear is told without what noise adds to it: the drifts say that the way is the recorded one.
     let lists = [
         (displacement, floors.max_displacement.as_slice()),
         ("max_drift", &floors.max_drift),
         ("final_drift", &floors.final_drift),
-        ("max_base_shear", &shear),
     ];
     lists.into_iter().all(|(name, found)| {
         let told = match told.iter().find(|result| result.name == name).map(|result| &result.value) {
@@ -298,6 +309,19 @@ pub(super) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
         told.len() == found.len() && told.iter().zip(found).all(near)
     })
+}
+
+/// The numbers that a run told, in the order of a layout; NaN where one does not exist.
+pub(super) fn numbers_told(layout: &[(&'static str, usize)], results: &[NamedResult]) -> Vec<f64> {
+    let of = |(name, count): &(&'static str, usize)| {
+        let values = match results.iter().find(|result| result.name == *name).map(|result| &result.value) {
+            Some(ResultValue::List(values)) => values.clone(),
+            Some(ResultValue::Number { value, .. }) => value.iter().copied().collect(),
+            None => Vec::new(),
+        };
+        values.into_iter().chain(std::iter::repeat(f64::NAN)).take(*count).collect::<Vec<f64>>()
+    };
+    layout.iter().flat_map(of).collect()
 }
 
 /// Results that wait for the end of the run, beside those of any impact.

@@ -2,7 +2,7 @@
 
 use super::Unwatched;
 use super::session::Session;
-use super::testing::{elastic_plan, list, number, run_unwatched, struck_frame};
+use super::testing::{as_of, elastic_plan, list, number, run_unwatched, struck_frame};
 use super::unload::{of_frame, to_rest};
 use crate::formula::Formula::Constant;
 use crate::formula::{Formula, Part, ProcedureId, ResultReference};
@@ -259,7 +259,7 @@ fn a_row_of_blows_on_a_storey_is_the_blows_written_out() {
     let apart = run_unwatched(&plan);
     assert_eq!(apart.outcome, Outcome::Completed);
     for (index, blow) in blows(&row).blows.iter().enumerate() {
-        assert_eq!(blow.results, apart.procedures[2 * index].results, "blow {index}");
+        assert_eq!(blow.results, as_of(0, &apart.procedures[2 * index].results), "blow {index}");
         let rest = blow.rest.as_ref().unwrap();
         assert_eq!(rest.drift(), list(&apart, 2 * index + 1, "residual_drift"));
         // The next blow begins there, with nothing to spring back.

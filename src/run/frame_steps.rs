@@ -119,14 +119,20 @@ pub(super) fn run<S: Stepped>(
     stepped.keep(&at_rest, &vec![Tracking::default(); commanded.len()], session);
     let mut struck = false;
     for _ in 1..=frame.steps {
-        let reading = if let Some(gliding) = &mut gliding {
+        let (reading, broken) = if let Some(gliding) = &mut gliding {
             gliding.step(|| foretold(&mut stepped), session)?
         } else {
             session.guard.move_to(stepped.predict(), None)?;
             session.guard.pause(frame.pause)?;
-            session.guard.read()?
+            session.read_kept()?
         };
         stepped.complete(&reading);
+        if let Some(stop) = broken {
+            let state = stepped.frame().clone();
+            let axes = monitors.take(&state.target, &reading, stepped.taken(&reading.force));
+            stepped.keep(&state, &axes, session);
+            return Err(stop);
+        }
         let (before, now) = (struck, stepped.is_struck());
         stiffer.take(&reading, before || now, session);
         struck = now;

@@ -56,12 +56,20 @@ impl Gliding {
         Self { axes, time_scale, step_time: time_scale * time_step }
     }
 
-    /// One step. `foretell` is asked while the actuators are on their way.
-    pub(super) fn step(&mut self, foretell: impl FnOnce() -> Vec<Passing>, session: &mut Session<'_>) -> Result<Reading, Stop> {
+    /// One step: the reading at its end, or where it broke a limit, and what ends the run then. `foretell` is asked while the actuators
+    /// are on their way.
+    pub(super) fn step(
+        &mut self,
+        foretell: impl FnOnce() -> Vec<Passing>,
+        session: &mut Session<'_>,
+    ) -> Result<(Reading, Option<Stop>), Stop> {
         let seconds = AHEAD * self.step_time;
         let ahead = self.axes.iter().map(|axis| Path::accelerated(axis.place, axis.velocity, axis.acceleration, seconds));
         let ahead: Vec<Path> = ahead.collect();
-        follow(&ahead, READINGS.0, session)?;
+        let (reading, broken) = follow(&ahead, READINGS.0, session)?;
+        if broken.is_some() {
+            return Ok((reading, broken));
+        }
         let seconds = (1.0 - AHEAD) * self.step_time;
         let on = |(axis, (ahead, passing)): (&mut Motion, (&Path, Passing))| {
             let velocity = passing.velocity / self.time_scale;
@@ -77,15 +85,21 @@ impl Gliding {
     pub(super) fn brake(&self, session: &mut Session<'_>) -> Result<(), Stop> {
         let seconds = BRAKING * self.step_time;
         let brake = |axis: &Motion| Path::accelerated(axis.place, axis.velocity, -axis.velocity / seconds, seconds);
-        follow(&self.axes.iter().map(brake).collect::<Vec<Path>>(), READINGS.1, session).map(|_| ())
+        let (_, broken) = follow(&self.axes.iter().map(brake).collect::<Vec<Path>>(), READINGS.1, session)?;
+        broken.map_or(Ok(()), Err)
     }
 }
 
-/// Follows paths; the reading at their end.
-fn follow(paths: &[Path], readings: usize, session: &mut Session<'_>) -> Result<Reading, Stop> {
+/// Follows paths; the reading at their end, or the one that broke a limit with what ends the run then.
+fn follow(paths: &[Path], readings: usize, session: &mut Session<'_>) -> Result<(Reading, Option<Stop>), Stop> {
     let mut followed = session.guard.glide(paths, readings);
-    if let Some(fault) = followed.fault {
-        return Err(fault.into());
+    let broken = session.guard.take_broken();
+    match (followed.fault, broken) {
+        (Some(fault), Some(reading)) => Ok((reading, Some(fault.into()))),
+        (Some(fault), None) => Err(fault.into()),
+        (None, _) => {
+            let last = followed.readings.pop().ok_or_else(|| RigFault::Device("nothing was read on the way".to_owned()))?;
+            Ok((last, None))
+        }
     }
-    followed.readings.pop().ok_or_else(|| RigFault::Device("nothing was read on the way".to_owned()).into())
 }

@@ -92,7 +92,7 @@ impl Setting {
         inputs.also_uncertain(plan.mass_uncertainty);
         let stiffness = inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
         let (stiffness, operator_stiffness) = (stiffness.value, high_end(stiffness));
-        let damping = inputs.not_negative("damping", &plan.damping, Dimension::DAMPING)?;
+        let damping = inputs.damping("damping", &plan.damping, Dimension::DAMPING)?;
         let law = law(&plan.contact, inputs)?;
         let approach = Approach::of(striker, law.stiffness());
         let critical_time_step = approach.critical_time_step(mass, stiffness);

@@ -144,6 +144,14 @@ fn a_breach_keeps_every_step_and_what_follows_from_them() {
     assert_eq!(value(&record, "steps"), count(last.step));
     assert_eq!(record.events.last().unwrap().kind, EventKind::LimitBreach);
     assert_eq!(record.events.last().unwrap().step, Some(last.step));
+    // A force is found out by reading: the step that was read past the limit is there, and is what the specimen was taken to.
+    plan.limits = crate::plan::Limits { force: Interval { low: -30.0, high: 30.0 }, ..crate::plan::Limits::NONE };
+    let record = run_unwatched(&plan);
+    assert!(matches!(record.outcome, Outcome::Aborted { .. }));
+    let (last, before) = steps(&record).split_last().unwrap();
+    assert!(last.restoring_force > 30.0 && before.iter().all(|step| step.restoring_force <= 30.0), "{last:?}");
+    assert_eq!(value(&record, "max_displacement"), last.displacement);
+    assert_eq!(value(&record, "steps"), count(last.step));
 }
 
 #[test]

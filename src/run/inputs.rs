@@ -4,18 +4,41 @@
 use super::stop::Stop;
 use crate::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::quantity::Dimension;
+use crate::quantity::display::readable;
+use crate::uncertainty::known;
 
 /// Evaluates, and remembers what came out.
 pub(super) struct Inputs<'record> {
     results: &'record dyn Results,
     procedure: ProcedureId,
     recorded: Vec<(&'static str, Estimate, Dimension)>,
+    /// Whether a source is moved: then nothing is raised to its bound by itself.
+    moved: bool,
+    /// By how much the damping was raised to none, in its own unit.
+    lift: f64,
+    /// What a reader must know of how an input was taken.
+    observations: Vec<String>,
 }
 
 impl<'record> Inputs<'record> {
     /// Of the procedure at this place of the plan.
     pub(super) fn new(results: &'record dyn Results, procedure: ProcedureId) -> Self {
-        Self { results, procedure, recorded: Vec::new() }
+        Self { results, procedure, recorded: Vec::new(), moved: false, lift: 0.0, observations: Vec::new() }
+    }
+
+    /// The same with a source moved, of a run whose damping was raised by so much.
+    pub(super) fn moved(results: &'record dyn Results, procedure: ProcedureId, lift: f64) -> Self {
+        Self { moved: true, lift, ..Self::new(results, procedure) }
+    }
+
+    /// By how much the damping was raised to none.
+    pub(super) const fn lift(&self) -> f64 {
+        self.lift
+    }
+
+    /// What a reader must know of how inputs were taken.
+    pub(super) fn take_observations(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.observations)
     }
 
     /// Whose inputs they are.
@@ -55,6 +78,32 @@ impl<'record> Inputs<'record> {
             value if value >= 0.0 => Ok(value),
             value => Err(Stop::BadInput { field, value, dimension, wanted: "at least 0".into() }),
         }
+    }
+
+    /// Damping, or its ratio: at least 0. What was measured below 0 by no more than its expanded uncertainty is taken as 0, with the
+    /// uncertainty that it has.
+    pub(super) fn damping(&mut self, field: &'static str, formula: &Formula, dimension: Dimension) -> Result<f64, Stop> {
+        let value = self.number(field, formula, dimension)? + self.lift;
+        if value >= 0.0 {
+            return Ok(value);
+        }
+        let bad = |wanted: &'static str| Stop::BadInput { field, value, dimension, wanted: wanted.into() };
+        let parts = formula.contributions(self.results, None).map_err(|error| Stop::NoInput { field, error })?;
+        let Some(known) = known(&parts, self.results).filter(|known| !self.moved && known.standard > 0.0) else {
+            return Err(bad("at least 0"));
+        };
+        if -value > known.expanded() {
+            return Err(bad("at least 0, and is below 0 by more than its expanded uncertainty"));
+        }
+        self.lift = -value;
+        if let Some((_, estimate, _)) = self.recorded.last_mut() {
+            estimate.value = 0.0;
+        }
+        let (value, expanded) = (readable(value, dimension), readable(known.expanded(), dimension));
+        let text =
+            format!("`{field}` was measured as {value}, U = {expanded}, which is not significantly below 0: it is taken as 0");
+        self.observations.push(text);
+        Ok(0.0)
     }
 
     /// A number above 0 with its uncertainty; `critical` (s) is for `time_step`.

@@ -114,6 +114,8 @@ pub mod tape;
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod time_step_tests;
 mod triggers;
 mod unload;
 #[cfg(test)]
@@ -131,7 +133,7 @@ use serde::{Deserialize, Serialize};
 use crate::formula::ProcedureId;
 use crate::mechanics::monitor::Tracking;
 use crate::plan::{DriftCheck, Plan, Procedure, ProcedureKind, ZeroAfter};
-use crate::record::{Event, History, NamedResult, Outcome, ProcedureRecord, Record};
+use crate::record::{Event, EventKind, History, NamedResult, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
 use inputs::Inputs;
 use session::Session;
@@ -317,6 +319,7 @@ pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Recor
         session.enter(procedure, plan);
         let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
         let Performed { mut history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
+        inputs.take_observations().into_iter().for_each(|text| session.event(EventKind::Remark, text));
         attribution::attribute(&procedure.kind, &history, plan, (&inputs, session.guard.declared_noise()), &mut results);
         rounding_doubts::floor(&mut history, &results);
         let inputs = inputs.into_recorded();

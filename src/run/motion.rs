@@ -152,7 +152,7 @@ mod tests {
                 "motion    it moves to 1 mm",
                 "travel    not known; limits −5 mm .. 10 mm",
                 "force     not known; no limit",
-                "speed     not known; limit 200 mm/s",
+                "speed     not known; limit 0.2 m/s",
                 "duration  not known",
             ]
         );

@@ -2,7 +2,7 @@
 
 use super::Performed;
 use super::inputs::Inputs;
-use super::session::Session;
+use super::session::{Session, first};
 use super::stiffness_ramp::secant;
 use super::stop::Stop;
 use crate::plan::Move;
@@ -20,7 +20,8 @@ fn go(plan: &Move, inputs: &mut Inputs<'_>, session: &mut Session<'_>, steps: &m
     let speed = inputs.speed(plan.speed.as_ref())?;
     for (step, target) in (1..).zip(session.guard.way_to(&[to])) {
         session.guard.move_to(&target, speed)?;
-        let (displacement, restoring_force) = session.read()?;
+        let (reading, broken) = session.read_kept()?;
+        let (displacement, restoring_force) = first(&reading);
         let wall_time = session.guard.time();
         steps.push(RampStep {
             step,
@@ -33,6 +34,9 @@ fn go(plan: &Move, inputs: &mut Inputs<'_>, session: &mut Session<'_>, steps: &m
             tangent_stiffness: tangent(steps.last(), displacement, restoring_force),
             returning: false,
         });
+        if let Some(stop) = broken {
+            return Err(stop);
+        }
         session.measured(step, wall_time, displacement, restoring_force)?;
     }
     Ok(())

@@ -1,14 +1,14 @@
 //! What the uncertainty of the inputs makes of the results of a blow. In: what went into it, with its sources of
 //! uncertainty, and the recorded steps. Out: for each result, what each source contributes. The run itself is not touched:
 //! its recorded way is taken again with one input moved at a time (JCGM 100:2008, 5.1.3 and 5.1.4: half the difference of
-//! the results at ±u), and with drawn errors of all its readings. It moves no rig.
+//! the results at ±u), with drawn errors of all its readings, and in finer time steps. It moves no rig.
 
 use super::bounded::Bounded;
 use super::impact::Setting;
 use super::inputs::Inputs;
 use super::rounding_doubts::Quanta;
-use super::study::{CLOSE, Effort, Study, Taken, Tick, Unknown, give, over_rules};
-use crate::formula::{Formula, ProcedureId, Results};
+use super::study::{CLOSE, Effort, FINER, Refined, Study, Taken, Tick, Unknown, give, over_rules};
+use crate::formula::{Formula, ProcedureId, ResultValue, Results};
 use crate::mechanics::contact::ContactLaw;
 use crate::mechanics::recorded_path::{Distortion, Noise, Reading, RecordedPath, UNSEEN};
 use crate::mechanics::rerun::{OUTCOMES, Outcome, foretold, rerun};
@@ -38,13 +38,15 @@ pub(super) struct Doubts<'run> {
     results: &'run dyn Results,
     procedure: ProcedureId,
     noise: DeclaredNoise,
+    /// By how much its damping was raised to none.
+    lift: f64,
     /// Which blow of the procedure it is, from 0: each has errors of its own.
     blow: u16,
 }
 
 impl<'run> Doubts<'run> {
     pub(super) fn new(plan: &'run Impact, whole: &'run Plan, inputs: &Inputs<'run>, noise: DeclaredNoise) -> Self {
-        Self { plan, whole, results: inputs.results(), procedure: inputs.procedure(), noise, blow: 0 }
+        Self { plan, whole, results: inputs.results(), procedure: inputs.procedure(), noise, lift: inputs.lift(), blow: 0 }
     }
 
     /// Of another blow of the same procedure, from 0.
@@ -64,9 +66,6 @@ impl<'run> Doubts<'run> {
         let sources = self.sources();
         let (force, displacement) = reading_errors(self.whole, self.noise, 0);
         let sampled = force > 0.0 || displacement > 0.0;
-        if sources.is_empty() && !sampled {
-            return Ok(());
-        }
         let path = self.path(setting, steps).ok_or_else(|| "nothing was recorded".to_owned())?;
         let again = rerun(&setting.input, self.plan.until, setting.steps, &path, Distortion::NONE);
         if !same(&again.summary, recorded) {
@@ -74,10 +73,18 @@ impl<'run> Doubts<'run> {
         }
         let rules = path.rules();
         let effort = Effort::of(steps.len() as u64 * rules.len() as u64, sources.len(), 0, sampled);
-        let mut study = Study { moved: Vec::new(), draws: Vec::new() };
+        let finer = |finer: u8| {
+            let mut setting = *setting;
+            setting.input.time_step /= f64::from(finer);
+            setting.steps *= u64::from(finer);
+            Job { setting, distortion: Distortion { finer, ..Distortion::NONE } }
+        };
+        let names = || OUTCOMES.iter().copied().chain(["critical_time_step"]);
+        let told = names().map(|name| told_of(results, name)).collect();
+        let refined = Refined { source: Source::TimeStep { procedure: self.procedure }, told, jobs: FINER.map(finer) };
+        let mut study = Study { moved: Vec::new(), refined: Some(refined), draws: Vec::new() };
         for source in sources {
-            let jobs = effort.moves().iter().map(|by| self.moved(setting, source, *by)).collect::<Result<_, String>>()?;
-            study.moved.push((source, jobs));
+            study.moved.push((source, effort.shifted(|by| self.moved(setting, source, by))?));
         }
         for (draw, source) in effort.draws(self.procedure, self.blow) {
             let distortion = Distortion { noise: Some(Noise { force, displacement, draw }), ..Distortion::NONE };
@@ -100,10 +107,11 @@ impl<'run> Doubts<'run> {
                 part.smooth = false;
             }
         }
-        round_times(self.procedure, setting.input.time_step, &mut contributions);
+        for (name, quantum) in whole_steps(setting.input.time_step) {
+            at_least(quantum, self.procedure, OUTCOMES.iter().position(|outcome| *outcome == name), &mut contributions);
+        }
         no_known_force(setting.input.law, recorded, &mut contributions);
-        let names = OUTCOMES.iter().copied().chain(["critical_time_step"]);
-        for (name, parts) in names.zip(contributions) {
+        for (name, parts) in names().zip(contributions) {
             if let Some(result) = results.iter_mut().find(|result| result.name == name) {
                 give(result, parts);
             }
@@ -171,7 +179,7 @@ impl<'run> Doubts<'run> {
             _ => {}
         }
         let results = Moved { results: self.results, source, by };
-        let mut inputs = Inputs::new(&results, self.procedure);
+        let mut inputs = Inputs::moved(&results, self.procedure, self.lift);
         // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion; they share the
         // critical time step of the fastest.
         let faster = striker.velocity / declared.velocity;
@@ -223,13 +231,25 @@ pub(super) fn quanta(plan: &Plan, declared: DeclaredNoise, axis: usize) -> Quant
     Quanta { noise, force, displacement }
 }
 
-/// A stop is told at the end of its step, up to Δt late; a peak at the nearer end, up to Δt/2 off.
-pub(super) fn round_times(procedure: ProcedureId, time_step: f64, contributions: &mut [Vec<Contribution>]) {
+/// Times that are told to a whole step, with the standard uncertainty of a quantum Δt, Δt/√12 (s).
+pub(super) fn whole_steps(time_step: f64) -> [(&'static str, f64); 2] {
+    ["stop_time", "time_of_max_displacement"].map(|name| (name, time_step / 12.0_f64.sqrt()))
+}
+
+/// Lets the time step contribute so much at least to the number at a place.
+pub(super) fn at_least(most: f64, procedure: ProcedureId, place: Option<usize>, contributions: &mut [Vec<Contribution>]) {
     let source = Source::TimeStep { procedure };
-    for (name, off) in [("stop_time", time_step / 3.0_f64.sqrt()), ("time_of_max_displacement", time_step / 12.0_f64.sqrt())] {
-        if let Some(index) = OUTCOMES.iter().position(|outcome| *outcome == name) {
-            contributions[index].push(Contribution::new(source, off));
-        }
+    let parts = place.and_then(|place| contributions.get_mut(place)).into_iter().flatten();
+    for part in parts.filter(|part| part.source == source && part.amount.abs() < most) {
+        part.amount = most;
+    }
+}
+
+/// The number of a result that is one; NaN where it does not exist.
+pub(super) fn told_of(results: &[NamedResult], name: &str) -> f64 {
+    match results.iter().find(|result| result.name == name).map(|result| &result.value) {
+        Some(ResultValue::Number { value: Some(value), .. }) => *value,
+        _ => f64::NAN,
     }
 }
 

@@ -33,6 +33,11 @@ fn contributions<'a>(record: &'a Record, procedure: usize, name: &str) -> &'a [C
     &record.procedures[procedure].result(name).unwrap_or_else(|| panic!("{name} is missing")).contributions
 }
 
+/// Contributions of all but the time step.
+fn beside_the_step(parts: &[Contribution]) -> Vec<Contribution> {
+    parts.iter().filter(|part| !matches!(part.source, Source::TimeStep { .. })).copied().collect()
+}
+
 /// What a source contributes to a result.
 fn from(record: &Record, name: &str, source: Source) -> f64 {
     let parts = contributions(record, 0, name);
@@ -114,14 +119,17 @@ fn the_critical_step_is_as_uncertain_as_the_ramp() {
     assert!((of(Source::SpecimenMass(0)) / (0.01 * critical) - 1.0).abs() < 1e-3, "{parts:?}");
 }
 
-/// Nothing uncertain, nothing told.
+/// Nothing uncertain, nothing told but of the time step.
 #[test]
-fn an_exact_blow_has_no_uncertainty() {
+fn an_exact_blow_is_as_uncertain_as_its_time_step() {
     let record = run_unwatched(&plan(impact(constant(STIFFNESS))));
     for result in &record.procedures[0].results {
-        assert!(result.contributions.is_empty(), "{result:?}");
-        assert_eq!(number(&record, 0, result.name).1, None);
+        let of_step = |part: &Contribution| matches!(part.source, Source::TimeStep { .. });
+        assert!(result.contributions.iter().all(of_step), "{result:?}");
+        assert_eq!(number(&record, 0, result.name).1, combined(&result.contributions));
     }
+    assert_eq!(number(&record, 0, "striker_energy").1, Some(0.0));
+    assert!(number(&record, 0, "max_displacement").1 > Some(0.0));
 }
 
 /// Half the difference converges with the square of the move, here halved four times from a tenth of V0 and M.
@@ -198,7 +206,7 @@ fn noise_scatters_runs_as_its_draws_foretell() {
     let scatter = scatter(&values);
     // Both are sampled: 1/√(2·99) and 1/√(2·64), three standard deviations of their ratio.
     assert!((scatter / u - 1.0).abs() < 3.0 * (1.0 / 198.0_f64 + 1.0 / 128.0).sqrt(), "{scatter} of runs, {u} foretold");
-    let parts = contributions(&told, 0, "max_displacement");
+    let parts = beside_the_step(contributions(&told, 0, "max_displacement"));
     assert!(parts.iter().all(|part| matches!(part.source, Source::Readings { .. })));
     assert_eq!(parts.len(), 64);
 }
@@ -337,16 +345,18 @@ fn blows_of_one_striker_share_what_is_uncertain_of_it() {
         plan.rig.link = Link::Virtual(VirtualLink { noise, seed: 5, ..VirtualLink::default() });
         let record = run_unwatched(&plan);
         let crate::record::History::Escalate(history) = &record.procedures[0].history else { panic!() };
-        let of_blows: Vec<f64> = history
+        let of_blows = history
             .blows
             .iter()
             .map(|blow| blow.results.iter().find(|result| result.name == "absorbed_energy").unwrap())
-            .map(|result| combined(&result.contributions).unwrap())
-            .collect();
+            .map(|result| &result.contributions)
+            .collect::<Vec<_>>();
         // The list of all blows is as uncertain as they are.
         let listed = record.procedures[0].result("absorbed_energies").unwrap().entry_uncertainties();
-        assert_eq!(listed, of_blows.iter().map(|u| Some(*u)).collect::<Vec<_>>());
-        (of_blows, number(&record, 0, "absorbed_energy"), number(&record, 0, "max_displacement"))
+        assert_eq!(listed, of_blows.iter().map(|parts| combined(parts)).collect::<Vec<_>>());
+        let u = |name| (number(&record, 0, name).0, combined(&beside_the_step(contributions(&record, 0, name))));
+        let of_blows: Vec<f64> = of_blows.iter().map(|parts| combined(&beside_the_step(parts)).unwrap()).collect();
+        (of_blows, u("absorbed_energy"), u("max_displacement"))
     };
     let (of_blows, (total, u), (largest, largest_u)) = run(0.01, 0.0);
     // 1 % of V0 is 1 % of every speed, and so 2 % of every energy: the sum of the two, not its root of squares.

@@ -302,6 +302,29 @@ impl<'run> Session<'run> {
         Ok(first(&self.guard.read()?))
     }
 
+    /// One reading of every axis, and what ends the run where it breaks a limit: it was made all the same, and is kept.
+    pub(super) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
+        let read = self.guard.read();
+        self.kept(read)
+    }
+
+    /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
+    pub(super) fn read_moved_kept(&mut self) -> Result<(Reading, Option<[f64; 2]>, Option<Stop>), Stop> {
+        let read = self.guard.read_moved();
+        let (read, moved) = read.map_or_else(|fault| (Err(fault), None), |(reading, moved)| (Ok(reading), moved));
+        self.kept(read).map(|(reading, stop)| (reading, moved, stop))
+    }
+
+    fn kept(&mut self, read: Result<Reading, RigFault>) -> Result<(Reading, Option<Stop>), Stop> {
+        match read {
+            Ok(reading) => Ok((reading, None)),
+            Err(fault) => match self.guard.take_broken() {
+                Some(reading) => Ok((reading, Some(fault.into()))),
+                None => Err(fault.into()),
+            },
+        }
+    }
+
     /// Back to `place` (m), as one move or, where increments are limited, as equal ones.
     pub(super) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
         self.go_to_all(&[place], speed)

@@ -18,7 +18,7 @@ fn plan(behaviour: Behaviour, (pause, readings): (f64, u32), model: WatchedModel
     let asked = StiffnessRamp {
         displacements: (1..=6).map(|step| Formula::Constant(1e-3 * f64::from(step))).collect(),
         pause: Formula::Constant(pause),
-        relaxation: Some(WatchedHold { readings, model }),
+        relaxation: Some(WatchedHold { model, readings }),
         speed: Some(Formula::Constant(5e-3)),
         ..ramp(1e-3)
     };

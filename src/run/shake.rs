@@ -114,7 +114,7 @@ pub(super) fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(D
     };
     Ok(match plan {
         ShakeDamping::Rayleigh(ratio) => {
-            let ratio = known(inputs.number("damping_ratio", ratio, Dimension::NUMBER)?)?;
+            let ratio = known(inputs.damping("damping_ratio", ratio, Dimension::NUMBER)?)?;
             (rayleigh(ratio), ratio)
         }
         ShakeDamping::Modal(ratios) => {

@@ -2,12 +2,12 @@
 //! each number, what each source contributes. The recorded way is taken again, under the same ground.
 
 use super::bounded::{Bounded, farthest};
-use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
+use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late, numbers_told};
 use super::propagation::LEADS_ELSEWHERE;
 use super::shake::Setting;
 use super::stepping::{self, FrameSteps};
 use super::stop::Stop;
-use super::study::{Taken, Tick, Unknown, over_rules};
+use super::study::{FINER, Taken, Tick, Unknown, over_rules};
 use crate::mechanics::frame_path::{FrameDistortion, FramePath, FrameReading};
 use crate::mechanics::frame_rerun::{Floors, FloorsOutcome, FrameRun};
 use crate::mechanics::ground::acceleration_at;
@@ -26,6 +26,9 @@ struct Job {
     periods: Vec<f64>,
 }
 
+/// Steps of the finest run for each of the record.
+const FINEST: u8 = FINER[1];
+
 /// Gives `results` their contributions.
 pub(super) fn propagate(
     doubts: &FrameDoubts<'_>,
@@ -37,9 +40,6 @@ pub(super) fn propagate(
     tick: Tick,
 ) -> Result<(), Unknown> {
     let sources = doubts.sources(&[&plan.scale], &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)]);
-    if doubts.is_exact(&sources) {
-        return Ok(());
-    }
     let reading = |step: &crate::record::ShakeStep| FrameReading {
         target: step.command.clone(),
         displacement: step.displacement.clone(),
@@ -48,10 +48,11 @@ pub(super) fn propagate(
     let path = doubts.path(&setting.frame, history.steps.iter().map(reading).collect())?;
     let FrameSteps { time_step, steps, .. } = setting.frame;
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
-    let at = |step: u64| acceleration_at(&ground.times, &ground.accelerations, step as f64 * time_step);
-    let accelerations: Vec<f64> = (0..=steps).map(at).collect();
+    let at = |step: u64| acceleration_at(&ground.times, &ground.accelerations, step as f64 * time_step / f64::from(FINEST));
+    let accelerations: Vec<f64> = (0..=steps * u64::from(FINEST)).map(at).collect();
     let take = |job: &Job, path: &FramePath| {
-        let scaled: Vec<f64> = accelerations.iter().map(|acceleration| job.scale * acceleration).collect();
+        let own = accelerations.iter().step_by(usize::from(FINEST / job.distortion.finer));
+        let scaled: Vec<f64> = own.map(|acceleration| job.scale * acceleration).collect();
         job.run.shaken(&scaled, path, &job.distortion)
     };
     let numbers = |job: &Job, floors: &Floors| {
@@ -70,13 +71,16 @@ pub(super) fn propagate(
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
     let path = doubts.under_way(&setting.frame, path, std::mem::take(&mut found.velocities))?;
-    let job = |shifts: Shifts<'_>, distortion| {
-        let (run, periods, scale) = moved(doubts, plan, setting, (ground, shifts))
+    let lists = ["max_displacement", "max_drift", "final_drift", "periods"].map(|name| (name, floors));
+    let layout: Vec<(&'static str, usize)> = lists.into_iter().chain([("max_base_shear", 1)]).collect();
+    let job = |shifts: Shifts<'_>, distortion: FrameDistortion| {
+        let (run, periods, scale) = moved(doubts, plan, (setting, distortion.finer), (ground, shifts))
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))?;
         Ok(Job { run, scale, distortion, periods })
     };
     let rules = path.rules();
-    let study = doubts.study(&sources, doubts.effort(history.steps.len(), rules.len(), &sources), job)?;
+    let study =
+        doubts.study(&sources, doubts.effort(history.steps.len(), rules.len(), &sources), numbers_told(&layout, results), job)?;
     let far = |floors: &Floors| farthest(floors.max_displacement.iter().copied());
     let runs = Bounded::new(far(&found.between), numbers(&as_it_was, &found.between).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {
@@ -90,8 +94,6 @@ pub(super) fn propagate(
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
     let mut parts = runs.told(parts)?;
-    let lists = ["max_displacement", "max_drift", "final_drift", "periods"].map(|name| (name, floors));
-    let layout: Vec<(&'static str, usize)> = lists.into_iter().chain([("max_base_shear", 1)]).collect();
     if path.swung_back() {
         mark_late(&layout, &mut parts);
     }
@@ -99,11 +101,11 @@ pub(super) fn propagate(
     Ok(())
 }
 
-/// The frame, its periods (s) and the factor of the ground with sources moved. The time step stays: it was chosen.
+/// The frame, its periods (s) and the factor of the ground with sources moved, in so many steps for each of its own.
 fn moved(
     doubts: &FrameDoubts<'_>,
     plan: &Shake,
-    setting: &Setting,
+    (setting, finer): (&Setting, u8),
     (ground, shifts): (&Ground, Shifts<'_>),
 ) -> Result<(FrameRun, Vec<f64>, f64), Stop> {
     let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
@@ -114,6 +116,6 @@ fn moved(
     let source = Source::GroundScale(plan.ground);
     let by: f64 = shifts.iter().filter(|(moved, _)| *moved == source).map(|(_, by)| by).sum();
     let periods = properties.modes.periods.clone();
-    let run = FrameRun { matrices: properties.matrices, ..doubts.run(&setting.frame) };
+    let run = FrameRun { matrices: properties.matrices, ..doubts.finer_run(&setting.frame, finer) };
     Ok((run, periods, scale * (1.0 + by * ground.scale_uncertainty)))
 }

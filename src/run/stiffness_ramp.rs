@@ -18,7 +18,7 @@ use crate::quantity::Dimension;
 use crate::record::{BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory, RampStep};
 
 pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
-    let mut ramp = Ramp { steps: Vec::new(), starts: Vec::new(), holds: Vec::new(), last_reading: 0.0 };
+    let mut ramp = Ramp { steps: Vec::new(), starts: Vec::new(), before: Vec::new(), holds: Vec::new(), last_reading: 0.0 };
     let stop = ramp.run(plan, inputs, session).err();
     let foreseen = Foreseen::of(whole);
     let fits = ramp.fits(plan, foreseen);
@@ -33,7 +33,7 @@ pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_
     for text in told.remarks.into_iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text);
     }
-    let readings = Readings { starts: ramp.starts, steps: ramp.steps };
+    let (before, readings) = (ramp.before, Readings { starts: ramp.starts, steps: ramp.steps });
     let mut results = results(readings.direct(plan, session.guard.declared_noise().force), &fits);
     ramp_doubts::propagate(&readings, plan, (whole, session.guard.declared_noise()), inputs.procedure(), &mut results);
     results.extend(told.results);
@@ -41,7 +41,7 @@ pub(super) fn perform(plan: &StiffnessRamp, whole: &Plan, inputs: &mut Inputs<'_
     let (multilinear, relaxation, reached) =
         (multilinear.map(Box::new), told.relaxation.map(Box::new), told.reached.map(Box::new));
     let history =
-        RampHistory { start, steps: readings.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
+        RampHistory { start, before, steps: readings.steps, fit, bilinear, multilinear, holds: ramp.holds, relaxation, reached };
     Performed { history: History::Ramp(history), results, stop }
 }
 
@@ -61,6 +61,8 @@ struct Ramp {
     steps: Vec<RampStep>,
     /// The reading before the first increment of each repeat.
     starts: Vec<Point>,
+    /// The same as rows of the table.
+    before: Vec<RampStep>,
     /// Pauses of the first repeat, where they are watched.
     holds: Vec<Hold>,
     /// Rig time of the last reading before a move, s.
@@ -78,6 +80,7 @@ impl Ramp {
             self.last_reading = session.guard.time();
             let asked = plan.relaxation.filter(|_| repeat == 0);
             self.starts.push(start);
+            self.before.push(before_moving(self.steps.len() as u64, home, start, self.last_reading));
             let mut before = None;
             for command in &displacements {
                 before = Some(self.step(*command, false, before, plan.samples, (pause, asked), speed, session)?);
@@ -107,16 +110,27 @@ impl Ramp {
         session: &mut Session<'_>,
     ) -> Result<Point, Stop> {
         session.guard.move_to(&[command], speed)?;
-        let (settled, moved) = match asked {
-            Some(_) => session.guard.read_moved()?,
-            None => (session.guard.read()?, None),
+        let (settled, moved, mut broken) = match asked {
+            Some(_) => session.read_moved_kept()?,
+            None => session.read_kept().map(|(reading, broken)| (reading, None, broken))?,
         };
         let (_, settled_force) = first(&settled);
+        let mut readings = Vec::new();
         let watched = match asked {
+            _ if broken.is_some() => {
+                readings.push(first(&settled));
+                None
+            }
             Some(asked) => Some(hold::watched(&settled, pause, asked.readings, session)?),
             None => session.guard.pause(pause).map(|()| None)?,
         };
-        let readings = (0..samples.max(1)).map(|_| session.read()).collect::<Result<Vec<_>, _>>()?;
+        for _ in 0..samples.max(1) {
+            if broken.is_none() {
+                let (reading, stop) = session.read_kept()?;
+                readings.push(first(&reading));
+                broken = stop;
+            }
+        }
         let displacement = mean(readings.iter().map(|(x, _)| *x));
         let restoring_force = mean(readings.iter().map(|(_, r)| *r));
         let step = self.steps.len() as u64 + 1;
@@ -137,6 +151,9 @@ impl Ramp {
             tangent_stiffness: before.and_then(|before| secant(before, (displacement, restoring_force))),
             returning,
         });
+        if let Some(stop) = broken {
+            return Err(stop);
+        }
         session.measured(step, wall_time, displacement, restoring_force)?;
         Ok((displacement, restoring_force))
     }
@@ -165,6 +182,21 @@ impl Ramp {
                 Fits { multilinear, remarks, ..Fits::default() }
             }
         }
+    }
+}
+
+/// What was read before the first increment of a repeat, after so many steps.
+const fn before_moving(step: u64, command: f64, (displacement, restoring_force): Point, wall_time: f64) -> RampStep {
+    RampStep {
+        step,
+        wall_time,
+        command,
+        displacement,
+        restoring_force,
+        force_scatter: 0.0,
+        relaxation: 0.0,
+        tangent_stiffness: None,
+        returning: false,
     }
 }
 

@@ -2,9 +2,9 @@
 //! steps. Out: for each number, what each source contributes. The recorded way of all floors is taken again.
 
 use super::bounded::{Bounded, farthest};
-use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late};
+use super::frame_doubts::{FrameDoubts, Shifts, give_all, leads_there, mark_late, numbers_told};
 use super::impact::law;
-use super::propagation::{LEADS_ELSEWHERE, contact_formulas, no_known_force, round_times, same};
+use super::propagation::{LEADS_ELSEWHERE, at_least, contact_formulas, no_known_force, same, whole_steps};
 use super::stepping;
 use super::stop::Stop;
 use super::storey_impact::Setting;
@@ -17,7 +17,7 @@ use crate::mechanics::rerun::OUTCOMES;
 use crate::mechanics::summary::ImpactSummary;
 use crate::plan::{StoreyImpact, Striker};
 use crate::record::{FloorStep, NamedResult, StoreyImpactHistory};
-use crate::uncertainty::{Contribution, Source};
+use crate::uncertainty::Source;
 
 /// One run to take.
 struct Job {
@@ -43,9 +43,6 @@ pub(super) fn propagate(
     let stated =
         [(Source::StrikerMass(plan.striker), mass_uncertainty), (Source::StrikerVelocity(plan.striker), velocity_uncertainty)];
     let sources = doubts.sources(&contact_formulas(&plan.contact), &stated);
-    if doubts.is_exact(&sources) {
-        return Ok(());
-    }
     let reading = |step: &FloorStep| FrameReading {
         target: step.command.clone(),
         displacement: step.displacement.clone(),
@@ -66,12 +63,19 @@ pub(super) fn propagate(
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
     let path = doubts.under_way(&setting.frame, path, std::mem::take(&mut found.floors.velocities))?;
+    let lists = ["floor_displacement", "max_drift", "final_drift", "storey_energy", "periods"].map(|name| (name, floors));
+    let layout: Vec<(&'static str, usize)> = OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1)).chain(lists).collect();
     let job = |shifts: Shifts<'_>, distortion| {
         moved(doubts, plan, setting, shifts, distortion)
             .map_err(|stop| format!("an input moved by its uncertainty is none: {stop}"))
     };
     let rules = path.rules();
-    let study = doubts.study(&sources, doubts.effort(history.floors.len(), rules.len(), &sources), job)?;
+    let study = doubts.study(
+        &sources,
+        doubts.effort(history.floors.len(), rules.len(), &sources),
+        numbers_told(&layout, results),
+        job,
+    )?;
     let far = |found: &BlowOutcome| farthest(found.floors.between.max_displacement.iter().copied());
     let runs = Bounded::new(far(&found), numbers(&as_it_was, &found).len());
     let parts = over_rules(&rules, tick, &mut |rule, tick| {
@@ -83,14 +87,13 @@ pub(super) fn propagate(
         study.contributions(&again(&as_it_was).values, &again, tick)
     });
     let mut parts = runs.told(parts)?;
-    let time_step = setting.frame.time_step;
-    round_times(doubts.procedure, time_step, &mut parts);
     no_known_force(setting.law, recorded, &mut parts);
-    // From the beginning of a step to the end of one: two times, each up to Δt off.
-    let both = Contribution::new(Source::TimeStep { procedure: doubts.procedure }, time_step / 6.0_f64.sqrt());
-    parts[DURATION].push(both);
-    let lists = ["floor_displacement", "max_drift", "final_drift", "storey_energy", "periods"].map(|name| (name, floors));
-    let layout: Vec<(&'static str, usize)> = OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1)).chain(lists).collect();
+    let time_step = setting.frame.time_step;
+    // From the beginning of a step to the end of one: two times.
+    let duration = ("contact_duration", time_step / 6.0_f64.sqrt());
+    for (name, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
+        at_least(quantum, doubts.procedure, layout.iter().position(|(result, _)| *result == name), &mut parts);
+    }
     if path.swung_back() {
         mark_late(&layout, &mut parts);
     }
@@ -100,8 +103,6 @@ pub(super) fn propagate(
 
 /// Numbers after those of any impact.
 const SCALARS: [&str; 4] = ["contact_duration", "rebound_velocity", "max_base_shear", "critical_time_step"];
-/// The first of them.
-const DURATION: usize = OUTCOMES.len();
 
 /// What a run comes to, in the order of the layout.
 fn numbers(job: &Job, found: &BlowOutcome) -> Vec<f64> {
@@ -115,7 +116,7 @@ fn numbers(job: &Job, found: &BlowOutcome) -> Vec<f64> {
     blow.values.iter().copied().chain(scalars).chain(lists.into_iter().flatten().copied()).collect()
 }
 
-/// The run to take with sources moved. The time step stays: it was chosen, not measured.
+/// The run to take with sources moved, in the steps that the distortion has.
 fn moved(
     doubts: &FrameDoubts<'_>,
     plan: &StoreyImpact,
@@ -139,7 +140,9 @@ fn moved(
     let fastest = Striker { velocity: striker.velocity * (setting.fastest / setting.striker.velocity), ..striker.clone() };
     let critical_time_step = properties.critical_on_impact(plan.struck, &Approach::of(&fastest, law.stiffness()));
     let stiffness = frame.stiffness[plan.struck][plan.struck];
+    let run = FrameRun { matrices: properties.matrices.clone(), ..doubts.finer_run(&setting.frame, distortion.finer) };
     let body = ImpactInput {
+        time_step: run.time_step,
         mass: properties.struck_mass(plan.struck),
         stiffness,
         operator_stiffness: stiffness,
@@ -150,6 +153,5 @@ fn moved(
     };
     let blow = Blow { struck: plan.struck, law, until: plan.until, body };
     let periods = properties.modes.periods.clone();
-    let run = FrameRun { matrices: properties.matrices, ..doubts.run(&setting.frame) };
     Ok(Job { run, blow, distortion, periods, critical_time_step })
 }

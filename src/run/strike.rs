@@ -4,7 +4,7 @@
 use super::StepReport;
 use super::continuous;
 use super::impact::Setting;
-use super::session::Session;
+use super::session::{self, Session};
 use super::stiffer::{Judged, Stiffer};
 use super::stop::Stop;
 use super::triggers::Triggers;
@@ -55,9 +55,14 @@ impl Strike {
             let target = solver.predict();
             session.guard.move_to(&[target], None)?;
             session.guard.pause(pause)?;
-            let (measured, restoring_force) = session.read()?;
+            let (reading, broken) = session.read_kept()?;
+            let (measured, restoring_force) = session::first(&reading);
             let taken = solver.taken(measured, restoring_force);
             let tracking = monitor.take_as(target, measured, restoring_force, taken);
+            if let Some(stop) = broken {
+                self.take(solver.complete(measured, restoring_force), tracking, session);
+                return Err(stop);
+            }
             stiffer.take((measured, restoring_force), false, "the specimen", session);
             let state = *solver.complete(measured, restoring_force);
             self.step(&state, tracking, session)?;

@@ -1,6 +1,6 @@
-//! A study of a run: the run taken again, with one input moved at a time and with drawn errors of all its readings. In: inputs
-//! of every kind of run, and what takes it again. Out: for each number that a run comes to, what each source contributes
-//! (JCGM 100:2008, 5.1.3 and 5.1.4: half the difference of the results at ±u). It knows no procedure, and moves no rig.
+//! A study of a run: the run taken again, with one input moved at a time, with drawn errors of all its readings and in finer time
+//! steps. In: inputs of every kind of run, and what takes it again. Out: for each number that a run comes to, what each source
+//! contributes (JCGM 100:2008, 5.1.3 and 5.1.4: half the difference of the results at ±u). It knows no procedure, and moves no rig.
 //!
 //! What a study costs is bounded by how long the run is ([`Effort`]). Its runs are independent of each other and are shared
 //! out among threads; each has its place, so that the same bytes come out whatever the number of threads.
@@ -33,6 +33,13 @@ pub(super) const CLOSE: f64 = 1e-9;
 const ONE_SIDED: f64 = 0.2;
 /// And half the difference at ±u from that at ±u/2.
 const HALVED: f64 = 0.1;
+/// An input that cannot be moved by its uncertainty to either side is moved by no less than this share of it.
+const LEAST_SHARE: f64 = 1e-3;
+/// How many steps a run is integrated in again for each of its own.
+pub(super) const FINER: [u8; 2] = [2, 4];
+/// Halving the step again may change a result by so much of what halving it first did: by half where the scheme is of first order,
+/// and room for what is beyond. Otherwise the steps do not converge.
+const CONVERGES: f64 = 0.75;
 /// Suppositions about the specimen that come to results so near to each other, of the larger, agree.
 const AGREED: f64 = 0.2;
 /// How long to wait for the next run before those who watch hear that it goes on.
@@ -83,6 +90,40 @@ impl Effort {
     pub fn moves(self) -> &'static [f64] {
         if self.halves { &[1.0, -1.0, 0.5, -0.5] } else { &[1.0, -1.0] }
     }
+
+    /// The runs with one input moved; `job` makes one of by how many standard uncertainties, where its bounds let it be moved so far.
+    pub fn shifted<J>(self, job: impl Fn(f64) -> Result<J, String>) -> Result<Shifted<J>, String> {
+        let mut share = 1.0;
+        loop {
+            let jobs: Vec<Result<J, String>> = self.moves().iter().map(|by| job(share * by)).collect();
+            match jobs.iter().take(2).find_map(|job| job.as_ref().err()) {
+                Some(reason) if jobs.iter().take(2).all(Result::is_err) => {
+                    if share < LEAST_SHARE {
+                        return Err(reason.clone());
+                    }
+                    share *= 0.5;
+                }
+                _ => return Ok(Shifted { jobs: jobs.into_iter().map(Result::ok).collect(), share }),
+            }
+        }
+    }
+}
+
+/// Runs with one input moved.
+pub(super) struct Shifted<J> {
+    /// At each of [`Effort::moves`]; None where the input would be past its bound.
+    pub jobs: Vec<Option<J>>,
+    /// By which share of its standard uncertainty it was moved.
+    pub share: f64,
+}
+
+/// The run in finer time steps.
+pub(super) struct Refined<J> {
+    pub source: Source,
+    /// The numbers as the run itself told them.
+    pub told: Vec<f64>,
+    /// One of each of [`FINER`].
+    pub jobs: [J; 2],
 }
 
 /// How many draws a run of so many steps is worth.
@@ -112,8 +153,8 @@ pub(super) struct Taken {
 
 /// The runs to take.
 pub(super) struct Study<J> {
-    /// Each source with its input at each of [`Effort::moves`].
-    pub moved: Vec<(Source, Vec<J>)>,
+    pub moved: Vec<(Source, Shifted<J>)>,
+    pub refined: Option<Refined<J>>,
     /// One draw of all errors each.
     pub draws: Vec<(Source, J)>,
 }
@@ -126,24 +167,39 @@ impl<J: Sync> Study<J> {
         again: &(dyn Fn(&J) -> Taken + Sync),
         tick: Tick,
     ) -> Result<Vec<Vec<Contribution>>, Stop> {
-        let jobs: Vec<&J> = self.moved.iter().flat_map(|(_, jobs)| jobs).chain(self.draws.iter().map(|(_, job)| job)).collect();
+        let moved = self.moved.iter().flat_map(|(_, shifted)| shifted.jobs.iter().flatten());
+        let refined = self.refined.iter().flat_map(|refined| &refined.jobs);
+        let jobs: Vec<&J> = moved.chain(refined).chain(self.draws.iter().map(|(_, job)| job)).collect();
         let found = in_threads(&jobs, &|job| again(job), tick)?;
         let mut found = found.into_iter();
         let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); nominal.len()];
-        for (source, jobs) in &self.moved {
-            let taken: Vec<Taken> = found.by_ref().take(jobs.len()).collect();
-            let seen = taken.iter().all(|taken| taken.seen);
-            let moved: Vec<Vec<f64>> = taken.into_iter().map(|taken| taken.values).collect();
+        for (source, Shifted { jobs, share }) in &self.moved {
+            let taken: Vec<Option<Taken>> = jobs.iter().map(|job| job.as_ref().and_then(|_| found.next())).collect();
+            let seen = taken.iter().flatten().all(|taken| taken.seen);
+            let moved: Vec<Option<Vec<f64>>> = taken.into_iter().map(|taken| taken.map(|taken| taken.values)).collect();
+            let [up, down, halves @ ..] = moved.as_slice() else { continue };
             for (index, (parts, nominal)) in contributions.iter_mut().zip(nominal).enumerate() {
-                let (amount, smooth) = match moved.as_slice() {
-                    [up, down, half_up, half_down] => {
-                        effect(*nominal, [up[index], down[index]], Some([half_up[index], half_down[index]]))
-                    }
-                    [up, down] => effect(*nominal, [up[index], down[index]], None),
-                    _ => continue,
+                let at = |values: &Option<Vec<f64>>| values.as_ref().map(|values| values[index]);
+                let both = |[up, down]: [Option<f64>; 2]| one_sided(*nominal, [up, down]);
+                let half = match halves {
+                    // To the sides that the whole move went to.
+                    [half_up, half_down] => Some(both([up.as_ref().and(at(half_up)), down.as_ref().and(at(half_down))])),
+                    _ => None,
                 };
+                let (amount, smooth) = effect(*nominal, both([at(up), at(down)]), half);
                 let smooth = smooth && (seen || amount == 0.0);
-                parts.push(Contribution { smooth, ..Contribution::new(*source, amount) });
+                parts.push(Contribution { smooth, ..Contribution::new(*source, amount / share) });
+            }
+        }
+        if let Some(Refined { source, told, .. }) = &self.refined {
+            let taken: Vec<Taken> = found.by_ref().take(FINER.len()).collect();
+            let [half, quarter] = taken.as_slice() else { return Ok(contributions) };
+            for (index, (parts, told)) in contributions.iter_mut().zip(told).enumerate() {
+                if told.is_finite() {
+                    let (amount, smooth) = of_the_step(*told, nominal[index], [half.values[index], quarter.values[index]]);
+                    let smooth = smooth && (half.seen && quarter.seen || amount == 0.0);
+                    parts.push(Contribution { smooth, ..Contribution::new(*source, amount) });
+                }
             }
         }
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_DRAWS")]
@@ -222,6 +278,25 @@ fn in_threads<J: Sync, T: Send>(jobs: &[J], work: &(dyn Fn(&J) -> T + Sync), tic
     ended.map(|()| found.into_iter().flatten().collect())
 }
 
+/// Results at both sides; of a side that an input cannot be moved to, as far off as at the other.
+fn one_sided(nominal: f64, sides: [Option<f64>; 2]) -> [f64; 2] {
+    let mirrored = |value: f64| nominal + (nominal - value);
+    match sides {
+        [Some(up), Some(down)] => [up, down],
+        [Some(up), None] => [up, mirrored(up)],
+        [None, Some(down)] => [mirrored(down), down],
+        [None, None] => [f64::NAN; 2],
+    }
+}
+
+/// What the length of the time step does to a number that the run `told`, which came to `nominal` when it was integrated again and to
+/// these in finer steps: how far it is from them, at most. It is sure where the steps converge.
+fn of_the_step(told: f64, nominal: f64, [half, quarter]: [f64; 2]) -> (f64, bool) {
+    let off = [told - half, told - quarter].into_iter().reduce(|one, other| if other.abs() > one.abs() { other } else { one });
+    let converges = (half - quarter).abs() <= CONVERGES * (nominal - half).abs() + CLOSE * nominal.abs();
+    (off.unwrap_or_default(), converges)
+}
+
 /// What moving a source by ±u does, and whether that is smooth: `[up, down]`, and the same at ±u/2 where it was tried. Where
 /// the two sides, or the two sizes of the move, disagree, the largest change stands for it.
 fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, bool) {
@@ -275,10 +350,20 @@ fn widen(told: &mut [Contribution], other: &[Contribution]) {
     }
 }
 
-/// Gives a result that is one number its contributions; one that is not finite is known of nothing.
+/// Contributions that say something; of a result that nothing moves, not even the time step, that of the step, for its uncertainty is
+/// known to be none. Nothing is known of one that is not finite.
+fn told(mut parts: Vec<Contribution>) -> Vec<Contribution> {
+    if !parts.iter().all(|part| part.amount.is_finite()) {
+        return Vec::new();
+    }
+    let moves = parts.iter().any(|part| part.amount != 0.0);
+    parts.retain(|part| if moves { part.amount != 0.0 } else { matches!(part.source, Source::TimeStep { .. }) });
+    parts
+}
+
+/// Gives a result that is one number its contributions.
 pub(super) fn give(result: &mut NamedResult, parts: Vec<Contribution>) {
-    let known = parts.iter().all(|part| part.amount.is_finite());
-    result.contributions = if known { parts.into_iter().filter(|part| part.amount != 0.0).collect() } else { Vec::new() };
+    result.contributions = told(parts);
     if let ResultValue::Number { value: Some(_), uncertainty } = &mut result.value {
         *uncertainty = combined(&result.contributions);
     }
@@ -286,10 +371,7 @@ pub(super) fn give(result: &mut NamedResult, parts: Vec<Contribution>) {
 
 /// Gives one entry of a list its contributions.
 pub(super) fn give_entry(result: &mut NamedResult, entry: usize, parts: Vec<Contribution>) {
-    if parts.iter().all(|part| part.amount.is_finite()) {
-        let parts = parts.into_iter().filter(|part| part.amount != 0.0);
-        result.contributions.extend(parts.map(|part| Contribution { entry, ..part }));
-    }
+    result.contributions.extend(told(parts).into_iter().map(|part| Contribution { entry, ..part }));
 }
 
 #[cfg(test)]
@@ -306,11 +388,59 @@ mod tests {
     fn a_study_finds_what_each_source_does() {
         let moves = Effort::of(10, 2, 0, false).moves();
         let of = |a: f64, b: f64| moves.iter().map(|by| (1.0 + a * by, 2.0 + b * by)).collect::<Vec<(f64, f64)>>();
-        let study = Study { moved: vec![(source(0), of(0.1, 0.0)), (source(1), of(0.0, 0.5))], draws: Vec::new() };
+        let shifted = |a, b| Shifted { jobs: of(a, b).into_iter().map(Some).collect(), share: 1.0 };
+        let moved = vec![(source(0), shifted(0.1, 0.0)), (source(1), shifted(0.0, 0.5))];
+        let study = Study { moved, refined: None, draws: Vec::new() };
         let again = |(a, b): &(f64, f64)| Taken { values: vec![3.0 * a + b * b], seen: *a < 1.05 };
         let found = study.contributions(&[7.0], &again, &mut |_, _| Ok(())).ok().unwrap();
         assert!((found[0][0].amount - 0.3).abs() < 1e-12 && !found[0][0].smooth, "where nothing is recorded");
         assert!((found[0][1].amount - 2.25).abs() < 1e-12 && !found[0][1].smooth, "{found:?}");
+    }
+
+    /// c = 1 ± 2 with c² at least 0: down is not there, and up is told for both sides. e = 0.5 ± 0.8 between 0 and 1 is moved by half
+    /// of it. What cannot be moved at all is told why.
+    #[test]
+    fn an_input_is_moved_as_far_as_its_bounds_let_it() {
+        let effort = Effort { halves: true, together: false, draws: 0 };
+        let within = |low: f64, high: f64, value: f64, u: f64| {
+            effort.shifted(move |by| {
+                let moved = value + by * u;
+                if (low..=high).contains(&moved) { Ok(moved) } else { Err("out of bounds".to_owned()) }
+            })
+        };
+        let found = |shifted: Shifted<f64>, nominal: f64| {
+            let study = Study { moved: vec![(source(0), shifted)], refined: None, draws: Vec::new() };
+            let again = |moved: &f64| Taken { values: vec![3.0 * moved], seen: true };
+            study.contributions(&[nominal], &again, &mut |_, _| Ok(())).ok().unwrap()[0][0]
+        };
+        let one_sided = within(0.0, f64::INFINITY, 1.0, 2.0).unwrap();
+        assert_eq!(one_sided.jobs, [Some(3.0), None, Some(2.0), Some(0.0)]);
+        let part = found(one_sided, 3.0);
+        assert!((part.amount - 6.0).abs() < 1e-12 && part.smooth, "{part:?}");
+        let smaller = within(0.0, 1.0, 0.5, 0.8).unwrap();
+        assert_eq!((smaller.share, smaller.jobs[0]), (0.5, Some(0.9)));
+        let part = found(smaller, 1.5);
+        assert!((part.amount - 2.4).abs() < 1e-12 && part.smooth, "{part:?}");
+        assert_eq!(within(2.0, 1.0, 0.5, 0.8).err().as_deref(), Some("out of bounds"));
+    }
+
+    /// Of first and of second order, and steps that do not converge.
+    #[test]
+    fn the_time_step_contributes_what_finer_steps_leave_out() {
+        let of = |errors: [f64; 3]| {
+            let [own, half, quarter] = errors.map(|error| 10.0 + error);
+            of_the_step(own, own, [half, quarter])
+        };
+        let (first, sure) = of([1.0, 0.5, 0.25]);
+        assert!((first - 0.75).abs() < 1e-12 && sure);
+        let (second, sure) = of([1.0, 0.25, 0.0625]);
+        assert!((second - 0.9375).abs() < 1e-12 && sure);
+        let (none, sure) = of([0.0, 0.0, 0.0]);
+        assert!(none == 0.0 && sure);
+        let (wild, sure) = of([0.1, -0.4, 0.3]);
+        assert!((wild - 0.5).abs() < 1e-12 && !sure);
+        // What is told at the end of a step is off by that too.
+        assert!((of_the_step(10.5, 10.0, [10.0, 10.0]).0 - 0.5).abs() < 1e-12);
     }
 
     /// Every job is done once, in whatever order, and stands in its place; whoever watches is told of all, and may stop it.

@@ -6,9 +6,10 @@ use crate::plan::{
     RampFit, Report, RigPlan, Settle, ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyImpact, Striker, Until,
     VirtualLink,
 };
-use crate::record::Record;
+use crate::record::{NamedResult, Record};
 use crate::rig::virtual_rig;
 use crate::run::tape::{Header, HeaderFile, RULES};
+use crate::uncertainty::Source;
 
 /// Nothing but an ideal virtual rig.
 pub(crate) fn empty_plan() -> Plan {
@@ -103,6 +104,17 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
         duration: Formula::Constant(0.5),
         until: Until::StrikerStop,
     }
+}
+
+/// Results as they are of another procedure: its time step is the source then.
+pub(crate) fn as_of(procedure: usize, results: &[NamedResult]) -> Vec<NamedResult> {
+    let mut results = results.to_vec();
+    for part in results.iter_mut().flat_map(|result| &mut result.contributions) {
+        if let Source::TimeStep { procedure: own } = &mut part.source {
+            *own = ProcedureId(procedure);
+        }
+    }
+    results
 }
 
 /// Steps of `time_step` (s) by the tangent form, with no pause.

@@ -201,7 +201,12 @@ fn a_breach_holds_the_rig_and_keeps_what_was_recorded() {
     let by_hand = RigFault::LimitBreached { quantity: LimitedQuantity::Force, value: 213.0, low: -1e3, high: 200.0, axis: None };
     let Outcome::Aborted { reason } = &record.outcome else { panic!("{:?}", record.outcome) };
     assert_eq!(reason.split_whitespace().next(), by_hand.to_string().split_whitespace().next());
-    assert_eq!(ramp_steps(&record.procedures[0].history).len(), 6);
+    // The reading that broke it is the last row, and what the specimen was taken to.
+    let steps = ramp_steps(&record.procedures[0].history);
+    assert_eq!((steps.len(), steps[6].command), (7, 7.0 * steps[0].command));
+    assert!(steps[5].restoring_force < 200.0 && steps[6].restoring_force > 200.0, "{:?}", steps[6]);
+    assert_eq!(number(&record, 0, "max_force").0, Some(steps[6].restoring_force));
+    assert_eq!(number(&record, 0, "max_displacement").0, Some(steps[6].displacement));
 }
 
 #[test]
@@ -213,6 +218,8 @@ fn a_breach_inside_a_stroke_keeps_the_readings_before_it() {
     assert!(matches!(record.outcome, Outcome::Aborted { .. }));
     let sweep = &record.procedures[1];
     assert!(!sweep.complete && !sweep_steps(&sweep.history).is_empty());
+    let (last, before) = sweep_steps(&sweep.history).split_last().unwrap();
+    assert!(last.restoring_force > 304.0 && before.iter().all(|step| step.restoring_force <= 304.0), "{last:?}");
     assert!((number(&record, 1, "damping").0.unwrap() - 400.0).abs() < 1e-6);
 }
 

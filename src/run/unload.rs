@@ -157,9 +157,12 @@ pub(super) fn to_rest(
         let way = path.way(&at.force);
         let target: Vec<f64> = session.guard.commanded().iter().zip(way).map(|(place, way)| place + way).collect();
         session.go_to_all(&target, speed)?;
-        let reached = session.guard.read()?;
+        let (reached, broken) = session.read_kept()?;
         let secants = path.learn(loaded(&at), loaded(&reached));
         let wall_time = keep((step, target), &reached, secants, session, steps);
+        if let Some(stop) = broken {
+            return Err(stop);
+        }
         session.measured_all(step, wall_time, &reached)?;
         let nearer = path.left(&reached.force) < path.left(&at.force);
         let passed = path.passed(&reached.force);

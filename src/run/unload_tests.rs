@@ -49,7 +49,7 @@ fn truly_rests(behaviour: &Behaviour, places: &[f64], friction: f64) -> f64 {
     let from = places[places.len() - 1];
     let step = 1e-5 * force.signum() * places.iter().fold(0.0_f64, |most, place| most.max(place.abs()));
     let felt = |force: f64| force * step.signum() - friction;
-    (1..).map(|index| from - step * f64::from(index)).find(|place| felt(model.move_to(*place)) <= 0.0).unwrap()
+    (1..200_000).map(|index| from - step * f64::from(index)).find(|place| felt(model.move_to(*place)) <= 0.0).unwrap()
 }
 
 /// Supports that come back at twice their stiffness, a Bouc–Wen spring, a beam behind its supports, with and without friction: it never

@@ -58,6 +58,7 @@ pub struct BlockKind {
 }
 
 /// One field of a block, or one argument of a variant (in positional order).
+#[expect(clippy::struct_excessive_bools, reason = "each says one thing of a field, and none follows from another")]
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     pub name: &'static str,

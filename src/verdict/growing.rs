@@ -110,6 +110,10 @@ impl Results for Grown<'_> {
     fn moved(&self, source: Source) -> f64 {
         self.results.moved(source)
     }
+
+    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+        self.results.no_uncertainty(reference)
+    }
 }
 
 /// The steps of a blow: of a frame with those of its floors.

@@ -184,18 +184,61 @@ fn a_tolerance_narrower_than_the_band_is_never_kept() {
     assert_eq!(within(10.0, 0.2, true), Verdict::Inconclusive);
 }
 
+/// An uncertainty that is known to be none leaves the value to decide, and so does a result that is exact by its nature. One that is not
+/// known leaves nothing to decide by, far from the limit as near it.
 #[test]
-fn without_an_uncertainty_the_value_decides_under_either_rule() {
+fn a_guard_band_needs_an_uncertainty_that_is_known() {
     let mut record = record(Outcome::Completed);
-    for uncertainty in [None, Some(0.0)] {
-        record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty };
-        let at = |limit| {
-            let condition = condition(result("max_displacement"), compare(Comparison::LessEqual, limit));
-            assess_condition(&condition, DecisionRule::Guarded, &record)
-        };
-        assert_eq!((at(8.0).verdict, at(8.0).guard_band), (Verdict::Pass, None));
-        assert_eq!(at(7.999).verdict, Verdict::Fail);
+    let exact = |name, value| NamedResult {
+        name,
+        value: ResultValue::Number { value: Some(value), uncertainty: None },
+        dimension: Dimension::NUMBER,
+        contributions: Vec::new(),
+    };
+    record.procedures[0].results.extend([exact("steps", 20.0), exact("energy_error", 0.01)]);
+    let at = |record: &Record, name, limit| {
+        let condition = condition(result(name), compare(Comparison::LessEqual, limit));
+        assess_condition(&condition, DecisionRule::Guarded, record)
+    };
+    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: Some(0.0) };
+    assert_eq!(
+        (at(&record, "max_displacement", 8.0).verdict, at(&record, "max_displacement", 8.0).guard_band),
+        (Verdict::Pass, None)
+    );
+    assert_eq!(at(&record, "max_displacement", 7.999).verdict, Verdict::Fail);
+    assert_eq!([20.0, 19.0].map(|limit| at(&record, "steps", limit).verdict), [Verdict::Pass, Verdict::Fail]);
+    assert_eq!(at(&record, "energy_error", 0.02).verdict, Verdict::Pass);
+    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: None };
+    for limit in [8.0, 800.0, 0.08] {
+        let found = at(&record, "max_displacement", limit);
+        assert_eq!((found.verdict, found.guard_band), (Verdict::Inconclusive, None), "{limit}");
+        assert_eq!(found.reason.unwrap(), "no uncertainty of `max_displacement` is known, and a guard band needs one");
     }
+    let simple = condition(result("max_displacement"), compare(Comparison::LessEqual, 8.5));
+    assert_eq!(assess_condition(&simple, DecisionRule::Simple, &record).verdict, Verdict::Pass);
+}
+
+/// On a real rig no guard band follows from a budget without both calibrations; on a simulated one it does.
+#[test]
+fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
+    let mut plan = crate::rig::fault_table::stage::plan();
+    plan.decision_rule = DecisionRule::Guarded;
+    plan.requirements = vec![Requirement {
+        label: "travel".to_owned(),
+        conditions: vec![condition(result("max_displacement"), compare(Comparison::LessEqual, 9.0))],
+    }];
+    let record = record(Outcome::Completed);
+    plan.rig.calibration = crate::plan::Calibration { force_uncertainty: 0.01, ..crate::plan::Calibration::default() };
+    let partial = assess(&plan, &record);
+    assert_eq!(partial.verdict, Verdict::Inconclusive);
+    assert_eq!(
+        partial.requirements[0].conditions[0].reason.as_deref(),
+        Some("the budget of `max_displacement` is partial: the plan does not declare the calibration of the displacement")
+    );
+    plan.rig.calibration.displacement_uncertainty = 0.01;
+    assert_eq!(assess(&plan, &record).verdict, Verdict::Pass);
+    plan.rig = crate::run::testing::empty_plan().rig;
+    assert_eq!(assess(&plan, &record).verdict, Verdict::Pass);
 }
 
 #[test]
@@ -232,7 +275,7 @@ fn what_a_scheme_made_of_its_energy_decides_nothing() {
     let verdict = |record: &Record, name| {
         let wanted =
             Requirement { label: String::new(), conditions: vec![condition(result(name), compare(Comparison::LessEqual, 8.5))] };
-        assess_requirement(&wanted, DecisionRule::Simple, record)
+        assess_requirement(&wanted, DecisionRule::Simple, record, record)
     };
     let number = |value| ResultValue::Number { value: Some(value), uncertainty: None };
     for (error, expected) in

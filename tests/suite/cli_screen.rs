@@ -53,6 +53,7 @@ struct Terminal {
     slave: File,
     child: Child,
     seen: String,
+    columns: u16,
 }
 
 impl Terminal {
@@ -78,7 +79,7 @@ impl Terminal {
             .stderr(stream())
             .spawn()
             .unwrap();
-        Self { folder, master: File::from(master), slave, child, seen: String::new() }
+        Self { folder, master: File::from(master), slave, child, seen: String::new(), columns: 100 }
     }
 
     /// Reads until this has been drawn since the last key.
@@ -107,6 +108,7 @@ impl Terminal {
     }
 
     fn set_size(&mut self, columns: u16) {
+        self.columns = columns;
         self.seen.clear();
         tcsetwinsize(&self.master, Winsize { ws_row: 30, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 }).unwrap();
         kill_process(Pid::from_child(&self.child), Signal::WINCH).unwrap();
@@ -114,10 +116,10 @@ impl Terminal {
 
     /// Waits until this stands on the screen, which is drawn whole only when the window gets another size.
     fn drawn(&mut self, text: &str) {
-        let (mut columns, since) = (100, Instant::now());
+        let since = Instant::now();
         while !self.seen.contains(text) {
             assert!(since.elapsed() < PATIENCE, "in vain for {text:?}:\n{}", self.seen);
-            columns = 210 - columns;
+            let columns = if self.columns == 100 { 110 } else { 100 };
             self.set_size(columns);
             // Cleared, drawn, and the cursor hidden again.
             self.wait_for("\u{1b}[2J");
@@ -182,7 +184,7 @@ fn the_first_key_after_the_window_got_another_size_is_heard() {
         let mut terminal = Terminal::run(&["--operator", "B"]);
         terminal.wait_for("INSPECTION");
         terminal.drawn("type yes");
-        terminal.resize(110);
+        terminal.resize(120);
         terminal.resize(90);
         terminal.press(key);
         let (code, summary) = terminal.ended();

@@ -245,7 +245,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
     let finished = finished();
     let plain = console::verdict_text(&finished.run(), false).replace('\u{a0}', " ");
     insta::assert_snapshot!(plain, @r"
-    PASS  Simply supported beam, midspan impact  (rig `ideal`, simulated: a rehearsal)
+    PASS  Simply supported beam, midspan impact  (rig `rehearsal`, simulated: a rehearsal)
       pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 0.0126 m
       pass  energy closes    1.599 × 10⁻¹⁵        ≤ 0.01    margin 0.0100
       decision rule: simple; ± is U = 2u, the value alone decides
@@ -283,6 +283,7 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     finished.record.procedures[2].results.clear();
     finished.record.procedures[0].history = History::Ramp(RampHistory {
         start: None,
+        before: Vec::new(),
         steps: Vec::new(),
         fit: None,
         bilinear: None,

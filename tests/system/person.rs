@@ -133,7 +133,7 @@ fn a_run_is_paused_taken_a_step_further_noted_and_gone_on_with_by_keys() {
     let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
     terminal.press("p");
-    until("it pauses", || terminal.shown().contains("PAUSED"));
+    terminal.drawn("PAUSED");
     let paused = standing(&stage);
     terminal.press("s");
     until("one step", || stage.moves().len() > paused);

@@ -2,6 +2,8 @@
 //! against each other and against the manifest, and who has signed it. In: a folder. Out: findings. Nothing here writes.
 
 mod check;
+#[cfg(test)]
+mod damaged_tests;
 mod folder;
 #[cfg(test)]
 mod header_tests;

@@ -38,7 +38,10 @@ pub fn is_one(folder: &Folder, name: &str) -> bool {
 fn kind(name: &str) -> Option<(Kind, &str)> {
     let kinds = [(".tsr", Kind::Token), (".tst", Kind::Token), (".ots", Kind::Proof)];
     let of = kinds.into_iter().find_map(|(ending, kind)| Some((kind, name.strip_suffix(ending)?)));
-    let sealed = || name.starts_with("certificate") && name.ends_with(".pdf") && name != PAPER && !name.contains('/');
+    let sealed = || {
+        let own = name.strip_prefix("certificate").and_then(|rest| rest.strip_suffix(".pdf"));
+        own.is_some_and(|own| !own.is_empty() && !own.contains('/'))
+    };
     of.or_else(|| sealed().then_some((Kind::SealedPaper, PAPER)))
 }
 

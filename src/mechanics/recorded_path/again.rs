@@ -7,11 +7,20 @@ use super::map::Map;
 use super::under_way::Speed;
 use super::{Distortion, RecordedPath, Rule, SETTLED};
 
+/// The step of the record nearest to a step of a way that takes `finer` of them for each.
+pub const fn nearest(step: usize, finer: u8) -> usize {
+    let finer = if finer == 0 { 1 } else { finer as usize };
+    (step + finer / 2) / finer
+}
+
 /// The way as it is taken again.
 #[derive(Clone, Debug)]
 pub struct Again<'a> {
     path: &'a RecordedPath,
     distortion: Distortion,
+    /// Of its own steps.
+    own_step: usize,
+    /// The step of the record that is nearest.
     step: usize,
     piece: usize,
     /// Of the curve that begins with each branch; those to come as they were.
@@ -62,6 +71,7 @@ impl<'a> Again<'a> {
         Self {
             path,
             distortion,
+            own_step: 0,
             step: 0,
             piece: 0,
             maps,
@@ -89,10 +99,13 @@ impl<'a> Again<'a> {
     /// The same of a target that is passed with a velocity, m/s.
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let (target, velocity) = (target / self.distortion.displacement_scale, velocity / self.distortion.displacement_scale);
-        let speed = self.path.under_way.as_ref().map(|under_way| under_way.speed(self.speed, velocity)).unwrap_or_default();
+        let speed =
+            self.path.under_way.as_ref().map(|it| it.speed(self.speed, velocity, self.distortion.finer)).unwrap_or_default();
         let place = self.path.under_way.as_ref().map_or(target, |under_way| under_way.place(target, speed.felt));
-        self.step += 1;
-        self.go(place, speed.felt);
+        let before = self.step;
+        self.own_step += 1;
+        self.step = nearest(self.own_step, self.distortion.finer);
+        self.go(place, speed.felt, before);
         (self.place, self.speed) = (place, speed);
         self.read()
     }
@@ -107,8 +120,8 @@ impl<'a> Again<'a> {
         self.path.pieces[self.piece].branch
     }
 
-    /// Goes on to a place (m), to be there with a velocity (m/s).
-    fn go(&mut self, place: f64, velocity: f64) {
+    /// Goes on to a place (m), to be there with a velocity (m/s), from where it was at the step `before` of the record.
+    fn go(&mut self, place: f64, velocity: f64, before: usize) {
         let path = self.path;
         if let Some(aside) = self.aside {
             let branch = self.branch();
@@ -127,9 +140,10 @@ impl<'a> Again<'a> {
             let moved = if under_way.is_some() { velocity } else { place - self.place };
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
-                let between = under_way.and_then(|it| it.turn_between((self.place, self.speed.felt), (place, velocity)));
+                let between = under_way
+                    .and_then(|it| it.turn_between((self.place, self.speed.felt), (place, velocity), self.distortion.finer));
                 let from = between.unwrap_or(self.place);
-                if self.matched(self.step - 1) {
+                if self.matched(before) {
                     self.turn(from);
                 } else {
                     let (displacement, force) = self.at(from);
@@ -214,7 +228,7 @@ impl<'a> Again<'a> {
         let rise = if off.abs() <= path.least {
             path.pieces[path.branches[branch].last_piece].end_tangent * off
         } else {
-            path.at(self.piece, self.nearest(), at).1 - path.branches[branch].led_to
+            path.at(self.piece, self.looked_from(), at).1 - path.branches[branch].led_to
         };
         let retraces = path.branches[next].retraces;
         let own = if retraces { Map::shifted(moved - off, 0.0) } else { self.moved(next, moved, rise) };
@@ -287,7 +301,7 @@ impl<'a> Again<'a> {
     }
 
     /// The step of the record that is looked from: past its end, its last.
-    fn nearest(&self) -> usize {
+    fn looked_from(&self) -> usize {
         self.step.min(self.path.readings.len() - 1)
     }
 
@@ -304,20 +318,20 @@ impl<'a> Again<'a> {
     /// The same at a place (m) on the curve that it is on.
     fn at(&self, place: f64) -> (f64, f64) {
         let (map, at) = self.stand(place);
-        let (displacement, force) = self.path.at(self.piece, self.nearest(), at);
+        let (displacement, force) = self.path.at(self.piece, self.looked_from(), at);
         (displacement + (place - at), map.force(force))
     }
 
     fn read(&self) -> (f64, f64) {
-        let Distortion { force_scale, displacement_scale, zero, noise } = self.distortion;
+        let Distortion { force_scale, displacement_scale, zero, noise, .. } = self.distortion;
         let (displacement, force) = self.recorded();
-        let step = self.nearest();
+        let step = self.looked_from();
         let recorded = self.path.readings[step].force;
         let felt = self.path.under_way.as_ref().map(|under_way| under_way.force(step, (force, recorded), self.speed.felt));
         let force = felt.unwrap_or(force);
         let (mut displacement, mut force) = (displacement_scale * displacement, force_scale * force + zero);
         if let Some(noise) = noise {
-            let [of_force, of_displacement] = noise.errors(self.step as u64, 0);
+            let [of_force, of_displacement] = noise.errors(self.own_step as u64, 0);
             force += of_force;
             displacement += of_displacement;
         }

@@ -15,6 +15,7 @@ mod refuted;
 mod under_way;
 
 pub use again::Again;
+pub(super) use again::nearest;
 pub(super) use under_way::lag;
 
 use self::pieces::{Branch, Cut, Piece};
@@ -68,10 +69,12 @@ pub struct Distortion {
     pub zero: f64,
     /// Added to every reading with a sign drawn for each: N and m.
     pub noise: Option<Noise>,
+    /// Steps for each of the record, 1 or more.
+    pub finer: u8,
 }
 
 impl Distortion {
-    pub const NONE: Self = Self { force_scale: 1.0, displacement_scale: 1.0, zero: 0.0, noise: None };
+    pub const NONE: Self = Self { force_scale: 1.0, displacement_scale: 1.0, zero: 0.0, noise: None, finer: 1 };
 }
 
 /// One draw of the errors of all readings: each has its standard deviation, and the sign that the draw gives it.

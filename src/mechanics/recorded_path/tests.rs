@@ -26,7 +26,7 @@ fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
 #[test]
 fn an_elastic_way_taken_off_its_targets_is_elastic() {
     let path = path(|x| 1000.0 * x, &TARGETS);
-    let mut again = path.again(Distortion { displacement_scale: 1.25, force_scale: 2.0, zero: 3.0, noise: None });
+    let mut again = path.again(Distortion { displacement_scale: 1.25, force_scale: 2.0, zero: 3.0, ..Distortion::NONE });
     for (step, target) in (0..).zip(TARGETS.iter().chain(&[0.5, 0.6, -0.2])).skip(1) {
         let off = target + 0.02 * f64::from(step).cos();
         let (displacement, force) = again.move_to(off);

@@ -88,7 +88,7 @@ impl UnderWay {
             found.lag = lag(behind, resolution);
             let mut speed = Speed::default();
             for (step, foretold) in foretold.iter().enumerate() {
-                speed = found.speed(speed, *foretold);
+                speed = found.speed(speed, *foretold, 1);
                 found.passed[step].1 = speed.felt;
             }
         }
@@ -106,13 +106,15 @@ impl UnderWay {
         self.passed.iter().map(at_rest).collect()
     }
 
-    /// Once a target is passed for which a velocity (m/s) is foretold: ẋ = (d − x)/τ, the foretold one even from step to step.
-    pub fn speed(&self, before: Speed, foretold: f64) -> Speed {
+    /// Once a target is passed for which a velocity (m/s) is foretold: ẋ = (d − x)/τ, the foretold one even from step to step, of which
+    /// there are `finer` for each of the record.
+    pub fn speed(&self, before: Speed, foretold: f64, finer: u8) -> Speed {
         if self.lag <= 0.0 {
             return Speed { foretold, felt: foretold };
         }
-        let slower = (foretold - before.foretold) / self.time_step * self.lag;
-        let fading = (before.felt - before.foretold + slower) * (-self.time_step / self.lag).exp();
+        let time_step = self.time_step / f64::from(finer);
+        let slower = (foretold - before.foretold) / time_step * self.lag;
+        let fading = (before.felt - before.foretold + slower) * (-time_step / self.lag).exp();
         Speed { foretold, felt: foretold - slower + fading }
     }
 
@@ -137,16 +139,18 @@ impl UnderWay {
     pub fn turned(&self, step: usize) -> Option<f64> {
         let at =
             |step: usize| self.passed.get(step).map(|(reading, velocity)| (self.place(reading.target, *velocity), *velocity));
-        self.turn_between(at(step)?, at(step + 1)?)
+        self.turn_between(at(step)?, at(step + 1)?, 1)
     }
 
-    /// Where it turns between two places (m) with their velocities (m/s), a step apart. What is nearer to it tells more of it.
-    pub fn turn_between(&self, (from, before): (f64, f64), (to, after): (f64, f64)) -> Option<f64> {
+    /// Where it turns between two places (m) with their velocities (m/s), a step apart, of which there are `finer` for each of the
+    /// record. What is nearer to it tells more of it.
+    pub fn turn_between(&self, (from, before): (f64, f64), (to, after): (f64, f64), finer: u8) -> Option<f64> {
+        let time_step = self.time_step / f64::from(finer);
         (before * after < 0.0).then(|| {
             let share = before / (before - after);
             let rest = 1.0 - share;
-            let onwards = from + 0.5 * before * share * self.time_step;
-            let backwards = to - 0.5 * after * rest * self.time_step;
+            let onwards = from + 0.5 * before * share * time_step;
+            let backwards = to - 0.5 * after * rest * time_step;
             let (near, far) = (rest * rest, share * share);
             (near * onwards + far * backwards) / (near + far)
         })
@@ -301,9 +305,9 @@ mod tests {
         for turn in [1e-4, 1e-3, 1.9e-3] {
             let place = |time: f64| 0.5 * -3.0 * (time - turn).powi(2);
             let at = |time: f64| (place(time), -3.0 * (time - turn));
-            let found = way.turn_between(at(0.0), at(TIME_STEP)).unwrap();
+            let found = way.turn_between(at(0.0), at(TIME_STEP), 1).unwrap();
             assert!(found.abs() < 1e-15, "{found} m");
         }
-        assert_eq!(way.turn_between((0.0, 1.0), (1e-3, 2.0)), None);
+        assert_eq!(way.turn_between((0.0, 1.0), (1e-3, 2.0), 1), None);
     }
 }

@@ -45,7 +45,7 @@ pub(super) fn procedures(run: &Run<'_>, body: &mut Vec<Block>) {
             History::Impact(history) => {
                 force_note(run, index, procedure, history, body);
                 method::note(run, index, history, body);
-                energy_balance(history, body);
+                energy_balance(contact_work(run, index), history, body);
                 contact_log::table(history, body);
             }
             History::StoreyImpact(history) => storey::struck(run, index, procedure, history, body),
@@ -293,8 +293,21 @@ fn implied_restitution(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impa
     ))
 }
 
+/// What the contact took, as it is summed over the steps: from the forces at their ends, or within them.
+pub(super) fn contact_work(run: &Run<'_>, index: usize) -> &'static str {
+    let contact = match run.plan.procedures.get(index).map(|planned| &planned.kind) {
+        Some(ProcedureKind::Impact(impact)) => Some(&impact.contact),
+        Some(ProcedureKind::StoreyImpact(impact)) => Some(&impact.contact),
+        _ => None,
+    };
+    match contact {
+        Some(Contact::Rigid | Contact::Limit { .. }) => "contact, Σ F₁ΔXs − ½(F₀ + F₁)ΔX of each step",
+        _ => "contact, ∫F d(Xs − X) within each step",
+    }
+}
+
 /// Where the striker's energy was at the end of the run.
-pub(super) fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
+pub(super) fn energy_balance(contact_work: &'static str, history: &ImpactHistory, body: &mut Vec<Block>) {
     let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else { return };
     let e = last.energies;
     let input = first.energies.striker + e.weight;
@@ -303,7 +316,7 @@ pub(super) fn energy_balance(history: &ImpactHistory, body: &mut Vec<Block>) {
         ("structure, kinetic", e.structure),
         ("restoring force, ∫R dX", e.restoring),
         ("damping, ∫CẊ dX", e.damping),
-        ("contact, ∫F d(Xs − X)", e.contact_loss),
+        (contact_work, e.contact_loss),
         ("integration error", e.error),
     ];
     let row = |(name, energy): (&str, f64)| -> Vec<Text> {

@@ -3,7 +3,7 @@
 
 use super::super::document::{Block, Column, Table, Text};
 use super::super::{Run, number};
-use super::results::{contact_law, energy_balance, percent, scalar};
+use super::results::{contact_law, contact_work, energy_balance, percent, scalar};
 use super::{contact_log, followed, frames};
 use crate::formula::ResultValue;
 use crate::plan::{Contact, Mode, ProcedureKind, StoreyImpact};
@@ -28,7 +28,7 @@ pub(super) fn struck(
     body.push(frames::storey_table(procedure, &history.floors, frame, "floor_displacement"));
     body.push(storey_energies(procedure));
     body.extend(followed::table(procedure));
-    energy_balance(&history.blow, body);
+    energy_balance(contact_work(run, index), &history.blow, body);
     contact_log::table(&history.blow, body);
 }
 

@@ -1,5 +1,5 @@
 //! Figures: what the plan's report asks for, drawn as PNG at 192 dpi and in vectors. In: a run. Out: bytes with the caption
-//! the certificate prints below them. Knows no HTML.
+//! the certificate prints below them, one figure at a time: the sheet of a picture takes 60 MB while it is drawn. Knows no HTML.
 
 mod axis;
 mod blows;
@@ -19,8 +19,6 @@ mod storey;
 mod together;
 mod vector;
 
-use rayon::prelude::*;
-
 use super::{OutputError, Run};
 use crate::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
@@ -30,21 +28,44 @@ use chart::Chart;
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
 pub use plain::{Curve, Curves, PlainAxis};
 
-/// A figure, drawn.
+/// A figure, drawn in vectors.
 pub(super) struct Drawn {
-    /// `figures/NAME_FIGURE`, without its ending.
-    pub path: String,
-    pub png: Vec<u8>,
-    /// The same in vectors.
     pub svg: String,
     /// What it shows, in one sentence.
     pub caption: String,
 }
 
-/// Every figure of the report that this record can draw, in the report's order. A procedure that was stopped before
-/// it recorded anything has no figure.
-pub(super) fn all(run: &Run<'_>) -> Result<Vec<Drawn>, OutputError> {
-    run.plan.report.figures.par_iter().filter_map(|figure| one(run, figure)).collect()
+/// A figure that is not drawn yet.
+pub(super) struct Undrawn {
+    /// `figures/NAME_FIGURE`, without its ending.
+    pub path: String,
+    chart: Chart,
+    caption: String,
+    kind: FigureKind,
+    procedure: String,
+}
+
+impl Undrawn {
+    /// None where the record cannot draw it: a procedure that was stopped before it recorded anything has no figure.
+    pub fn of(run: &Run<'_>, figure: &Figure) -> Option<Self> {
+        let procedure = run.record.procedures.get(figure.procedure.0)?;
+        let (chart, caption) = chart_of(run, procedure, figure)?;
+        let path = format!("figures/{}", name_of(run, figure));
+        Some(Self { path, chart, caption, kind: figure.kind, procedure: procedure.name.clone() })
+    }
+
+    pub fn png(&self) -> Result<Vec<u8>, OutputError> {
+        draw::png(&self.chart).map_err(|reason| self.failed(reason))
+    }
+
+    pub fn in_vectors(self) -> Result<Drawn, OutputError> {
+        let svg = draw::svg(&self.chart).map_err(|reason| self.failed(reason))?;
+        Ok(Drawn { svg, caption: self.caption })
+    }
+
+    fn failed(&self, reason: String) -> OutputError {
+        OutputError::Figure { figure: self.kind.name(), procedure: self.procedure.clone(), reason }
+    }
 }
 
 /// What the figures of a report plot, in the report's order.
@@ -56,16 +77,6 @@ pub fn data(run: &Run<'_>) -> Figures {
         Some(data::of(name_of(run, figure), &procedure.name, &chart))
     };
     Figures { figures: run.plan.report.figures.iter().filter_map(one).collect(), ..Figures::default() }
-}
-
-fn one(run: &Run<'_>, figure: &Figure) -> Option<Result<Drawn, OutputError>> {
-    let procedure = run.record.procedures.get(figure.procedure.0)?;
-    let (chart, caption) = chart_of(run, procedure, figure)?;
-    let drawn = draw::png(&chart).and_then(|png| draw::svg(&chart).map(|svg| (png, svg)));
-    Some(match drawn {
-        Ok((png, svg)) => Ok(Drawn { path: format!("figures/{}", name_of(run, figure)), png, svg, caption }),
-        Err(reason) => Err(OutputError::Figure { figure: figure.kind.name(), procedure: procedure.name.clone(), reason }),
-    })
 }
 
 /// `hit_displacement`, or `paused-moving_displacement`: no name of a procedure has a hyphen.

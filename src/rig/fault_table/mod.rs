@@ -48,7 +48,7 @@ mod manual;
 mod motion;
 mod room;
 mod several;
-mod stage;
+pub(crate) mod stage;
 mod start;
 mod targets;
 mod two_axes;

@@ -27,7 +27,7 @@ pub(super) const STIFFNESS: f64 = 1e5;
 pub(super) const REPLY_TIMEOUT: f64 = 0.1;
 
 /// A ramp of ten steps of 0.1 mm on a native rig, three readings each.
-pub(super) fn plan() -> Plan {
+pub(crate) fn plan() -> Plan {
     plan_of(vec![ProcedureKind::StiffnessRamp(ramp(1e-4))])
 }
 

@@ -22,6 +22,7 @@ mod played;
 #[cfg(test)]
 mod resume_tests;
 mod rig;
+mod shape;
 mod state;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -37,6 +38,7 @@ pub use observer::TapedObserver;
 pub use older::RULES;
 pub use played::{Mismatch, Played, Unplayable};
 pub use rig::TapedRig;
+pub use shape::{Malformed, well_formed};
 pub use state::{CUT_OFF, GoesOn};
 
 use std::cell::RefCell;

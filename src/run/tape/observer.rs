@@ -147,6 +147,7 @@ impl Observer for TapedObserver<'_, '_> {
         if self.playing() {
             let mut state = self.state.borrow_mut();
             return match state.next_kind() {
+                _ if state.mismatch().is_some() => Next::GoOn,
                 Some(EntryKind::Operator) => match state.peek(EntryKind::Operator, "a note") {
                     Ok(OperatorBody::Noted { text }) => {
                         state.consume();

@@ -276,7 +276,10 @@ impl Rig for TapedRig<'_> {
 
     fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
         if self.playing() {
-            return self.state.borrow_mut().played_fault(Call::Pause).map_or(Ok(()), Err);
+            let mut state = self.state.borrow_mut();
+            // Whoever waits for what the record says next would wait for ever.
+            let fault = state.parted().or_else(|| state.played_fault(Call::Pause));
+            return fault.map_or(Ok(()), Err);
         }
         if self.state.borrow().played_out() {
             return Ok(());

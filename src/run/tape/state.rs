@@ -190,6 +190,11 @@ impl<'rig> State<'rig> {
         }
     }
 
+    /// Why nothing more of the record is played.
+    pub(super) fn parted(&self) -> Option<RigFault> {
+        self.mismatch.as_ref().map(|mismatch| RigFault::Device(mismatch.to_string()))
+    }
+
     /// The next record says that this call failed.
     pub(super) fn played_fault(&mut self, call: Call) -> Option<RigFault> {
         if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Fault) {
@@ -247,7 +252,7 @@ impl<'rig> State<'rig> {
 
     /// Whether the next record says that a pause failed.
     pub(super) fn front_is_pause_fault(&self) -> bool {
-        let front = self.lines.front().filter(|line| line.kind == EntryKind::Fault);
+        let front = self.lines.front().filter(|line| self.mismatch.is_none() && line.kind == EntryKind::Fault);
         front.is_some_and(|line| line.body().get("call").and_then(|call| call.as_str()) == Some("pause"))
     }
 

@@ -65,6 +65,7 @@ pub fn finished() -> Finished {
         ],
         history: History::Ramp(RampHistory {
             start: None,
+            before: Vec::new(),
             steps: ramp_steps(),
             fit: Some(line(327.72, 0.41, -0.012, 0.035)),
             bilinear: None,
