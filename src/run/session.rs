@@ -9,6 +9,9 @@ use crate::plan::{BlowOn, Plan, Procedure, ProcedureKind};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Identity, Reading, Rig, RigFault, Tally};
 
+/// A reading, when the rig went on its last move (s), and what ends the run.
+pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
+
 /// How long a real rig stays where it is between two looks at whether the person has decided, s of rig time: it takes a
 /// sign of life at least this often.
 const BREATH: f64 = 0.01;
@@ -309,7 +312,7 @@ impl<'run> Session<'run> {
     }
 
     /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
-    pub(super) fn read_moved_kept(&mut self) -> Result<(Reading, Option<[f64; 2]>, Option<Stop>), Stop> {
+    pub(super) fn read_moved_kept(&mut self) -> Result<MovedReading, Stop> {
         let read = self.guard.read_moved();
         let (read, moved) = read.map_or_else(|fault| (Err(fault), None), |(reading, moved)| (Ok(reading), moved));
         self.kept(read).map(|(reading, stop)| (reading, moved, stop))

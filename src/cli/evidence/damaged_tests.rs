@@ -93,7 +93,8 @@ fn what_no_run_writes_is_malformed() {
             records.splice(5..5, [rig, (EntryKind::Resume, resume)]);
         }
     };
-    let cases: [(&dyn Fn(&mut Vec<(EntryKind, Value)>), &str); 7] = [
+    type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
+    let cases: [(Damage<'_>, &str); 7] = [
         (&before_the_rig, "record 3 (SAMPLE) is malformed: no RIG stands before it"),
         (&alter(EntryKind::Rig, "/axes", json!(2)), "is malformed: the plan moves 1 axis, and the rig has 2"),
         (&alter(EntryKind::Intent, "/to", json!([0.0, 0.0])), "is malformed: its `to` has 2 entries, and the rig has 1 axis"),

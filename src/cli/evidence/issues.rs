@@ -304,8 +304,11 @@ mod tests {
         apply(&mut plan, &mut provenance, file).map(|()| (plan, provenance))
     }
 
+    /// Kind, date and particulars of an issue.
+    type Stated<'a> = (OneKind, &'a str, &'a [(&'a str, &'a str)]);
+
     /// Issues in a chain, each made from the one before it.
-    fn chain(all: &[(OneKind, &str, &[(&str, &str)])]) -> IssueFile {
+    fn chain(all: &[Stated<'_>]) -> IssueFile {
         let mut file: Option<IssueFile> = None;
         for (kind, date, more) in all {
             let replaces = file.as_ref().map_or("run".to_owned(), |file| file.id("run", file.issues.len()));
@@ -344,7 +347,7 @@ mod tests {
 
     #[test]
     fn days_must_be_in_order_and_a_report_is_issued_once() {
-        let fault = |all: &[(OneKind, &str, &[(&str, &str)])]| applied(&chain(all)).unwrap_err();
+        let fault = |all: &[Stated<'_>]| applied(&chain(all)).unwrap_err();
         let issue = |date| (OneKind::Issue, date, &[][..]);
         let amend = |date| (OneKind::Amendment, date, &[][..]);
         assert!(fault(&[issue("2026-11-20")]).contains("the test ended on 2026-11-22"));

@@ -84,7 +84,7 @@ impl Vandal {
     /// Changes one value somewhere in a body.
     fn change(&mut self, body: &mut Value, other: &Records) {
         let mut places = Vec::new();
-        gather(body, String::new(), &mut places);
+        gather(body, "", &mut places);
         if places.is_empty() {
             return;
         }
@@ -154,17 +154,17 @@ fn resume(records: &mut Records, at: usize) {
 }
 
 /// Every place in a value that holds something, itself left out.
-fn gather(value: &Value, at: String, places: &mut Vec<String>) {
+fn gather(value: &Value, at: &str, places: &mut Vec<String>) {
     match value {
         Value::Object(fields) => fields.iter().for_each(|(name, field)| {
             let at = format!("{at}/{}", name.replace('~', "~0").replace('/', "~1"));
             places.push(at.clone());
-            gather(field, at, places);
+            gather(field, &at, places);
         }),
         Value::Array(items) => items.iter().enumerate().for_each(|(index, item)| {
             let at = format!("{at}/{index}");
             places.push(at.clone());
-            gather(item, at, places);
+            gather(item, &at, places);
         }),
         _ => {}
     }
