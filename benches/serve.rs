@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
-use psd::rig::{Guard, VirtualRig};
+use psd::rig::{Guard, VirtualRig, Wish};
 use psd::run::Unwatched;
 use psd::run::driven::Specimen;
 use psd::serve::{Protocol, serve};
@@ -34,7 +34,7 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
         let protocol = Protocol::GenericClient { stiffness: vec![STIFFNESS] };
         let mut nobody = Unwatched;
         let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
-        serve(&listener, &protocol, &mut specimen, true, &|| false, &mut |_| ()).expect("it listens");
+        serve(&listener, &protocol, &mut specimen, true, &Wish::default(), &mut |_| ()).expect("it listens");
     });
     let mut client = TcpStream::connect(address).expect("it listens");
     let header = [1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256_i32].map(i32::to_le_bytes);

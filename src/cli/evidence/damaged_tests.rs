@@ -16,6 +16,9 @@ use crate::rig::Reading;
 use crate::run::Unwatched;
 use crate::run::tape::{self, Bands};
 
+/// Changes the records of a journal.
+type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
+
 /// All that `verify`, `report` and `resume` do with a record before they write or move anything; what is wrong with it.
 fn played(journal: &[u8]) -> Result<(), String> {
     let read = record_file::from_bytes(Path::new(JOURNAL), journal).map_err(|failure| failure.to_string())?;
@@ -93,7 +96,6 @@ fn what_no_run_writes_is_malformed() {
             records.splice(5..5, [rig, (EntryKind::Resume, resume)]);
         }
     };
-    type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
     let cases: [(Damage<'_>, &str); 7] = [
         (&before_the_rig, "record 3 (SAMPLE) is malformed: no RIG stands before it"),
         (&alter(EntryKind::Rig, "/axes", json!(2)), "is malformed: the plan moves 1 axis, and the rig has 2"),
