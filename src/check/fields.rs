@@ -70,6 +70,8 @@ impl<'a> Checker<'a> {
             Kind::Specimen => field == "behaviour" && super::frame::FIELDS.iter().any(|frame| has(frame)),
             // What a load cell alone lacks is said in its place.
             Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
+            // The storeys have stiffnesses of their own.
+            Kind::Unload => field == "stiffness" && self.tested(block).is_some_and(|tested| super::frame::is_frame(self, tested)),
             _ => false,
         }
     }

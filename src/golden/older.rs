@@ -17,12 +17,16 @@ pub fn summary(text: &str) -> Result<Value, serde_json::Error> {
             rename(procedure);
         }
     }
-    // Versions before the verdict `completed` wrote `pass` where nothing was required.
-    let nothing_required = summary["requirements"].as_array().is_some_and(Vec::is_empty);
-    if nothing_required && summary["verdict"] == "pass" {
-        summary["verdict"] = "completed".into();
-    }
     Ok(summary)
+}
+
+/// Versions before the verdict `completed` wrote `pass` where nothing was required.
+pub(super) fn completed(mut was: Value) -> Value {
+    let nothing_required = was["requirements"].as_array().is_some_and(Vec::is_empty);
+    if nothing_required && was["verdict"] == "pass" {
+        was["verdict"] = "completed".into();
+    }
+    was
 }
 
 fn rename(procedure: &mut Value) {

