@@ -3,6 +3,7 @@
 //! no procedure.
 
 use super::failpoint::{Guarding, on};
+use super::guard_read::is_finite;
 use super::holds::Holds;
 use super::{LimitedQuantity, Reading, Rig, RigFault, named_axis};
 use crate::plan::{Interval, Limits};
@@ -285,11 +286,6 @@ impl<'rig> Guard<'rig> {
 /// Infinity is inside "no limit", but no place for a rig.
 fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
-}
-
-/// Whether a reading is of numbers: what is none is not kept.
-pub(super) fn is_finite(reading: &Reading) -> bool {
-    reading.displacement.iter().chain(&reading.force).all(|value| value.is_finite())
 }
 
 /// The first value of a reading that lies outside its limit: those of its axis, where it has any of its own.

@@ -3,7 +3,8 @@
 //! as fast as, the last one ended.
 
 use super::failpoint::{Guarding, on};
-use super::guard::{is_finite, outside};
+use super::guard::outside;
+use super::guard_read::is_finite;
 use super::{Guard, LimitedQuantity, RigFault, Traversed};
 use crate::mechanics::path::Path;
 

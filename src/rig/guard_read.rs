@@ -2,7 +2,7 @@
 //! or the rig held.
 
 use super::failpoint::{Guarding, on};
-use super::guard::{is_finite, outside};
+use super::guard::outside;
 use super::{Guard, LimitedQuantity, Reading, RigFault};
 
 impl Guard<'_> {
@@ -61,4 +61,9 @@ impl Guard<'_> {
         let judged = found.map_or(Ok(()), Err);
         self.or_hold(judged)
     }
+}
+
+/// Whether a reading is of numbers: what is none is not kept.
+pub(super) fn is_finite(reading: &Reading) -> bool {
+    reading.displacement.iter().chain(&reading.force).all(|value| value.is_finite())
 }
