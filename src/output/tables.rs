@@ -99,7 +99,7 @@ fn of_procedure(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     match &procedure.history {
         History::Ramp(history) => {
             let holds = (!history.holds.is_empty()).then(|| Table::of(beside("holds"), &history.holds, holds));
-            let mut rows: Vec<RampStep> = history.steps.iter().chain(&history.before).cloned().collect();
+            let mut rows: Vec<RampStep> = history.steps.iter().chain(&history.before).copied().collect();
             rows.sort_by_key(|row| row.step);
             once(Table::of_steps(name, rows.len(), 1, move |range| ramp(&rows[range]))).chain(holds).collect()
         }

@@ -175,16 +175,12 @@ impl<'rig> Guard<'rig> {
         // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
         let traversed = self.rig.traverse(targets, velocity, samples, &mut |reading| {
             heard = reading.time;
-            match outside(&limits, &own, &reading) {
-                Some(fault) => {
-                    broken = Some(reading).filter(is_finite);
-                    Err(fault)
-                }
-                None => {
-                    readings.push(reading);
-                    Ok(())
-                }
+            if let Some(fault) = outside(&limits, &own, &reading) {
+                broken = Some(reading).filter(is_finite);
+                return Err(fault);
             }
+            readings.push(reading);
+            Ok(())
         });
         self.heard = heard;
         readings.extend(broken.clone());

@@ -23,16 +23,12 @@ impl Guard<'_> {
         let (mut heard, mut broken) = (self.heard, None);
         let glided = self.rig.glide(paths, samples, &mut |reading| {
             heard = reading.time;
-            match outside(&limits, &own, &reading) {
-                Some(fault) => {
-                    broken = Some(reading).filter(is_finite);
-                    Err(fault)
-                }
-                None => {
-                    readings.push(reading);
-                    Ok(())
-                }
+            if let Some(fault) = outside(&limits, &own, &reading) {
+                broken = Some(reading).filter(is_finite);
+                return Err(fault);
             }
+            readings.push(reading);
+            Ok(())
         });
         self.heard = heard;
         readings.extend(broken.clone());

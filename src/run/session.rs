@@ -309,7 +309,7 @@ impl<'run> Session<'run> {
     }
 
     /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
-    pub(super) fn read_moved_kept(&mut self) -> Result<(Reading, Option<[f64; 2]>, Option<Stop>), Stop> {
+    pub(super) fn read_moved_kept(&mut self) -> Result<Moved, Stop> {
         let read = self.guard.read_moved();
         let (read, moved) = read.map_or_else(|fault| (Err(fault), None), |(reading, moved)| (Ok(reading), moved));
         self.kept(read).map(|(reading, stop)| (reading, moved, stop))
@@ -338,6 +338,9 @@ impl<'run> Session<'run> {
         Ok(())
     }
 }
+
+/// A reading, when the rig went on its last move (begin and end, s), and what ends the run where the reading broke a limit.
+type Moved = (Reading, Option<[f64; 2]>, Option<Stop>);
 
 pub(super) fn signed(by: Option<&str>) -> String {
     by.map_or_else(String::new, |name| format!(" ({name})"))

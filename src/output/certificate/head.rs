@@ -169,9 +169,8 @@ fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) 
         let mark = if condition.uncertainty.is_some() && !is_sure(run, planned) { budget::MARK } else { "" };
         let margin = number::margin(condition).map_or_else(|| "—".into(), Text::from);
         let margin = match (rule, number::guard_band(condition)) {
-            (DecisionRule::Simple, _) => margin,
             (DecisionRule::Guarded, Some(band)) => margin.line().soft(format!("w = {band}")),
-            (DecisionRule::Guarded, None) => margin,
+            (DecisionRule::Simple, _) | (DecisionRule::Guarded, None) => margin,
         };
         vec![
             name,
