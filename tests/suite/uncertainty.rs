@@ -73,7 +73,7 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
         let (u, contributions) = (number(&budget["u"]), budget["contributions"].as_array().unwrap());
         assert_eq!(hit["results"][name]["u"], budget["u"], "{name}");
         let squares: f64 = contributions.iter().map(|line| number(&line["contribution"]).powi(2)).sum();
-        assert!((squares.sqrt() - u).abs() <= 1e-9 * u, "{name}");
+        assert!((squares.sqrt() / u - 1.0).abs() < 1e-9, "{name}");
         for line in contributions.iter().filter(|line| !line["sensitivity"].is_null()) {
             let product = number(&line["sensitivity"]).abs() * number(&line["input_u"]);
             assert!((product / number(&line["contribution"]).abs() - 1.0).abs() < 1e-9, "{name}: {line}");
@@ -91,7 +91,7 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
     }
     let page = fs::read_to_string(at("run/certificate.html")).unwrap();
     assert!(page.contains("ncertainty budget of max displacement") && page.contains("Linearised, k"));
-    assert!(!page.contains("Uncertainty budget of impulse"), "no requirement reads it");
+    assert!(!page.contains("ncertainty budget of impulse"), "no requirement reads it");
 
     assert_eq!(psd(folder.path(), &["verify", "run"]).status.code(), Some(0));
     assert_eq!(psd(folder.path(), &["report", "run", "--out", "again"]).status.code(), Some(0));
