@@ -75,7 +75,7 @@ fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
     }
 }
 
-/// The rule of decision, where an uncertainty is printed that it regards or not.
+/// The rule of decision, where a U is printed that it regards or not.
 fn rule(run: &Run<'_>) -> String {
     let told = match expansion::largest(run.assessment) {
         Some(factor) => format!("± is U = k·u (about 95 %; k up to {factor}, of few degrees of freedom)"),
@@ -84,7 +84,7 @@ fn rule(run: &Run<'_>) -> String {
     let uncertain = run.assessment.requirements.iter().flat_map(|requirement| &requirement.conditions);
     match run.assessment.rule {
         DecisionRule::Guarded => format!("  decision rule: guarded; {told}, and a limit nearer than that decides nothing\n"),
-        DecisionRule::Simple if uncertain.into_iter().any(|condition| condition.uncertainty.is_some()) => {
+        DecisionRule::Simple if uncertain.into_iter().any(|condition| condition.conforms.is_some()) => {
             format!("  decision rule: simple; {told}, the value alone decides\n")
         }
         DecisionRule::Simple => String::new(),

@@ -416,7 +416,8 @@ fn assessment(largest: f64, error: f64) -> Assessment {
             margin: Some(limit - value),
             guard_band: None,
             margin_degrees: f64::INFINITY,
-            conforms: None,
+            // Far inside its limit.
+            conforms: uncertainty.map(|_| 1.0),
             wider_than_tolerance: false,
             reason: None,
         }],
